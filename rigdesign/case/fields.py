@@ -129,6 +129,11 @@ Volume = Annotated[float, Quantity("volume", above="0 l", at_most="100 m3")]
 Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]
 KinematicViscosity = Annotated[float, Quantity("kinematic_viscosity", above="0 mm2/s")]
 HeatCapacity = Annotated[float, Quantity("heat_capacity", above="0 J/(kg K)")]
+Conductance = Annotated[float, Quantity("conductance", at_least="0 W/K", at_most="10000 kW/K")]
+"""Heat that goes to something else per kelvin."""
+BodyHeatCapacity = Annotated[float, Quantity("body_heat_capacity", at_least="0 J/K")]
+Pressure = Annotated[float, Quantity("pressure", above="0 bar", at_most="1000 bar", example="10 bar")]
+"""Of an oil pump or of a coolant."""
 Conductivity = Annotated[float, Quantity("conductivity", above="0 W/(m K)", at_most="1000 W/(m K)")]
 HeatTransferCoefficient = Annotated[
     float, Quantity("heat_transfer_coefficient", above="0 W/(m2 K)", at_most="1000000 W/(m2 K)")

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PrivateAttr, model_validator
 
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.document import Document
@@ -19,6 +19,7 @@ from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.numerics import Numerics
+from rigdesign.case.oil_circuits import OilCircuit, with_setpoints
 from rigdesign.case.paths import places
 from rigdesign.case.provenance import Mark, take_off
 from rigdesign.case.schedule import ScheduleInput, TestPlan
@@ -79,6 +80,8 @@ class Case(Part):
     """Materials of the case by name, in addition to the built-in ones."""
     gearboxes: Mapping[Name, Gearbox] = Field(min_length=1)
     """Gearboxes of the rig by name."""
+    oil_circuits: Mapping[Name, OilCircuit] = {}
+    """Oil circuits by name; what no circuit feeds has the inlet temperature its gearbox states."""
     drivetrain: DrivetrainInput | None = None
     """Left out when the losses are given: the dynamic checks are then not applicable."""
     losses: Losses
@@ -97,6 +100,12 @@ class Case(Part):
     """Who answers for the report; moves no result and is left out of the hash."""
 
     _origin: Origin = PrivateAttr()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _inlet_temperatures(cls, tree: object) -> object:
+        """Inlet temperatures that the file leaves to the setpoints of oil circuits."""
+        return with_setpoints(tree)
 
     @property
     def origin(self) -> Origin:

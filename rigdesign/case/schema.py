@@ -21,6 +21,10 @@ _MARK_PROPERTIES: dict[str, Any] = {
 }
 
 
+LEFT_TO_CIRCUITS = ("JetOil", "FedOil")
+"""Tables whose inlet temperature may be left to the setpoint of an oil circuit."""
+
+
 def json_schema() -> dict[str, Any]:
     """Schema of a case file (draft 2020-12): patterns for quantities, choices, names, descriptions.
 
@@ -32,6 +36,8 @@ def json_schema() -> dict[str, Any]:
         properties = table.get("properties", {})
         for name, entry in properties.items():
             properties[name] = _with_marks(entry) if _is_value(entry) else entry
+    for name in LEFT_TO_CIRCUITS:
+        schema["$defs"][name]["required"].remove("inlet_temperature")
     schema["properties"]["extends"] = {
         "type": "string",
         "description": "case file this one is laid over; required keys may then be left out",

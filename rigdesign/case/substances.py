@@ -19,6 +19,7 @@ from rigdesign.case.fields import (
     Time,
     fault,
 )
+from rigdesign.properties.oil import Oil
 
 
 class Ambient(Part):
@@ -52,6 +53,20 @@ class CustomOil(Part):
     """Thermal conductivity at 40 degC."""
     lubricant_factor: Annotated[float, Field(gt=0.1, le=2.0)] = 1.0
     """X_L of the friction laws: 1 for mineral oil."""
+
+    def properties(self, name: str) -> Oil:
+        """The oil by the name the case gives it."""
+        return Oil.from_viscosities(
+            name=name,
+            viscosity_1=self.kinematic_viscosity_40,
+            temperature_1=313.15,
+            viscosity_2=self.kinematic_viscosity_100,
+            temperature_2=373.15,
+            density_15=self.density_15,
+            heat_capacity=self.heat_capacity,
+            conductivity_40=self.conductivity,
+            lubricant_factor=self.lubricant_factor,
+        )
 
     @model_validator(mode="after")
     def _thins(self) -> "CustomOil":

@@ -81,13 +81,13 @@ RULES = (
         title="heat to the room",
         procedure=(
             "Heat from the surfaces of all housings and their clamping fields to the room at the held "
-            "stages, from the temperature fields."
+            "stages, from the temperature fields; with tanks and pipes of the oil circuits."
         ),
         unit=KILOWATT,
         group=GROUP,
         source="limits.oil.room_heat_maximum",
         limit=lambda limits: limits.oil.room_heat_maximum,
-        values=_of_stages(lambda balance: balance.room),
+        values=_of_stages(lambda balance: balance.room + balance.tanks),
         leaves_out=(ROOM_HEAT, *HEAT),
         moved_by=frozenset({"housing"}),
     ),

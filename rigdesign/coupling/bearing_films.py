@@ -86,7 +86,7 @@ def _place(rig: Rig, name: str, clearance: float) -> BearingPlace:
 def _supply(rig: Rig, box_name: str, point: OperatingPoint, coupling_state: CouplingState) -> OilFeed:
     """Oil that passes each bearing of a gearbox: fed, a share of what the gears lift or the jets inject, or none."""
     box, chamber = rig.case.gearboxes[box_name], coupling_state.oil_outlet[f"{box_name}.gear_oil"]
-    feed = bearing_feed(rig, box_name, chamber)
+    feed = bearing_feed(rig, box_name, chamber, coupling_state.oil_supply)
     share = box.splash_share
     if share == 0.0:
         return feed

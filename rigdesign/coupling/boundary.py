@@ -20,6 +20,7 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import (
+    ChamberOil,
     bearing_feed,
     bearing_oil,
     conducting_share,
@@ -86,7 +87,9 @@ class _Context:
             return AIR, self.rig.case.ambient.temperature
         kind, _, which = name.rpartition("_")
         chamber = self.coupling_state.oil_outlet[f"{self.name}.{GEAR_OIL}"]
-        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(self.rig, self.name, chamber)
+        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(
+            self.rig, self.name, chamber, self.coupling_state.oil_supply
+        )
         outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
 
@@ -251,7 +254,8 @@ def _condition(
         return _bearing_film(context, condition, surface)
     if isinstance(condition, laws.FlankFilm):
         gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
-        chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
+        state = context.coupling_state
+        chamber = ChamberOil.of(context.name, state.oil_outlet, state.oil_supply)
         flanks = gear_flanks(context.rig, context.name, gear, context.point, condition, chamber)
         return flanks.film(surface, GEAR_OIL)
     return _film(context, condition, surface)

@@ -6,7 +6,7 @@ of its heat reaches the rim, the rest leaves with the film (`thermal.films.flank
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,15 @@ from rigdesign.coupling.dip import DippedFlanks, flank_law
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import gear_oil, jet_velocity, wetted_width, wetting_flow
+from rigdesign.rig.oil_supply import (
+    ChamberOil,
+    OilFeed,
+    gear_feed,
+    gear_oil,
+    jet_velocity,
+    wetted_width,
+    wetting_flow,
+)
 from thermal.conditions.boundary import Film
 from thermal.films.convection import constant
 from thermal.films.flank import (
@@ -97,11 +105,11 @@ def rim_surfaces(box: Gearbox) -> dict[str, str]:
 
 
 def gear_flanks(
-    rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm, chamber: float
+    rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm, chamber: ChamberOil
 ) -> GearFlanks:
     """Teeth and film of one gear of the housing ``name`` at an operating point.
 
-    chamber : temperature of the gear oil as it leaves the chamber; that of a sump [K]
+    chamber : gear oil of the chamber
     """
     box = rig.case.gearboxes[name]
     mesh_name, index = box.first_meshes()[gear]
@@ -117,15 +125,16 @@ def gear_flanks(
         highest_temperature=oil.highest_temperature,
     )
     factor = wetted_width(box) * condition.film_factor
-    temperature = chamber
+    temperature = chamber.leaving
     if box.jets is not None:
         speed = rig.shaft_speed(box.gears[gear].shaft, point.speed)
-        temperature = _after_impact(box, box.jets, speed, pair.working_radii[index], oil.heat_capacity)
+        fed = gear_feed(rig, name, chamber.leaving, chamber.supplies(name))
+        temperature = _after_impact(box, box.jets, speed, pair.working_radii[index], fed)
     if condition.correlation == "constant":
         assert condition.heat_transfer_coefficient is not None
         law = constant(factor * condition.heat_transfer_coefficient, "input of the case")
     elif box.jets is None:
-        dipped = DippedFlanks(ring=ring, oil=properties, sump_temperature=chamber, factor=factor)
+        dipped = DippedFlanks(ring=ring, oil=properties, sump_temperature=chamber.leaving, factor=factor)
         law = flank_law(rig, name, gear, point, dipped)
     else:
         make = fling_off if condition.correlation == "fling_off" else jet_renewal
@@ -150,18 +159,16 @@ def _jet_wetting(rig: Rig, name: str, gear: str, point: OperatingPoint, conditio
     )
 
 
-def _after_impact(
-    box: Gearbox, jets: JetOil, speed: float, radius: float, heat_capacity: Callable[[float], float]
-) -> float:
+def _after_impact(box: Gearbox, jets: JetOil, speed: float, radius: float, fed: OilFeed) -> float:
     """Temperature of injected oil as it lies on a flank [K]: warmed by its impact, (v - v_jet)^2/(2 c), vectors."""
     angle = JET_ANGLES[jets.jet_direction]
     rim_speed, jet = speed * radius, jet_velocity(box, jets)
     impact = rim_speed**2 + jet**2 - 2.0 * rim_speed * jet * math.cos(angle) if speed > 0.0 else 0.0
-    return jets.inlet_temperature + 0.5 * impact / heat_capacity(jets.inlet_temperature)
+    return fed.inlet + 0.5 * impact / fed.oil.heat_capacity(fed.inlet)
 
 
 def film_of_oil(
-    rig: Rig, name: str, gear: str, point: OperatingPoint, *, wall: float, chamber: float
+    rig: Rig, name: str, gear: str, point: OperatingPoint, *, wall: float, chamber: ChamberOil
 ) -> float:
     """Film on the rim of a gear [W/(m2 K)] that jets or sump make at a wall temperature [K] (fling-off).
 
@@ -234,9 +241,9 @@ def mesh_split(
         assert split.mesh_into_gears is not None
         return MeshSplit(pinion=share, kept=(split.mesh_into_gears, split.mesh_into_gears))
     conditions = flank_films(box, rim_surfaces(box))
-    chamber = box.gear_oil_temperature or rig.case.ambient.temperature
+    chamber = ChamberOil(leaving=box.gear_oil_temperature or rig.case.ambient.temperature)
     if coupling_state is not None:
-        chamber = coupling_state.oil_outlet[f"{name}.gear_oil"]
+        chamber = ChamberOil.of(name, coupling_state.oil_outlet, coupling_state.oil_supply)
     kept = []
     for gear in gears:
         flanks = gear_flanks(rig, name, gear, point, conditions[gear], chamber)

@@ -5,6 +5,7 @@ from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.loads import first_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import meant_supplies
 
 FIRST_SUMP_RISE = 40.0
 """First guess of a sump that finds its own temperature, above room temperature [K]; the loop leaves it behind."""
@@ -31,6 +32,7 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
         bearing_heat={name: 0.0 for name, _, _ in rig.bearings()},
         wall_heat=dict.fromkeys(streams, 0.0),
         oil_outlet=streams,
+        oil_supply=meant_supplies(rig),
         mesh_torque=first_torques(rig, point),
         axial_expansion=dict.fromkeys(rig.pairs, 0.0),
         seat_temperature=initial_seats(rig, case.ambient.temperature),

@@ -142,7 +142,12 @@ def run_iteration(
     loads = solve_loads(problem, coupling_state)
     housings = solve_housings(problem.rig, loads, before, final=final, parts=problem.parts)
     streams = oil_streams(
-        problem.rig, loads.losses, coupling_state.bearing_heat, coupling_state.wall_heat, housings.sumps
+        problem.rig,
+        loads.losses,
+        coupling_state.bearing_heat,
+        coupling_state.wall_heat,
+        housings.sumps,
+        coupling_state.oil_supply,
     )
     return IterationResult(**vars(loads), **vars(housings), streams=tuple(streams))
 

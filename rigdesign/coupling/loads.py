@@ -165,7 +165,7 @@ def mesh_friction(
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     box_name = name.split(".")[0]
     chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
-    feed = gear_feed(rig, box_name, chamber)
+    feed = gear_feed(rig, box_name, chamber, coupling_state.oil_supply)
     temperature = feed.mean(chamber)
     contact = ToothPath.of_pair(pair).contact(
         max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),

@@ -8,6 +8,7 @@ from rigdesign.coupling.convergence import CaseTolerances, Residual
 from rigdesign.coupling.fixed_point import solve_fixed_point
 from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.loads import BracingState
+from rigdesign.coupling.oil_circuits import demand_setpoints
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
@@ -48,7 +49,7 @@ def solve_point(
     start : coupling state of a neighbouring point; that of the rig before it turns when left out
     before : last iteration of a neighbouring point on the same meshes: first guess of fields and thermal expansion
     freeze : arrows of the loop that are cut, by field of `CouplingState`: they keep their initial values
-    acceleration : plain relaxation when left out
+    acceleration : left out, plain relaxation; Anderson's for a rig with oil circuits, whose heaters may be at a limit
 
     Raises
     ------
@@ -56,16 +57,20 @@ def solve_point(
         The iterations of the case are used up; the message shows the residuals of the last ones.
     NonFiniteResultError
         A loss, temperature, length or torque of an iteration is NaN or infinite.
+    SetpointNotHeldError
+        A supply temperature of an oil circuit that is demanded as hard and is not held.
     """
     problem = PointProblem.braced(rig, point, freeze=freeze)
-    steps = acceleration or PlainRelaxation()
+    begin = problem.initial if start is None else start.freeze(freeze, problem.initial)
+    steps = acceleration or (Anderson(begin) if rig.oil_circuits else PlainRelaxation())
     last, residuals = solve_fixed_point(
         problem,
         steps,
         CaseTolerances(rig.case.numerics),
-        problem.initial if start is None else start.freeze(freeze, problem.initial),
+        begin,
         before,
     )
+    demand_setpoints(rig, last)
     return PointResult(
         point=point,
         last=last,

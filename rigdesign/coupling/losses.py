@@ -305,7 +305,7 @@ def chamber_mist(rig: Rig, box_name: str, coupling_state: CouplingState) -> Mist
 def _chamber_temperature(rig: Rig, box_name: str, coupling_state: CouplingState) -> float:
     """Of what fills the chamber: the mean of its oil [K]."""
     chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
-    return gear_feed(rig, box_name, chamber).mean(chamber)
+    return gear_feed(rig, box_name, chamber, coupling_state.oil_supply).mean(chamber)
 
 
 def _oil_jets(

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import FedOil, JetOil
 from rigdesign.case.model import Case
+from rigdesign.case.oil_circuits import place_of
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.properties.oil import oil_outlet
 from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_feed, gear_feed, wall_flow
+from rigdesign.rig.oil_supply import AS_STATED, OilFeed, bearing_feed, gear_feed, wall_flow
 
 FloatArray = NDArray[np.float64]
 
@@ -34,6 +35,14 @@ class OilStream:
     """Fed [m3/s]."""
     heat: float
     """With which the oil of its drain leaves, above the temperatures it was fed with [W]."""
+    leaked: float = 0.0
+    """Heat of gear oil, as fed, above the bearing oil it leaks into and is made up from, into the bearing oil [W]:
+    what the tanks see besides ``heat``; minus that of the gear oil."""
+
+    @property
+    def to_tank(self) -> float:
+        """Heat into the tank of its own circuit, above the supply temperature [W]."""
+        return self.heat + self.leaked
 
 
 def oil_streams(
@@ -42,11 +51,13 @@ def oil_streams(
     bearing_heat: Mapping[str, float],
     wall_heat: Mapping[str, float],
     chambers: Mapping[str, float],
+    supplies: Mapping[str, float] = AS_STATED,
 ) -> list[OilStream]:
     """The two oil streams of every gearbox: outlet = inlet + (loss + heat of bodies)/(rho c Q).
 
     bearing_heat : heat conducted into each bearing film [W]; wall_heat : heat taken from walls, shafts and
     gears by each stream [W]; chambers : gearbox -> temperature of its sump [K], of gearboxes with a sump
+    supplies : ``gearbox.stream`` -> supply temperature of what oil circuits feed [K]; others as the case states
 
     A sump has one temperature; its heat is what its cooler takes to hold it there, and nothing where it finds its own.
     Bearings that are not fed leave their heat in the oil of the gears.
@@ -68,26 +79,40 @@ def oil_streams(
         if box.jets is None:
             gear = _sump(name, chambers[name], into_gears + heat)
         else:
-            gear, leak = _gear_stream(rig, name, box, box.jets, into_gears, heat)
+            fed = gear_feed(rig, name, chambers.get(name, 0.0), supplies)
+            gear, leak = _gear_stream(fed, box, box.jets, f"{name}.gear_oil", into_gears, heat)
         streams.append(gear)
         if box.fed_bearings is None:
             streams.append(replace(gear, name=f"{name}.bearing_oil", flow=0.0, heat=0.0))
         else:
             films += wall_heat[f"{name}.bearing_oil"]
-            streams.append(_bearing_stream(rig, name, box, box.fed_bearings, into_bearings, films, leak))
+            fed = bearing_feed(rig, name, 0.0, supplies)
+            fed = replace(fed, flow=fed.flow * len(box.bearings))
+            own_oil = _bearing_stream(
+                fed, box.fed_bearings, f"{name}.bearing_oil", into_bearings, films, leak
+            )
+            if leak is not None:
+                moved = _above(leak, fed.inlet)
+                streams[-1] = replace(streams[-1], leaked=-moved)
+                own_oil = replace(own_oil, leaked=moved)
+            streams.append(own_oil)
     return streams
 
 
 def heater_and_cooler(case: Case, heats: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Power that heaters give and that the cooler carries [W], to feed every oil at its inlet temperature.
 
-    heats : ``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature [W]
+    heats : ``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature, with what leaks
+        carry from tank to tank (`OilStream.to_tank`) [W]
 
     Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
-    colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
+    colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted. What an oil
+    circuit of the case feeds is left out: its heater and cooler are those of its balance.
     """
     circuits: dict[tuple[str, float], FloatArray] = {}
     for name, heat in heats.items():
+        if place_of(case.oil_circuits, name) is not None:
+            continue
         box, _, kind = name.partition(".")
         entry = case.gearboxes[box]
         fed = entry.feeds.get(kind)
@@ -117,12 +142,16 @@ def _sump(name: str, temperature: float, heat: float) -> OilStream:
     )
 
 
+def _above(leak: Portion, temperature: float) -> float:
+    """Heat of a leak as it was fed above another temperature [W]."""
+    return leak.capacity(temperature) * (leak.inlet - temperature)
+
+
 def _gear_stream(
-    rig: Rig, name: str, box: Gearbox, jets: JetOil, loss: float, heat: float
+    fed: OilFeed, box: Gearbox, jets: JetOil, name: str, loss: float, heat: float
 ) -> tuple[OilStream, Portion | None]:
     """The stream of the gears, and what of it leaks to the bearings."""
-    feed, paths = gear_feed(rig, name, jets.inlet_temperature), box.oil_paths
-    oil, inlet, flow = feed.oil, feed.inlet, feed.flow
+    paths, oil, inlet, flow = box.oil_paths, fed.oil, fed.inlet, fed.flow
     along = wall_flow(box)
     to_walls = 1.0 - paths.short_circuit / (1.0 - paths.bypass)
     outlet = jets.outlet_temperature
@@ -141,18 +170,15 @@ def _gear_stream(
     if outlet is None:
         back = (1.0 - paths.leak_warm_cold) * flow
         outlet = chamber if along == flow else oil_outlet(oil, inlet, back, leaving)
-    stream = OilStream(
-        name=f"{name}.gear_oil", inlet=inlet, outlet=outlet, chamber=chamber, flow=flow, heat=leaving
-    )
+    stream = OilStream(name=name, inlet=inlet, outlet=outlet, chamber=chamber, flow=flow, heat=leaving)
     return stream, leak
 
 
 def _bearing_stream(
-    rig: Rig, name: str, box: Gearbox, fed: FedOil, loss: float, heat: float, leak: Portion | None
+    feed: OilFeed, fed: FedOil, name: str, loss: float, heat: float, leak: Portion | None
 ) -> OilStream:
-    """The stream of the bearings, with what leaks into it from the gears."""
-    feed = bearing_feed(rig, name, fed.inlet_temperature)
-    oil, inlet, flow = feed.oil, feed.inlet, feed.flow * len(box.bearings)
+    """The stream of all bearings, with what leaks into it from the gears."""
+    oil, inlet, flow = feed.oil, feed.inlet, feed.flow
     taken = loss + heat
     outlet = fed.outlet_temperature
     if leak is None:
@@ -162,6 +188,4 @@ def _bearing_stream(
         outlet = (
             mixed((Portion(oil=oil, inlet=inlet, flow=flow), leak), loss + heat) if outlet is None else outlet
         )
-    return OilStream(
-        name=f"{name}.bearing_oil", inlet=inlet, outlet=outlet, chamber=outlet, flow=flow, heat=taken
-    )
+    return OilStream(name=name, inlet=inlet, outlet=outlet, chamber=outlet, flow=flow, heat=taken)

@@ -6,6 +6,7 @@ from dataclasses import replace
 from rigdesign.coupling.bearing_seats import bearing_temperatures
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult, PointProblem
+from rigdesign.coupling.oil_circuits import circuit_balances, supplies
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.temperatures import seat_temperatures
 from rigdesign.rig.model import Rig
@@ -57,6 +58,7 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
             for name, heat in done.wall_heat.items()
         },
         oil_outlet={stream.name: stream.chamber for stream in done.streams},
+        oil_supply=supplies(circuit_balances(rig, done)),
         mesh_torque=torque,
         axial_expansion=axial_expansion,
         seat_temperature=seats,
@@ -100,7 +102,7 @@ def _bearing_capacity(rig: Rig, name: str, state: CouplingState) -> float:
     """Heat capacity flow rho c Q of the oil of one bearing [W/K]; boundless where none is fed (`_without_flow`)."""
     box_name = name.split(".")[0]
     chamber = state.oil_outlet[f"{box_name}.gear_oil"]
-    return _without_flow(bearing_feed(rig, box_name, chamber).capacity_rate)
+    return _without_flow(bearing_feed(rig, box_name, chamber, state.oil_supply).capacity_rate)
 
 
 def _stream_capacity(rig: Rig, name: str, state: CouplingState) -> float:
@@ -109,8 +111,10 @@ def _stream_capacity(rig: Rig, name: str, state: CouplingState) -> float:
     box = rig.case.gearboxes[box_name]
     chamber = state.oil_outlet[f"{box_name}.gear_oil"]
     if kind == "gear_oil":
-        return _without_flow(replace(gear_feed(rig, box_name, chamber), flow=wall_flow(box)).capacity_rate)
-    feed = bearing_feed(rig, box_name, chamber)
+        return _without_flow(
+            replace(gear_feed(rig, box_name, chamber, state.oil_supply), flow=wall_flow(box)).capacity_rate
+        )
+    feed = bearing_feed(rig, box_name, chamber, state.oil_supply)
     return _without_flow(replace(feed, flow=feed.flow * len(box.bearings)).capacity_rate)
 
 

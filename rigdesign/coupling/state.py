@@ -35,6 +35,8 @@ class CouplingState:
     """Heat that walls, shafts and gears give to each oil stream [W]."""
     oil_outlet: Values
     """Temperature with which each oil stream leaves its chamber [K]: it wets the walls and thins the tooth film."""
+    oil_supply: Values
+    """Supply temperature of each oil stream that an oil circuit feeds [K]; the others have that of the case."""
     mesh_torque: Values
     """Mean torque of each mesh at its pinion [N m], positive where the pinion drives: it loads the bearings."""
     axial_expansion: Values
@@ -59,7 +61,7 @@ class CouplingState:
         )
 
 
-TEMPERATURES = ("gear_temperature", "oil_outlet", "seat_temperature")
+TEMPERATURES = ("gear_temperature", "oil_outlet", "seat_temperature", "oil_supply")
 LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion")
 
 

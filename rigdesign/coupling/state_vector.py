@@ -12,6 +12,7 @@ FloatArray = NDArray[np.float64]
 SCALES = {
     "gear_temperature": 1.0,
     "oil_outlet": 1.0,
+    "oil_supply": 1.0,
     "centre_distance": 1e-6,
     "bearing_clearance": 1e-6,
     "axial_expansion": 1e-6,

@@ -61,6 +61,12 @@ class SteadyCircuit:
     warnings: tuple[str, ...]
 
     @property
+    def wall_loss(self) -> float:
+        """Of tank and pipes to the room [W]."""
+        pump = self.circuit.pump
+        return self.room_loss - (pump.shaft_power - self.pump_heat if pump else 0.0)
+
+    @property
     def heater_power(self) -> float:
         """Of tank and lines [W]."""
         tank = self.heater.power if self.heater else 0.0

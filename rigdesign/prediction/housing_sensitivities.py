@@ -212,7 +212,7 @@ def _fresh_over_mean(rig: Rig, name: str, last: IterationResult) -> float:
     own = [placed for placed in last.losses if placed.gearbox == name]
     heat = sum(placed.into_oil - placed.into_bearing_oil for placed in own)
     chamber = next(stream.chamber for stream in last.streams if stream.name == f"{name}.{GEAR_OIL}")
-    feed = gear_feed(rig, name, chamber)
+    feed = gear_feed(rig, name, chamber, last.coupling_state.oil_supply)
     if feed.flow == 0.0:
         return 0.0
     return heat / feed.capacity_rate - 0.5 * (chamber - feed.inlet)

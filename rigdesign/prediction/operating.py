@@ -50,6 +50,9 @@ def case_at(case: Case, setting: OperatingCondition) -> Case:
     for mesh, teeth in setting.tooth_offset.items():
         _turn(boxes, mesh, teeth)
     update: dict[str, object] = {}
+    if setting.inlet_temperature:
+        # what was measured at the inlets stands in place of what the circuits would give
+        update["oil_circuits"] = {}
     if setting.inlet_temperature or setting.flow or setting.tooth_offset:
         update["gearboxes"] = boxes
     if setting.ambient_temperature is not None:

@@ -109,8 +109,8 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
                 )
             )  # fmt: skip
     for balance in solved.cooling:
-        given = math.fsum((balance.losses, balance.pump, balance.heater))
-        taken = math.fsum((balance.cooler, balance.room))
+        given = math.fsum((balance.losses, balance.pump, balance.heater, balance.circulation))
+        taken = math.fsum((balance.cooler, balance.room, balance.tanks))
         rows.append(
             _row(f"heat carried away, stage {balance.stage}", taken, given, "W",
                  "cooler + room = losses + jets of the pump + heaters")

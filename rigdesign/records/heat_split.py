@@ -12,6 +12,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.temperatures import HousingField, body_mean
 from rigdesign.results.housing import GearHeatSplit
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import ChamberOil
 from thermal.conditions.boundary import Film, SurfaceSource
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import solve_steady
@@ -90,7 +91,8 @@ def _ends(rig: Rig, name: str, films: Mapping[str, FlankFilm], end: int) -> dict
 
 
 def _flanks(rig: Rig, result: PointResult, name: str, gear: str, film: FlankFilm) -> GearFlanks:
-    chamber = result.last.coupling_state.oil_outlet[f"{name}.gear_oil"]
+    state = result.last.coupling_state
+    chamber = ChamberOil.of(name, state.oil_outlet, state.oil_supply)
     return gear_flanks(rig, name, gear, result.point, film, chamber)
 
 

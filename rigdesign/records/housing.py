@@ -8,6 +8,7 @@ import numpy as np
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import heater_and_cooler
+from rigdesign.coupling.oil_circuits import circuit_balances
 from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from rigdesign.records.heat_split import COMPARED, heat_splits
 from rigdesign.results.housing import BodyTemperature, CoolingBalance, HousingTemperatures, RadiationReadings
@@ -19,19 +20,24 @@ from thermal.conduction.flux import heat_flux
 def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
     """What cooler and room take out against what shafts, pump and heaters put in, at one held stage."""
     damped = math.fsum(placed.not_heat for placed in last.losses)
-    heats = {stream.name: np.array([stream.heat]) for stream in last.streams}
+    heats = {stream.name: np.array([stream.to_tank]) for stream in last.streams}
+    balances = circuit_balances(rig, last)
+    circuits = balances.values()
     heater, carried = (float(power[0]) for power in heater_and_cooler(rig.case, heats))
     steady = rig.case.ambient.warming_time is None
     return CoolingBalance(
         stage=last.point.stage,
         losses=math.fsum(placed.loss.power for placed in last.losses) - damped,
         pump=math.fsum(placed.pumped for placed in last.losses),
-        heater=heater,
-        cooler=carried,
+        heater=heater + math.fsum(found.heater_power for found in circuits),
+        cooler=carried + math.fsum(found.cooler_heat for found in circuits),
         room=math.fsum(heat_to_room(field) for field in last.fields.values()),
         stored=None if steady else math.fsum(heat_stored(field) for field in last.fields.values()),
         not_heat=damped,
         flow=math.fsum(stream.flow for stream in last.streams),
+        circulation=math.fsum(found.pump_heat for found in circuits),
+        tanks=math.fsum(found.wall_loss for found in circuits),
+        circuits=balances,
     )
 
 

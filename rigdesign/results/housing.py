@@ -1,9 +1,10 @@
 """Temperatures and heat of the housings at the held stages: SI records."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
+from rigdesign.oil_circuit.steady_result import SteadyCircuit
 from thermal.conduction.heat_rows import HeatFlow
 
 
@@ -102,9 +103,15 @@ class CoolingBalance:
     """Work of mesh dampers: power of the motor that is heat of no part."""
     flow: float
     """Of all oils [m3/s]."""
+    circulation: float = 0.0
+    """Heat of the pumps of the oil circuits into the oil."""
+    tanks: float = 0.0
+    """From tanks and pipes of the oil circuits to the room."""
+    circuits: Mapping[str, SteadyCircuit] = field(default_factory=dict)
+    """Oil circuits in balance, by name."""
 
     @property
     def imbalance(self) -> float:
         """Put in less taken out and stored [W]."""
-        given = self.losses + self.pump + self.heater
-        return given - self.cooler - self.room - (self.stored or 0.0)
+        given = self.losses + self.pump + self.heater + self.circulation
+        return given - self.cooler - self.room - self.tanks - (self.stored or 0.0)

@@ -39,6 +39,10 @@ class OilPowerCurve:
     """Of the others."""
     streams_W: dict[str, list[float]]  # noqa: N815
     """``gearbox.stream`` -> heat with which its oil comes back above its inlet temperature."""
+    tanks_degC: dict[str, list[float]] = field(default_factory=dict)  # noqa: N815
+    """Oil circuit -> temperature of its tank."""
+    supplies_degC: dict[str, list[float]] = field(default_factory=dict)  # noqa: N815
+    """``gearbox.stream`` -> supply temperature, of streams that an oil circuit feeds."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,10 +11,12 @@ from dynamics.gear.pair import GearPair
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
+from rigdesign.case.circuit_parts import oil_circuits
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
+from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.drivetrain import build_drivetrain
@@ -95,6 +97,11 @@ class Rig:
         torque = self.torque_ratio * max(abs(stage.torque_end) for stage in self.case.schedule.resolved())
         force = torque / self.pairs[self.control_mesh].base_radii[0]
         return section_torsions(self.drivetrain, force, power.motor.torque_limit)
+
+    @cached_property
+    def oil_circuits(self) -> Mapping[str, Circuit]:
+        """Oil circuits by name; empty where every inlet temperature is stated."""
+        return oil_circuits(self.case, self.oils)
 
     @cached_property
     def geometries(self) -> Mapping[str, HousingGeometry]:
@@ -278,7 +285,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
-    oils = dict(OILS) | {name: _custom_oil(case, name) for name in case.oils}
+    oils = dict(OILS) | {name: entry.properties(name) for name, entry in case.oils.items()}
     materials = dict(MATERIALS) | {name: _custom_material(case, name) for name in case.materials}
     pairs = build_pairs(case, materials)
     control = _control_mesh(case)
@@ -302,21 +309,6 @@ def _control_mesh(case: Case) -> str:
             if wanted is None or (wanted[0] == box_name and wanted[1] in (mesh.pinion, mesh.wheel)):
                 return f"{box_name}.{name}"
     raise ValueError(f"drivetrain.torque_at = {wanted}: this gear is in no mesh; name one that is")
-
-
-def _custom_oil(case: Case, name: str) -> Oil:
-    entry = case.oils[name]
-    return Oil.from_viscosities(
-        name=name,
-        viscosity_1=entry.kinematic_viscosity_40,
-        temperature_1=313.15,
-        viscosity_2=entry.kinematic_viscosity_100,
-        temperature_2=373.15,
-        density_15=entry.density_15,
-        heat_capacity=entry.heat_capacity,
-        conductivity_40=entry.conductivity,
-        lubricant_factor=entry.lubricant_factor,
-    )
 
 
 def _custom_material(case: Case, name: str) -> Material:

@@ -1,5 +1,6 @@
 """Oil of a gearbox as it is: its state, and what of it reaches meshes, walls and bearings."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rigdesign.case.gearbox import Gearbox
@@ -45,27 +46,68 @@ class OilFeed:
         return 0.5 * (self.inlet + outlet)
 
 
-def gear_feed(rig: Rig, name: str, chamber: float) -> OilFeed:
+AS_STATED: Mapping[str, float] = {}
+"""No oil stream is fed by a circuit: inlet temperatures are those of the case."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChamberOil:
+    """Gear oil of a chamber."""
+
+    leaving: float
+    """As it leaves the chamber; in a sump that of all its oil [K]."""
+    supply: float | None = None
+    """As an oil circuit feeds it [K]; None for the inlet temperature of the case."""
+
+    @classmethod
+    def of(cls, name: str, outlets: Mapping[str, float], supplies: Mapping[str, float]) -> "ChamberOil":
+        """That of the gearbox ``name``; outlets, supplies : by oil stream [K]."""
+        stream = f"{name}.gear_oil"
+        return cls(leaving=outlets[stream], supply=supplies.get(stream))
+
+    def supplies(self, name: str) -> Mapping[str, float]:
+        """Supply temperature by oil stream [K] of the gearbox ``name``, as `gear_feed` takes it."""
+        return AS_STATED if self.supply is None else {f"{name}.gear_oil": self.supply}
+
+
+def meant_supplies(rig: Rig) -> dict[str, float]:
+    """Supply temperature that each oil stream of an oil circuit is meant to have [K], by ``gearbox.stream``."""
+    return {
+        stream: rig.case.gearboxes[stream.split(".")[0]].feeds[stream.split(".")[1]][0].inlet_temperature
+        for circuit in rig.case.oil_circuits.values()
+        for line in circuit.lines.values()
+        for stream in line.consumers
+    }
+
+
+def gear_feed(rig: Rig, name: str, chamber: float, supplies: Mapping[str, float] = AS_STATED) -> OilFeed:
     """Oil fed to all meshes of the gearbox ``name``; a sump at its temperature, without flow.
 
     chamber : temperature of the oil as it leaves the chamber, in a sump that of all its oil [K]
+    supplies : ``gearbox.stream`` -> supply temperature of what oil circuits feed [K]; others as the case states
     """
     box = rig.case.gearboxes[name]
     if box.jets is None:
         return OilFeed(oil=gear_oil(rig, name), inlet=chamber, flow=0.0)
     flow = box.jets.flow * len(box.meshes)
-    return OilFeed(oil=gear_oil(rig, name), inlet=box.jets.inlet_temperature, flow=flow)
+    return OilFeed(
+        oil=gear_oil(rig, name), inlet=supplies.get(f"{name}.gear_oil", box.jets.inlet_temperature), flow=flow
+    )
 
 
-def bearing_feed(rig: Rig, name: str, chamber: float) -> OilFeed:
+def bearing_feed(rig: Rig, name: str, chamber: float, supplies: Mapping[str, float] = AS_STATED) -> OilFeed:
     """Oil fed to each bearing of the gearbox ``name``; where none is, oil of the chamber without flow.
 
-    chamber : temperature of the gear oil as it leaves the chamber [K]
+    chamber : temperature of the gear oil as it leaves the chamber [K]; supplies : as in `gear_feed`
     """
     fed = rig.case.gearboxes[name].fed_bearings
     if fed is None:
         return OilFeed(oil=bearing_oil(rig, name), inlet=chamber, flow=0.0)
-    return OilFeed(oil=bearing_oil(rig, name), inlet=fed.inlet_temperature, flow=fed.flow)
+    return OilFeed(
+        oil=bearing_oil(rig, name),
+        inlet=supplies.get(f"{name}.bearing_oil", fed.inlet_temperature),
+        flow=fed.flow,
+    )
 
 
 def conducting_share(rig: Rig, name: str, stream: str) -> float:

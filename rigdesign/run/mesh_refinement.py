@@ -107,7 +107,10 @@ def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
     """
     last = converged.last
     housings = solve_housings(rig, last, _carried_over(last, source, rig))
-    streams = oil_streams(rig, last.losses, housings.bearing_heat, housings.wall_heat, housings.sumps)
+    supplies = last.coupling_state.oil_supply
+    streams = oil_streams(
+        rig, last.losses, housings.bearing_heat, housings.wall_heat, housings.sumps, supplies
+    )
     done = replace(last, **vars(housings), streams=tuple(streams))
     after = next_state(rig, done)
     change = replace(Residual.between(done.coupling_state, after), torque=0.0)

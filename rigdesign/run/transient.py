@@ -17,7 +17,7 @@ from rigdesign.results.transient import Settling, TransientCurve, TransientResul
 from rigdesign.results.units import MM, RPM, ZERO
 from rigdesign.rig.model import Rig
 from rigdesign.run.transient_alignment import misalignments, worst_misalignments
-from rigdesign.run.transient_oil import oil_power_curve, worst_powers
+from rigdesign.run.transient_oil import oil_power_curve, supplies_held, worst_powers
 from rigdesign.run.warnings import oil_at_room_temperature
 from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
@@ -82,7 +82,9 @@ def history_extremes(solved: SolvedRig, run: TransientRun) -> HistoryExtremes:
             *worst_powers(solved, [p for p in run.power if (p.name != "cold_start") is planned], planned),
         )
     ]
-    return HistoryExtremes(extremes=tuple(extremes), soak=run.soak)
+    planned_power = next(power for power in run.power if power.name == SCHEDULE)
+    supplies = tuple(supplies_held(solved.case, planned_power))
+    return HistoryExtremes(extremes=tuple(extremes), soak=run.soak, supplies=supplies)
 
 
 def transient_result(solved: SolvedRig, run: TransientRun, history: HistoryExtremes) -> TransientResult:
@@ -314,9 +316,25 @@ def simplifications(rig: Rig) -> Sequence[str]:
     return (
         "over time: losses and films are those of the coupled steady run, interpolated over speed and torque; "
         "thicker oil and tighter bearings of a rig that still warms up are not fed back into them",
-        "over time: every oil is fed at its inlet temperature from the first moment on, whatever heaters and cooler "
-        "must give or take for it; the heat content of tanks and pipes is left out",
+        *_feeds(rig),
         "over time: at standstill gears stand still; jets do not reach them, still air and the shafts warm them",
         "over time: oil has no mass, a bearing without feed keeps its film, tooth friction without oil is that "
         "with oil",
     )
+
+
+def _feeds(rig: Rig) -> Iterator[str]:
+    """How oils are fed over time: by oil circuits with limits, or as the case states."""
+    streams = {f"{name}.{kind}" for name, box in rig.case.gearboxes.items() for kind in box.feeds}
+    fed = {consumer.name for circuit in rig.oil_circuits.values() for consumer in circuit.consumers}
+    if streams - fed:
+        which = "every oil" if not fed else ", ".join(sorted(streams - fed))
+        yield (
+            f"over time: {which} is fed at its inlet temperature from the first moment on, whatever heaters and cooler "
+            "must give or take for it; the heat content of tanks and pipes is left out"
+        )
+    if fed:
+        yield (
+            "over time: losses do not feel that the supply temperature of an oil circuit is still below its setpoint; "
+            "a warm-up that is tried shorter than planned has the supply temperatures of the planned one"
+        )

@@ -23,7 +23,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil, gear_oil
+from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
 from rigdesign.run.load_convergence import missing_load_errors
 from thermal.conditions.boundary import Film, Radiation
 from thermal.conduction.audit import assumed_difference, audit_conditions, radiation_too_small
@@ -45,6 +45,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
         *(Finding(id="oil", text=text) for text in _oils(solved)),
+        *(Finding(id="oil_circuit", text=text) for text in _circuits(solved)),
         *(Finding(id="damping", text=text) for text in _damping(solved)),
         *(Finding(id="sampling", text=text) for text in _sampling(solved)),
         *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
@@ -175,6 +176,16 @@ def _oils(solved: SolvedRig) -> Iterator[str]:
                     yield f"{stream.name}, stage {point.point.stage}: {text}"
 
 
+def _circuits(solved: SolvedRig) -> Iterator[str]:
+    """Oil circuits with a heater or cooler at its limit, or oil outside of its data, at the held stages."""
+    said: dict[str, str] = {}
+    for balance in solved.cooling:
+        for found in balance.circuits.values():
+            for text in found.warnings:
+                said.setdefault(text, f"stage {balance.stage}: {text}")
+    yield from said.values()
+
+
 def oil_at_room_temperature(rig: Rig) -> Iterator[str]:
     """Every oil as the rig starts: at the temperature of the room."""
     room = rig.case.ambient.temperature
@@ -278,7 +289,8 @@ def _thin_rim_films(solved: SolvedRig, field: HousingField) -> Iterator[str]:
     name, rig = field.gearbox, solved.rig
     box = rig.case.gearboxes[name]
     result = next(p for p in solved.points if p.last.fields.get(name) is field)
-    point, chamber = result.point, result.last.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
+    point, state = result.point, result.last.coupling_state
+    chamber = ChamberOil.of(name, state.oil_outlet, state.oil_supply)
     if box.heat_split.rule != "assumed" or point.speed == 0.0:
         return
     rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}

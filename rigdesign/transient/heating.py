@@ -1,19 +1,32 @@
 """What heats and cools the housings at any time of a phase: every operating point computed once."""
 
+import math
 from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TypeAlias
 
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.coupling.bearing_seats import WarmBearing, bearings_between
 from rigdesign.coupling.loop import PointResult, governing_point
+from rigdesign.coupling.oil import OilStream
+from rigdesign.coupling.oil_circuits import wall_slopes
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.transient.bearing_nodes import between
 from rigdesign.transient.blend import blended
-from rigdesign.transient.oil import oil_conditions
+from rigdesign.transient.oil import oil_conditions, supplied
+from rigdesign.transient.oil_supply import SupplyHistory, WallAnswer
 from rigdesign.transient.phases import Phase
+from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.condition_checks import Condition
 from thermal.transient.history import ThermalStage
+
+LEVEL = 20.0
+"""Distance of the supply temperatures at which films are computed [K]; between them they are interpolated."""
+Supplies: TypeAlias = tuple[tuple[str, float], ...]
+"""(``gearbox.stream``, supply temperature [K])."""
 
 
 class Heating:
@@ -31,14 +44,66 @@ class Heating:
             )
             for held in points
         }
-        self._conditions: dict[tuple[str, OperatingPoint, bool], tuple[Condition, ...]] = {}
+        self._conditions: dict[tuple[str, OperatingPoint, bool, Supplies], tuple[Condition, ...]] = {}
 
-    def at(self, name: str, point: OperatingPoint, *, oil: bool) -> tuple[Condition, ...]:
-        """Conditions of the housing of gearbox ``name`` at an operating point."""
-        key = name, point, oil
+    @cached_property
+    def answers(self) -> Mapping[str, WallAnswer]:
+        """Stream -> how the walls of its housing answer its supply temperature, about."""
+        return {stream.name: self._answer(stream) for stream in self._test.last.streams}
+
+    def _answer(self, stream: OilStream) -> WallAnswer:
+        prompt, lasting = wall_slopes(self._rig, self._test.last, stream)
+        box = stream.name.split(".")[0]
+        if not prompt or box not in self._rig.models:
+            return WallAnswer(prompt=prompt)
+        elements = self._rig.conduction[box].elements
+        capacity = math.fsum(
+            material.density * material.heat_capacity * elements.volume(body)
+            for body, material in self._rig.body_materials(box).items()
+            if body != "field"
+        )
+        return WallAnswer(prompt=prompt, lasting=lasting, capacity=capacity)
+
+    def at(
+        self, name: str, point: OperatingPoint, *, oil: bool, supplies: Supplies = ()
+    ) -> tuple[Condition, ...]:
+        """Conditions of the housing of gearbox ``name`` at an operating point.
+
+        supplies : supply temperature [K] of its streams that oil circuits feed; those of the point when left out.
+            Films and oils are those of these temperatures; the losses stay those of the point
+        """
+        key = name, point, oil, supplies
         if key not in self._conditions:
-            self._conditions[key] = oil_conditions(self._rig, name, self.state(point), oil=oil)
+            state = supplied(self.state(point), dict(supplies))
+            self._conditions[key] = oil_conditions(self._rig, name, state, oil=oil)
         return self._conditions[key]
+
+    def fed_at(
+        self, name: str, point: OperatingPoint, phase: Phase, supplies: Mapping[str, float]
+    ) -> tuple[Condition, ...]:
+        """Conditions of a housing at an operating point of a phase, its oil fed at given temperatures [K].
+
+        They are interpolated between supply temperatures `LEVEL` apart.
+        """
+        own = {stream: value for stream, value in supplies.items() if stream.split(".")[0] == name}
+        if not (own and phase.oil):
+            return self.at(name, point, oil=phase.oil)
+        low = {
+            stream: ZERO_CELSIUS + LEVEL * ((value - ZERO_CELSIUS) // LEVEL) for stream, value in own.items()
+        }
+        first = self.at(name, point, oil=True, supplies=tuple(low.items()))
+        warmer = tuple((stream, value + LEVEL) for stream, value in low.items())
+        second = self.at(name, point, oil=True, supplies=warmer)
+        share = {stream.split(".")[1]: (value - low[stream]) / LEVEL for stream, value in own.items()}
+        networks = {c.volumes[0].name: c for c in second if isinstance(c, StreamNetwork)}
+        found: list[Condition] = []
+        for condition in first:
+            kind = condition.volumes[0].name if isinstance(condition, StreamNetwork) else ""
+            if kind in share:
+                found += blended([condition], [networks[kind]], share[kind])
+            else:
+                found.append(condition)
+        return tuple(found)
 
     def state(self, point: OperatingPoint) -> PointLosses:
         """What heats the rig at an operating point."""
@@ -63,8 +128,25 @@ class Heating:
         }
         return bearings_between(stars, seats)
 
-    def stage(self, name: str, phase: Phase) -> ThermalStage:
-        """A phase as the heat model of gearbox ``name`` takes it."""
+    def stage(
+        self, name: str, phase: Phase, start: float = 0.0, supply: SupplyHistory | None = None
+    ) -> ThermalStage:
+        """A phase as the heat model of gearbox ``name`` takes it.
+
+        start : of the phase, since the start of the schedule [s]
+        supply : supply temperatures of the oil circuits over time; None without circuits
+        """
+        if supply is not None and phase.oil:
+
+            def fed(time: float) -> Sequence[Condition]:
+                before, after, share = phase.between(time)
+                temperatures = supply.at(start + time)
+                first = self.fed_at(name, before.point, phase, temperatures)
+                if share == 0.0:
+                    return first
+                return blended(first, self.fed_at(name, after.point, phase, temperatures), share)
+
+            return ThermalStage(name=phase.name, duration=phase.duration, conditions=fed)
         if len(phase.knots) == 1:
             fixed = self.at(name, phase.knots[0].point, oil=phase.oil)
             return ThermalStage(name=phase.name, duration=phase.duration, conditions=fixed)

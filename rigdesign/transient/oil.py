@@ -11,7 +11,7 @@ of the teeth stays in the gears, that of the bearings in the oil of their films.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rigdesign.case.lubrication import DipOil
@@ -101,6 +101,25 @@ def _gear_kinds(rig: Rig, name: str) -> tuple[str, ...]:
     return (GEAR_OIL,) if rig.case.gearboxes[name].fed_bearings is not None else (GEAR_OIL, BEARING_OIL)
 
 
+def supplied(state: PointLosses, supplies: Mapping[str, float]) -> PointLosses:
+    """The same state with oil streams fed at other temperatures [K]: outlets and films move with them, losses stay."""
+    if not supplies:
+        return state
+    old = state.coupling_state
+    moved = {stream: value - old.oil_supply[stream] for stream, value in supplies.items()}
+    outlets = {stream: value + moved.get(stream, 0.0) for stream, value in old.oil_outlet.items()}
+    films = {
+        bearing: replace(
+            film,
+            film_temperature=film.film_temperature + moved.get(f"{bearing.split('.')[0]}.{BEARING_OIL}", 0.0),
+        )
+        for bearing, film in state.bearings.items()
+    }
+    supply = {**old.oil_supply, **supplies}
+    shifted = replace(old, oil_outlet=outlets, oil_supply=supply)
+    return replace(state, coupling_state=shifted, bearings=films)
+
+
 def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
@@ -146,7 +165,7 @@ def _gear_network(
     outlet = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
     if box.sump is not None:
         return _sump_network(rig, name, box.sump, state, losses, wetted)
-    fed = replace(gear_feed(rig, name, outlet), flow=wall_flow(box))
+    fed = replace(gear_feed(rig, name, outlet, state.coupling_state.oil_supply), flow=wall_flow(box))
     feed = f"{GEAR_OIL} {FEED}"
     stream = _films(GEAR_OIL, feed, fed.inlet, wetted, oil, _gear_kinds(rig, name))
     power = _gear_heat(rig, name, losses)
@@ -212,7 +231,8 @@ def _bearing_network(
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
     chamber = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
-    fed, feed = bearing_feed(rig, name, chamber), f"{BEARING_OIL} {FEED}"
+    supplies = state.coupling_state.oil_supply
+    fed, feed = bearing_feed(rig, name, chamber, supplies), f"{BEARING_OIL} {FEED}"
     own = [placed for placed in losses if placed.gearbox == name]
     friction = dict.fromkeys(box.bearings, 0.0)
     for placed in own:
@@ -258,7 +278,7 @@ def _leak(rig: Rig, name: str, state: PointLosses, specific_heat: float) -> tupl
         return None
     lubricant = gear_oil(rig, name)
     warm, mixed = (state.coupling_state.oil_outlet[f"{name}.{kind}"] for kind in (GEAR_OIL, BEARING_OIL))
-    flow = share * lubricant.density(box.jets.inlet_temperature) * box.jets.flow * len(box.meshes)
+    flow = share * gear_feed(rig, name, warm, state.coupling_state.oil_supply).mass_flow
     return warm, flow * lubricant.heat_capacity(0.5 * (warm + mixed)) / specific_heat
 
 

@@ -1,7 +1,8 @@
-"""Power that holds every oil at its inlet temperature over time: heaters and cooler, of all gearboxes together.
+"""Heaters and coolers over time, of all gearboxes together: those of the oil circuits, and what the others would need.
 
-An oil that comes back colder than it is fed needs a heater, one that comes back warmer the cooler. The oil of a
-housing leaves with the temperature of its stream; a gearbox without a housing gives its losses to its oil.
+The heater and coolers of an oil circuit give and carry what they can; an oil without a circuit is held at its inlet
+temperature: it needs a heater where it comes back colder than it is fed, the cooler where it comes back warmer. The
+oil of a housing leaves with the temperature of its stream; a gearbox without a housing gives its losses to its oil.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,15 +14,20 @@ from numpy.typing import NDArray
 from rigdesign.case.model import Case
 from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.oil import heater_and_cooler, oil_streams
+from rigdesign.coupling.oil_circuits import one_tank
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
 from rigdesign.transient.heating import Heating
-from rigdesign.transient.oil import HEATER_AND_COOLER, LEAK
+from rigdesign.transient.oil import FEED, HEATER_AND_COOLER, LEAK
+from rigdesign.transient.oil_supply import StreamHeats, SupplyHistory
 from rigdesign.transient.phases import Phase, Timeline
 from thermal.conditions.streams import StreamNetwork
 
 FloatArray = NDArray[np.float64]
+
+LEAKED = " leaked"
+"""Behind the name of a stream: what leaks carry from tank to tank."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,24 +52,30 @@ class OilPower:
     phase: NDArray[np.int32]
     """(n,) number of the phase each time ends."""
     heater: FloatArray
-    """(n,) sum over the circuits whose oil comes back colder than it is fed [W]."""
+    """(n,) of all oil circuits; and of oils without one that come back colder than they are fed [W]."""
     cooler: FloatArray
-    """(n,) sum over the others [W]."""
+    """(n,) of all oil circuits; and of the other oils without one [W]."""
     streams: Mapping[str, FloatArray] = field(default_factory=dict)
     """``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature [W]."""
+    supply: SupplyHistory | None = None
+    """Of the oil circuits, at the same times; None without any."""
 
 
-def oil_power(rig: Rig, heating: Heating, histories: Sequence[OilHistory]) -> OilPower:
-    """Heaters and cooler over one branch from the histories of all its housings.
+def stream_heats(
+    rig: Rig, heating: Heating, histories: Sequence[OilHistory], supply: SupplyHistory | None = None
+) -> StreamHeats:
+    """Heat of every oil stream over one branch from the histories of all its housings.
 
     The housings have times of their own: each heat is interpolated to the times of all.
+
+    supply : temperatures with which the housings were fed; None without oil circuits
     """
     first = histories[0]
     times = np.unique(np.concatenate([history.times for history in histories]))
     numbers = first.phase[np.minimum(np.searchsorted(first.times, times), len(first.times) - 1)]
     heats: dict[str, FloatArray] = {}
     for history in histories:
-        own = _housing_heats(rig, heating, history)
+        own = _housing_heats(rig, heating, history, supply)
         heats |= {name: np.interp(times, history.times, values) for name, values in own.items()}
     housed = {history.gearbox for history in histories}
     without = [name for name in rig.case.gearboxes if name not in housed]
@@ -75,15 +87,32 @@ def oil_power(rig: Rig, heating: Heating, histories: Sequence[OilHistory]) -> Oi
         heats |= {
             key: np.array([row[key] for row in rows]) for key in rows[0] if key.split(".")[0] in without
         }
-    heater, cooler = heater_and_cooler(rig.case, heats)
-    return OilPower(
-        name=first.name,
-        phases=first.phases,
+    return StreamHeats(
         times=times,
+        phases=first.phases,
         phase=numbers,
-        heater=heater,
-        cooler=cooler,
-        streams=heats,
+        heats={name: heat for name, heat in heats.items() if not name.endswith(LEAKED)},
+        leaked={name.removesuffix(LEAKED): heat for name, heat in heats.items() if name.endswith(LEAKED)},
+        supplies={} if supply is None else supply.sampled(times),
+    )
+
+
+def oil_power(case: Case, name: str, given: StreamHeats, supply: SupplyHistory | None = None) -> OilPower:
+    """Heaters and coolers over the branch ``name`` from the heats of its oil streams.
+
+    supply : what the oil circuits do under these heats; None without any
+    """
+    heater, cooler = heater_and_cooler(case, given.to_tank)
+    circuits = [] if supply is None else list(supply.circuits.values())
+    return OilPower(
+        name=name,
+        phases=tuple(given.phases),
+        times=given.times,
+        phase=given.phase,
+        heater=np.sum([heater, *(each.heater for each in circuits)], axis=0),
+        cooler=np.sum([cooler, *(each.cooler for each in circuits)], axis=0),
+        streams=given.heats,
+        supply=supply,
     )
 
 
@@ -93,14 +122,21 @@ def _local_time(history: OilHistory, number: int, time: float) -> float:
     return min(max(time - history.start - before, 0.0), history.phases[number].duration)
 
 
-def _housing_heats(rig: Rig, heating: Heating, history: OilHistory) -> dict[str, FloatArray]:
-    """Heat of both oils of a housing at its own times [W]; none while no oil runs."""
-    heats = {f"{history.gearbox}.{kind}": np.zeros(len(history.times)) for kind in (GEAR_OIL, BEARING_OIL)}
+def _housing_heats(
+    rig: Rig, heating: Heating, history: OilHistory, supply: SupplyHistory | None
+) -> dict[str, FloatArray]:
+    """Heat of both oils of a housing at its own times [W], and what leaks carry; none while no oil runs."""
+    heats = {
+        f"{history.gearbox}.{kind}{what}": np.zeros(len(history.times))
+        for kind in (GEAR_OIL, BEARING_OIL)
+        for what in ("", LEAKED)
+    }
+    begins = history.start + np.concatenate([[0.0], np.cumsum([phase.duration for phase in history.phases])])
     for at, (time, number) in enumerate(zip(history.times, history.phase, strict=True)):
         phase = history.phases[number]
         if not phase.oil or (at == 0 and history.from_rest):
             continue
-        stage = heating.stage(history.gearbox, phase)
+        stage = heating.stage(history.gearbox, phase, float(begins[number]), supply)
         conditions = stage.conditions
         if callable(conditions):
             conditions = conditions(_local_time(history, int(number), float(time)))
@@ -110,9 +146,27 @@ def _housing_heats(rig: Rig, heating: Heating, history: OilHistory) -> dict[str,
         heats[f"{history.gearbox}.{GEAR_OIL}"][at] = gear - leaked
         if BEARING_OIL in networks:
             heats[f"{history.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
-                rig.case, history.gearbox, networks[BEARING_OIL], outlets[BEARING_OIL]
+                rig.case, history.gearbox, networks, outlets[BEARING_OIL]
             )
+        if not one_tank(rig.case, history.gearbox):
+            moved = _moved_by_leak(networks)
+            heats[f"{history.gearbox}.{GEAR_OIL}{LEAKED}"][at] = -moved
+            heats[f"{history.gearbox}.{BEARING_OIL}{LEAKED}"][at] = moved
     return heats
+
+
+def _fed(networks: Mapping[str, StreamNetwork], kind: str) -> float:
+    """Temperature at which an oil is fed [K]."""
+    return next(each.temperature for each in networks[kind].supplies if each.name == f"{kind} {FEED}")
+
+
+def _moved_by_leak(networks: Mapping[str, StreamNetwork]) -> float:
+    """Heat of gear oil that leaks to the bearings, as fed, above the bearing oil that makes it up [W]."""
+    network = networks[BEARING_OIL]
+    flow = sum(stream.mass_flow for stream in network.streams if stream.source == LEAK)
+    if not flow:
+        return 0.0
+    return network.specific_heat * flow * (_fed(networks, GEAR_OIL) - _fed(networks, BEARING_OIL))
 
 
 def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tuple[float, float]:
@@ -125,7 +179,7 @@ def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tu
         held = box.gear_oil_temperature
         ties = (link.conductance for link in network.links if link.kind == HEATER_AND_COOLER)
         return sum(ties) * (outlet - (held or outlet)), 0.0
-    inlet = box.jets.inlet_temperature
+    inlet = _fed({GEAR_OIL: network}, GEAR_OIL)
     flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
     taken = flow * network.specific_heat * (outlet - inlet)
     whole = injected_flow(box) * len(box.meshes)
@@ -135,15 +189,15 @@ def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tu
     return taken + past, leak * network.specific_heat * (outlet - inlet)
 
 
-def _bearing_heat(case: Case, name: str, network: StreamNetwork, outlet: float) -> float:
+def _bearing_heat(case: Case, name: str, networks: Mapping[str, StreamNetwork], outlet: float) -> float:
     """Heat of the bearing oil above what it and the gear oil leaked into it were fed with [W]."""
-    box = case.gearboxes[name]
+    box, network = case.gearboxes[name], networks[BEARING_OIL]
     if box.fed_bearings is None:
         return 0.0
     flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
     leak = sum(stream.mass_flow for stream in network.streams if stream.source == LEAK)
-    warm = 0.0 if box.jets is None else leak * box.jets.inlet_temperature
-    fed = (flow - leak) * box.fed_bearings.inlet_temperature + warm
+    warm = leak * _fed(networks, GEAR_OIL) if leak else 0.0
+    fed = (flow - leak) * _fed(networks, BEARING_OIL) + warm
     return network.specific_heat * (flow * outlet - fed)
 
 

@@ -14,6 +14,7 @@ from rigdesign.oil_circuit.parts import Consumer, Pump, Tank
 from rigdesign.oil_circuit.steady import SteadyCircuit, steady_circuit
 from rigdesign.properties.oil import MIL_PRF_23699, OILS
 from rigdesign.rig_heat.room import Room, room_balance
+from rigdesign.validation.main_rig_oil import oil_balance_rows
 
 ZERO = 273.15
 TOTAL, FLOW = 390e3, 733e-3 / 60.0
@@ -121,3 +122,17 @@ def test_the_room_needs_1300_m3_an_hour_for_the_test_gearbox_alone() -> None:
     needed = room_balance(room, TO_AIR).needed_air_flow
     assert needed is not None
     assert needed * 3600.0 == pytest.approx(1267.0, rel=5e-3)
+
+
+def test_the_rows_of_validate_have_these_numbers() -> None:
+    rows = {row.id: row for row in oil_balance_rows()}
+    expected = {
+        "P2-oil-warm-flow": 121.4,
+        "P2-oil-test-gearbox": 0.277,
+        "P2-oil-room": 0.0108,
+        "P2-oil-pumps": 15.27e3,
+    }
+    assert {name: row.computed for name, row in rows.items()} == pytest.approx(expected, rel=3e-3)
+    assert {row.basis for row in rows.values()} == {"arithmetic"}
+    assert "612 l/min" in rows["P2-oil-warm-flow"].assumptions
+    assert "16.1 K" in rows["P2-oil-warm-flow"].assumptions

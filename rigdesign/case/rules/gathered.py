@@ -13,6 +13,7 @@ from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.gears import gearbox_faults
 from rigdesign.case.rules.losses import loss_faults
 from rigdesign.case.rules.lubrication import lubrication_faults
+from rigdesign.case.rules.oil_circuits import oil_circuit_faults
 from rigdesign.case.rules.schedule import schedule_faults
 from rigdesign.case.rules.surfaces import housing_faults
 from rigdesign.case.rules.transient import transient_faults
@@ -39,6 +40,7 @@ def broken_rules(case: "Case") -> list[Fault]:
         drivetrain_faults,
         loss_faults,
         lubrication_faults,
+        oil_circuit_faults,
         schedule_faults,
         _limits,
         _numerics,

@@ -48,6 +48,7 @@ def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
 def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
     """Heat balance of the rig at one held stage."""
     warming = {} if balance.stored is None else {"stored_W": balance.stored}
+    circuits = {"circulation_W": balance.circulation, "tanks_W": balance.tanks} if balance.circuits else {}
     return {
         "stage": balance.stage,
         "losses_W": balance.losses,
@@ -56,6 +57,7 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
         "cooler_W": balance.cooler,
         "room_W": balance.room,
         **warming,
+        **circuits,
         "not_heat_W": balance.not_heat,
         "open_W": balance.imbalance,
         "flow_l_min": L_MIN * balance.flow,

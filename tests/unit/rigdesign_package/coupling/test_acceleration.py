@@ -25,7 +25,7 @@ def state(vector: np.ndarray) -> CouplingState:
     rest: Any = {}
     return CouplingState(
         gear_temperature={"a": vector[0], "b": vector[1]}, centre_distance=rest, bearing_clearance=rest,
-        bearing_heat=rest, wall_heat={"s": 10.0 * vector[2]}, oil_outlet=rest, mesh_torque=rest,
+        bearing_heat=rest, wall_heat={"s": 10.0 * vector[2]}, oil_outlet=rest, oil_supply={}, mesh_torque=rest,
         axial_expansion=rest,
     )  # fmt: skip
 

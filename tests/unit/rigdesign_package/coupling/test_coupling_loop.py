@@ -26,7 +26,7 @@ def state(open_at: dict[str, float]) -> CouplingState:
     rest: Any = {}
     return CouplingState(
         gear_temperature={"g": 400.0 + open_at["temperature"]}, centre_distance={"m": 0.1 + open_at["length"]},
-        bearing_clearance=rest, bearing_heat=rest, wall_heat=rest, oil_outlet=rest,
+        bearing_clearance=rest, bearing_heat=rest, wall_heat=rest, oil_outlet=rest, oil_supply={},
         mesh_torque={"m": 100.0 / (1.0 + open_at["torque"])}, axial_expansion=rest,
     )  # fmt: skip
 
@@ -41,7 +41,7 @@ def solved(monkeypatch: pytest.MonkeyPatch, slow: str, most: int = 40) -> loop.P
         coupling_passes=most, temperature_tolerance=TOLERANCE["temperature"], growth_tolerance=TOLERANCE["length"],
         torque_tolerance=TOLERANCE["torque"],
     )  # fmt: skip
-    rig: Any = SimpleNamespace(case=SimpleNamespace(numerics=numerics, drivetrain=None))
+    rig: Any = SimpleNamespace(case=SimpleNamespace(numerics=numerics, drivetrain=None), oil_circuits={})
     done: list[int] = []
 
     def run_iteration(*_: object, **__: object) -> int:

@@ -20,6 +20,7 @@ from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
 from rigdesign.records.heat_split import friction_heat, heat_splits
 from rigdesign.results.rows.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.oil_supply import ChamberOil
 from tests.builders.paths import CASES
 
 VARIANT = f"""
@@ -37,7 +38,7 @@ wetted_share = {{ value = 0.8, assumed = "as it is", range = [0.5, 1.0] }}
 film_factor = {{ value = 1.0, assumed = "as it is", range = [0.7, 1.4] }}
 """
 STEEL = (CASE_HARDENED_STEEL, CASE_HARDENED_STEEL)
-CHAMBER = 420.0
+CHAMBER = ChamberOil(leaving=420.0)
 """Oil as it leaves the chamber [K]; flanks that jets wet do not feel it."""
 RIMS = "gearboxes.test.housing.boundary.gear_rims"
 

@@ -2,18 +2,19 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.flank_heat import gear_flanks
 from rigdesign.coupling.losses import rotating_losses
-from rigdesign.coupling.oil import OilStream, oil_streams
+from rigdesign.coupling.oil import OilStream, heater_and_cooler, oil_streams
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699
 from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig.oil_supply import gear_oil
+from rigdesign.rig.oil_supply import ChamberOil, gear_oil
 from rigdesign.transient.oil import BEARING_OIL, GEAR_OIL, oil_conditions
 from tests.builders.warm_prototype import base, case_with, lost, open_share, outlet, settled
 from thermal.conditions.streams import StreamNetwork
@@ -60,6 +61,27 @@ def test_streams_that_meet_keep_their_heat() -> None:
     assert cold.heat_at(together) + hot.heat_at(together) == pytest.approx(500.0 + hot.heat, rel=1e-9)
     alone = mixed((cold,), 500.0)
     assert cold.heat_at(alone) == pytest.approx(500.0)
+
+
+def test_the_cold_cooler_takes_a_leak_from_the_warm_inlet_down_to_the_cold_one() -> None:
+    """Oil of 140 degC that leaks ends in the tank of 40 degC, and as much cold oil makes it up: m c 100 K are cooled
+    there and heated here, in addition to what the leak took up on its way."""
+    plain, leaking = streams(), streams((LEAK, 0.1))
+    gear, bearing = (leaking[f"test.{kind}"] for kind in ("gear_oil", "bearing_oil"))
+    oil = gear_oil(base()[0], "test")
+    mean = 0.5 * (gear.inlet + bearing.inlet)
+    moved = 0.1 * gear.flow * oil.density(gear.inlet) * oil.heat_capacity(mean) * (gear.inlet - bearing.inlet)
+    assert moved > 1000.0
+    assert bearing.leaked == pytest.approx(moved, rel=1e-9)
+    assert gear.leaked == -bearing.leaked
+    powers = []
+    for found in (plain, leaking):
+        own = {name: np.array([found[name].to_tank]) for name in ("test.gear_oil", "test.bearing_oil")}
+        powers.append([float(power[0]) for power in heater_and_cooler(base()[0].case, own)])
+    (heater, cooler), (more_heater, more_cooler) = powers
+    assert (more_cooler - more_heater) == pytest.approx(cooler - heater, rel=1e-9)
+    taken_along = 0.1 * plain["test.gear_oil"].heat
+    assert more_cooler - cooler == pytest.approx(moved + taken_along, rel=1e-6)
 
 
 def test_a_leak_carries_warm_oil_to_the_bearings_and_heat_with_it() -> None:
@@ -151,7 +173,7 @@ def test_flanks_past_blocked_jets_stay_dry() -> None:
     for share in (0.0, 0.5):
         for flow in ("5 l/min", "50 l/min"):
             rig = changed((JETS, share), (f"{BOX}.oil.flow", flow))
-            flanks = gear_flanks(rig, "test", "pinion", point, film, 420.0)
+            flanks = gear_flanks(rig, "test", "pinion", point, film, ChamberOil(leaving=420.0))
             values[share, flow] = flanks.law(400.0, 390.0).value
     ratios = [values[0.5, flow] / values[0.0, flow] for flow in ("5 l/min", "50 l/min")]
     assert 0.5 <= ratios[1] <= ratios[0] < 1.0
