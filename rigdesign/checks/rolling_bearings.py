@@ -110,7 +110,10 @@ class RollingRule(RuleFamily):
         return self.worst(solved, replace(self.rule(limit), source=source), self.values(solved))
 
 
-def _rule(key: str, title: str, unit: DisplayUnit, procedure: str, **more: object) -> RollingRule:
+def _rule(
+    key: str, title: str, unit: DisplayUnit, procedure: str, *, warm: bool = True, **more: object
+) -> RollingRule:
+    """warm : the value follows from the temperatures of the rig."""
     return RollingRule(
         key=f"bearing.{key}",
         title=title,
@@ -119,7 +122,7 @@ def _rule(key: str, title: str, unit: DisplayUnit, procedure: str, **more: objec
         group=GROUP,
         places=rolling_rig,
         absent=NEVER,
-        leaves_out=(SEAT_HEAT, *HEAT),
+        leaves_out=(SEAT_HEAT, *HEAT) if warm else (),
         moved_by=frozenset({"housing", "test time"}),
         **more,  # type: ignore[arg-type]
     )
@@ -137,19 +140,20 @@ RULES = (
         "static_safety", "least static safety of a rolling bearing", NUMBER,
         "Static rating C_0 over static equivalent load P_0 (ISO 76) at the held stages.",
         source="limits.bearing.static_safety_minimum", comparison=">=", limit=_stated("static_safety_minimum"),
-        values=_of_states(lambda state: state.life.static_safety),
+        values=_of_states(lambda state: state.life.static_safety), warm=False,
     ),
     _rule(
         "speed", "speed of a rolling bearing over its limiting speed", NUMBER,
         "Speed of the shaft at the held stages over the mechanical limiting speed of the catalogue.",
         source="catalogue: limiting speed", limit=_one("catalogue: limiting speed"),
-        values=_of_states(lambda state: state.speed_utilisation),
+        values=_of_states(lambda state: state.speed_utilisation), warm=False,
     ),
     _rule(
         "minimum_load", "radial load of a rolling bearing over its least load", NUMBER,
         "Radial load at the held stages over the load below which rolling elements may slide, by the catalogue.",
         source="catalogue: minimum load", comparison=">=", limit=_one("catalogue: minimum load"), warn_only=True,
         values=_of_states(lambda state: state.load / state.minimum_load if state.minimum_load else math.inf),
+        warm=False,
     ),
     _rule(
         "temperature", "hottest rolling bearing", DEGREE_CELSIUS,

@@ -48,6 +48,8 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         bearing_clearance=clearance,
         bearing_heat={
             name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_gain(rig, done, name))
+            if rig.bearing(name).has_film
+            else heat
             for name, heat in done.bearing_heat.items()
         },
         wall_heat={

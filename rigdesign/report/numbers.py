@@ -18,6 +18,7 @@ UNIT_SIGNS = {
 KEY_UNITS = (
     "l_min", "W_m2K", "W_mK", "N_um", "mm2_s", "kg_m3", "m_s", "kNm_rad", "Nm_deg", "kgm2", "degC", "deg", "mrad",
     "MPa", "Nm", "rpm", "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
+    "h",
 )  # fmt: skip
 """Units that may end a key, longest first."""
 

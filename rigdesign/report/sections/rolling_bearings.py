@@ -8,12 +8,12 @@ LOADS = (
     "speed_utilisation", "static_safety", "basic_life_h", "modified_life_h", "viscosity_ratio",
 )  # fmt: skip
 FRICTION = (
-    "bearing", "stage", "rolling_torque_Nmm", "sliding_torque_Nmm", "seal_torque_Nmm", "drag_torque_Nmm", "friction_W",
+    "bearing", "stage", "rolling_torque_Nm", "sliding_torque_Nm", "seal_torque_Nm", "drag_torque_Nm", "friction_W",
     "heat_to_shaft_W", "heat_to_housing_W",
 )  # fmt: skip
 WARM = (
     "bearing", "stage", "temperature_degC", "inner_ring_degC", "outer_ring_degC", "operating_clearance_um",
-    "radial_stiffness_kN_mm", "axial_stiffness_kN_mm",
+    "radial_stiffness_N_um", "axial_stiffness_N_um",
 )  # fmt: skip
 
 

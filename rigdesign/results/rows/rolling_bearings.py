@@ -6,9 +6,8 @@ from typing import Any
 from rigdesign.results.rolling_bearings import RollingBearingRecord
 from rigdesign.results.units import RPM, UM, ZERO
 
-N_MM = 1e3
-KN_MM = 1e-6
-"""Kilonewtons per millimetre in a newton per metre."""
+N_UM = 1e-6
+"""Newtons per micrometre in a newton per metre."""
 
 
 def rolling_bearing_row(found: RollingBearingRecord) -> dict[str, Any]:
@@ -23,10 +22,10 @@ def rolling_bearing_row(found: RollingBearingRecord) -> dict[str, Any]:
         "minimum_load_N": found.minimum_load,
         "speed_rpm": RPM * found.speed,
         "speed_utilisation": found.speed_utilisation,
-        "rolling_torque_Nmm": N_MM * rolling,
-        "sliding_torque_Nmm": N_MM * sliding,
-        "seal_torque_Nmm": N_MM * seals,
-        "drag_torque_Nmm": N_MM * drag,
+        "rolling_torque_Nm": rolling,
+        "sliding_torque_Nm": sliding,
+        "seal_torque_Nm": seals,
+        "drag_torque_Nm": drag,
         "friction_W": found.power,
         "temperature_degC": found.temperature - ZERO,
         "inner_ring_degC": found.inner_ring - ZERO,
@@ -38,8 +37,8 @@ def rolling_bearing_row(found: RollingBearingRecord) -> dict[str, Any]:
         "modified_life_h": _finite(found.modified_life),
         "static_safety": _finite(found.static_safety),
         "viscosity_ratio": found.viscosity_ratio,
-        "radial_stiffness_kN_mm": KN_MM * found.radial_stiffness,
-        "axial_stiffness_kN_mm": KN_MM * found.axial_stiffness,
+        "radial_stiffness_N_um": N_UM * found.radial_stiffness,
+        "axial_stiffness_N_um": N_UM * found.axial_stiffness,
     }
 
 

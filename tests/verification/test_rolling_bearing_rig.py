@@ -1,0 +1,77 @@
+"""A rig that mixes plain and rolling bearings, and the FZG bearings beside hand values.
+
+One run at quick fidelity: test gearbox fed with oil, pinion on NU 406 and NJ 406, wheel on plain bearings with given
+losses; slave gearbox on rolling bearings that live on splash; both dip.
+"""
+
+import json
+import math
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from rigdesign import load_case, run_case
+from rigdesign.report.results_json import results_document
+from rigdesign.results.result import RunResult
+from tests.builders.fzg_case import BEARINGS
+from tests.builders.rolling_rig import FED, SPLASH, rolling_case
+
+pytestmark = pytest.mark.whole_run
+
+
+@cache
+def mixed() -> RunResult:
+    with TemporaryDirectory() as folder:
+        path = rolling_case(Path(folder), test_oil=FED, slave_oil=SPLASH, plain=("test_wheel",))
+        return run_case(load_case(path), fidelity="quick")
+
+
+def test_a_mixed_rig_closes_its_heat() -> None:
+    (balance,) = mixed().cooler
+    assert abs(float(balance["open_W"])) < 2e-3 * float(balance["losses_W"])
+    assert all(abs(found.closure_relative) < 1e-6 for found in mixed().thermal)
+    rows = {row["bearing"]: row for row in mixed().rolling_bearings}
+    assert sorted(rows) == [
+        "slave.pinion_front", "slave.pinion_rear", "slave.wheel_front", "slave.wheel_rear",
+        "test.pinion_front", "test.pinion_rear",
+    ]  # fmt: skip
+    assert all(
+        row["heat_to_shaft_W"] == row["heat_to_housing_W"] == 0.0
+        for name, row in rows.items()
+        if "slave" in name
+    )
+    losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
+    assert losses["test.wheel_front"].basis == "input" and losses["test.wheel_front"].into_body_W == 0.0
+    assert 0.0 < losses["test.pinion_front"].into_body_W < losses["test.pinion_front"].power_W
+
+
+def test_rows_stand_in_the_document_and_add_up() -> None:
+    document = json.loads(json.dumps(results_document(mixed())))
+    for row in document["rolling_bearings"]:
+        torque = math.fsum(row[f"{part}_torque_Nm"] for part in ("rolling", "sliding", "seal", "drag"))
+        assert row["friction_W"] == pytest.approx(torque * row["speed_rpm"] * math.pi / 30.0, rel=1e-9)
+
+
+def test_checks_of_both_kinds_stand_side_by_side() -> None:
+    checks = {check.id: check for check in mixed().checks}
+    life = checks["bearing.rating_life"]
+    assert (life.limit, life.unit) == (300.0, "h") and life.source == "test_plan.time"
+    least = min(row["modified_life_h"] for row in mixed().rolling_bearings)
+    assert life.value == pytest.approx(least)
+    hottest = max(row["temperature_degC"] for row in mixed().rolling_bearings)
+    assert checks["bearing.temperature"].value == pytest.approx(hottest)
+    assert checks["bearing.temperature"].limit == pytest.approx(120.0)
+    assert checks["bearing.speed"].verdict == "pass" and checks["bearing.minimum_load"].verdict == "pass"
+    assert checks["bearing.static_safety"].reason == "the case states no limit"
+
+
+def test_fzg_bearings_beside_the_hand_values() -> None:
+    """Hand values 38 and 25 W a bearing by ISO/TR 14179-2 at 372.6 N m; what the teeth lose and weight load more."""
+    for row in mixed().rolling_bearings:
+        if row["bearing"].startswith("slave."):
+            by_hand = float(BEARINGS[row["bearing"].split(".")[1].split("_")[0]].split()[0])
+            assert row["friction_W"] == pytest.approx(by_hand, rel=0.12)
+            # Palmgren: f_1 F d_m with f_1 = 0.0004, d_m = 60 mm
+            assert row["rolling_torque_Nm"] == pytest.approx(0.0004 * row["radial_load_N"] * 0.06, rel=1e-9)
