@@ -35,7 +35,8 @@ def films(solved: SolvedRig) -> Iterator[tuple[str, BearingState]]:
 
 def no_film(solved: SolvedRig) -> str:
     """Why there are no films, where there are none."""
-    rolling = all(not entry.has_film for _, _, entry in solved.rig.bearings())
+    boxes = solved.case.gearboxes.values()
+    rolling = all(not bearing.has_film for box in boxes for bearing in box.bearings.values())
     return "all bearings are rolling bearings: they have no film" if rolling else NO_HOUSING
 
 

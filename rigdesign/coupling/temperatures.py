@@ -69,7 +69,7 @@ def heat_into_oil(field: HousingField) -> dict[str, float]:
     """Heat the solids give to each oil stream of the gearbox [W], bearing films left out."""
     return {
         f"{field.gearbox}.{kind}": -math.fsum(
-            row.power for row in field.solution.balance.rows if row.kind == kind and row.surface != kind
+            row.power for row in field.solution.balance.rows if row.kind == kind and row.area > 0.0
         )
         for kind in (GEAR_OIL, BEARING_OIL)
     }
@@ -89,7 +89,7 @@ def heat_into_films(field: HousingField) -> dict[str, float]:
     heat: dict[str, float] = {}
     for row in field.solution.balance.rows:
         kind, _, part = row.kind.partition(":")
-        if kind == BEARING_FILM:
+        if kind == BEARING_FILM and row.area > 0.0:  # of an unfed bearing the sump has a row as well
             name = f"{field.gearbox}.{part}"
             heat[name] = heat.get(name, 0.0) - row.power
     return heat

@@ -37,8 +37,8 @@ def rolling_bearing_row(found: RollingBearingRecord) -> dict[str, Any]:
         "modified_life_h": _finite(found.modified_life),
         "static_safety": _finite(found.static_safety),
         "viscosity_ratio": found.viscosity_ratio,
-        "radial_stiffness_N_um": 1e-6 * found.radial_stiffness,
-        "axial_stiffness_N_um": 1e-6 * found.axial_stiffness,
+        "radial_stiffness_N_um": N_UM * found.radial_stiffness,
+        "axial_stiffness_N_um": N_UM * found.axial_stiffness,
     }
 
 

@@ -176,3 +176,19 @@ def test_axial_force_goes_to_the_locating_bearing_and_tilts_the_shaft(tmp_path: 
         force * math.cos(alpha) + weight, force * math.sin(alpha) + axial * pair.working_radii[0] / 0.139
     )
     assert loads["test.pinion_front"].radial == pytest.approx(by_hand, rel=1e-9)
+
+
+def test_a_sump_that_finds_its_temperature_takes_what_the_bearings_leave_in_the_oil(tmp_path: Path) -> None:
+    path = rolling_case(tmp_path)
+    path.write_text(path.read_text().replace(', sump_temperature = "90 degC"', "", 1))
+    rig = build_rig(load_case(path), "quick")
+    point = held_points(rig)[0]
+    state = initial_state(rig, point)
+    losses = _losses(rig, point, state, mesh_models(rig, point, state))
+    field = solve_housing(rig, "test", losses)
+    none = {f"{name}.{kind}": 0.0 for name in rig.case.gearboxes for kind in ("gear_oil", "bearing_oil")}
+    films = heat_into_films(field)
+    assert any(abs(heat) > 1.0 for heat in films.values())
+    sumps = sump_temperatures(rig, {"test": field})
+    streams = oil_streams(rig, losses.losses, films, none | heat_into_oil(field), sumps)
+    assert next(s.heat for s in streams if s.name == "test.gear_oil") == pytest.approx(0.0, abs=1e-3)

@@ -37,7 +37,8 @@ def test_in_a_warm_room_a_rig_at_20_degrees_has_the_clearances_of_its_drawing(tm
         solution=solution,
         fields=[drawing, room],
     )
-    (branch,), _ = _read(rig, "test", [history])
+    heating: Any = SimpleNamespace(seated_bearings=lambda *_: {})
+    (branch,), _ = _read(rig, heating, "test", [history])
     cold, warm = branch.clearances
     assert cold["backlash"]["test.main"] == pytest.approx(
         rig.pairs["test.main"].transverse_backlash, abs=1e-8
