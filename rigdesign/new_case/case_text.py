@@ -10,7 +10,7 @@ from rigdesign.case.defaults.known import WRITTEN_ONCE
 from rigdesign.case.model import Case
 from rigdesign.explanation.keys import entry_at
 from rigdesign.explanation.rules import declared_checks, depends_on
-from rigdesign.new_case.outline import Outline
+from rigdesign.new_case.outline import Outline, locating_sister
 
 SCHEMA_FILE = "case.schema.json"
 WIDTH = 110
@@ -47,8 +47,10 @@ def tables(outline: Outline) -> Iterator[tuple[str, str, list[Line]]]:
         yield "", "gearboxes.test.oil", [*oil, ("sump_temperature", temperature)]
     else:
         yield "", "gearboxes.test.oil", [("oil", _quoted(outline.oil)), ("inlet_temperature", temperature)]
-    bearing = [("diameter", _quoted(outline.bearings))] if outline.journal else _rolling(outline)
-    yield "both bearings of both shafts", "gearboxes.test.all_bearings", bearing
+    if outline.journal:
+        yield "all four bearings", "gearboxes.test.all_bearings", [("diameter", _quoted(outline.bearings))]
+    else:
+        yield from _rolling(outline.bearings)
     if outline.box is not None:
         yield "box of the test gearbox", "gearboxes.test.housing", _housing(outline, outline.box)
     slave: list[Line] = [("like", '"test"')]
@@ -62,14 +64,19 @@ def tables(outline: Outline) -> Iterator[tuple[str, str, list[Line]]]:
     yield "the test, counted at the pinion of the test gearbox", "schedule", run
 
 
-def _rolling(outline: Outline) -> list[Line]:
-    return [("type", '"rolling"'), ("designation", _quoted(outline.bearings))]
+def _rolling(designation: str) -> Iterator[tuple[str, str, list[Line]]]:
+    """The same bearing everywhere; one that cannot hold its shaft has a sister at the rear that can."""
+    lines = [("type", '"rolling"'), ("designation", _quoted(designation))]
+    yield "all four bearings", "gearboxes.test.all_bearings", lines
+    locating = locating_sister(designation)
+    for gear in ("pinion", "wheel") if locating else ():
+        path = f"gearboxes.test.bearings.{gear}_rear"
+        yield "", path, [("designation", _quoted(locating)), ("locating", "true")]
 
 
 def _housing(outline: Outline, box: tuple[float, float, float]) -> list[Line]:
     """Outer measures of the box as those of the case; its end walls hold bearings and seals."""
-    bore = units.parse(outline.bearings, "length") if outline.journal else 0.03
-    inner = box[0] - 2.0 * (0.75 * bore + SEAL_WIDTH)
+    inner = box[0] - 2.0 * (outline.bearing_width + SEAL_WIDTH)
     cold = COLD_SHARE * inner
     chamber = inner - 2.0 * (cold + PARTITION)
     return [

@@ -9,6 +9,7 @@ from rigdesign.case.defaults.parts import (
     section_diameter,
     shaft_diameter,
     shafts_of,
+    tabled,
 )
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
@@ -158,16 +159,25 @@ def _plain(tree: RawTree, box: str, bearing: str) -> bool:
 
 @book.default("gearboxes.*.bearings.*.locating")
 def _locating(tree: RawTree, box: str, bearing: str) -> Filling:
-    """The bearing towards the coupling, where none of the shaft is stated to be locating."""
+    """The bearing towards the coupling, or the only one that can, where none of the shaft is stated to be locating."""
     at = f"gearboxes.{box}.bearings"
     shaft = tree.text(f"{at}.{bearing}.shaft")
     mates = [name for name in tree.names(at) if tree.text(f"{at}.{name}.shaft") == shaft]
     if not tree.has(f"gearboxes.{box}.housing") or any(tree.has(f"{at}.{name}.locating") for name in mates):
         return None
+    able = [name for name in mates if _holds_axially(tree, box, name)]
+    if len(able) == 1 < len(mates):
+        return follows(True, "the other one cannot hold the shaft") if bearing in able else None
     side = "rear" if box == tree.names("gearboxes")[0] else "front"
     if tree.text(f"{at}.{bearing}.side") != side:
         return None
     return assumed(True, "the bearing on the side of the coupling holds the shaft")
+
+
+def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
+    """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
+    found = tabled(tree, box, bearing)
+    return found is None or found.locating
 
 
 # ------------------------------------------------------------------ oil
