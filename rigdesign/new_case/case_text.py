@@ -1,5 +1,6 @@
 """A new case as text: one key a line, each with what it is and which checks depend on it."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
@@ -16,6 +17,7 @@ SCHEMA_FILE = "case.schema.json"
 WIDTH = 110
 MOST_NAMED = 4
 """Checks that a comment names; of more it names the topics."""
+FIRST_SENTENCE = re.compile(r"(?<!e\.g)\. (?=[A-Z])")
 PARTITION = 8e-3
 """Wall between chamber and cold section [m]."""
 COLD_SHARE = 0.15
@@ -105,11 +107,11 @@ def commented_text(outline: Outline, case: Case, folder: Path) -> str:
         place = path.replace(".all_bearings.", f".bearings.{next(iter(case.gearboxes['test'].bearings))}.")
         if (once := WRITTEN_ONCE.get(path.rpartition(".")[2])) is not None:
             return wrap(once[1], WIDTH)
-        entry = entry_at(place, outline.lubrication if ".oil." in place else "")
+        entry = entry_at(place, _kind(outline, place))
         if entry is None:
             return ()
         moved = [check.id for check in checks if depends_on(case, check, place)]
-        said = entry.description.partition(". ")[0].rstrip(".")
+        said = FIRST_SENTENCE.split(entry.description, maxsplit=1)[0].rstrip(".")
         text = f"{said}. {_of_checks(moved, [check.id for check in checks])}"
         return wrap(text.replace("``", "").strip(), WIDTH)
 
@@ -122,6 +124,13 @@ def commented_text(outline: Outline, case: Case, folder: Path) -> str:
         "",
     )
     return "\n".join([*head, *_written(outline, comment)])
+
+
+def _kind(outline: Outline, path: str) -> str:
+    """Which kind of table a key stands in, where its table comes in kinds."""
+    if ".bearings." in path:
+        return "journal" if outline.journal else "rolling"
+    return outline.lubrication if ".oil." in path else ""
 
 
 def _of_checks(moved: Sequence[str], all_checks: Sequence[str]) -> str:
