@@ -3,7 +3,6 @@
 from rigdesign.case.defaults.parts import (
     bearing_bore,
     bearing_width,
-    mesh_of,
     normal_module,
     only_mesh,
     section_diameter,
@@ -60,10 +59,9 @@ def _pressure_angle(tree: RawTree, box: str, mesh: str) -> Filling:
 
 @book.default("gearboxes.*.meshes.*.profile_shift_split")
 def _profile_shift_split(tree: RawTree, box: str, mesh: str) -> Filling:
-    at = f"gearboxes.{box}.gears"
-    if any(
-        tree.has(f"{at}.{gear}.profile_shift") for gear in tree.names(at) if mesh_of(tree, box, gear) == mesh
-    ):
+    at = f"gearboxes.{box}"
+    pair = [tree.text(f"{at}.meshes.{mesh}.{side}") for side in ("pinion", "wheel")]
+    if any(tree.has(f"{at}.gears.{gear}.profile_shift") for gear in pair):
         return None
     return assumed(
         "equal", "no gear states its profile shift: both get half of what the centre distance asks for"
