@@ -7,6 +7,7 @@
 
     [gearboxes.test]
     all_bearings = { diameter = "30 mm" }
+    bearings.pinion_rear.width = "20 mm"    # except for this one
 
 Shafts of the copy are called after it: ``test_pinion`` becomes ``slave_pinion``, any other name ``slave_<name>``. Each
 shaft of a gear that has no bearings gets one at the front and one at the rear, called after the gear; a gear that
@@ -166,18 +167,26 @@ def _give_bearings(box: dict[str, Any]) -> dict[str, frozenset[str]]:
     if not isinstance(shared, dict) or not isinstance(stated, dict):
         box[ALL_BEARINGS] = shared
         return {}
-    seated = {unmarked(bearing.get("shaft")) for bearing in stated.values() if isinstance(bearing, dict)}
+    own = {name: frozenset(bearing) for name, bearing in stated.items() if isinstance(bearing, dict)}
+    seated = {_seat_of(stated[name]) for name in own}
     gears = box.get("gears")
     for gear, part in gears.items() if isinstance(gears, dict) else ():
         shaft = unmarked(part.get("shaft")) if isinstance(part, dict) else None
-        if isinstance(shaft, str) and shaft not in seated:
-            seated.add(shaft)
-            for side in ("front", "rear"):
-                stated.setdefault(f"{gear}_{side}", _seat(shaft, side))
-    own = {name: frozenset(bearing) for name, bearing in stated.items() if isinstance(bearing, dict)}
+        for side in ("front", "rear") if isinstance(shaft, str) else ():
+            bearing = stated.setdefault(f"{gear}_{side}", {})
+            if (shaft, side) not in seated and isinstance(bearing, dict):
+                seated.add((shaft, side))
+                stated[f"{gear}_{side}"] = {**_seat(str(shaft), side), **bearing}
+            elif not bearing:
+                del stated[f"{gear}_{side}"]
+    own = {name: own.get(name, frozenset()) for name in stated if isinstance(stated[name], dict)}
     for name in own:
         stated[name] = {**copy.deepcopy(shared), **stated[name]}
     return own
+
+
+def _seat_of(bearing: Mapping[str, Any]) -> tuple[Any, Any]:
+    return unmarked(bearing.get("shaft")), unmarked(bearing.get("side"))
 
 
 def _seat(shaft: str, side: str) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """A new case as text: one key a line, each with what it is and which checks depend on it."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
@@ -10,12 +11,13 @@ from rigdesign.case.defaults.known import WRITTEN_ONCE
 from rigdesign.case.model import Case
 from rigdesign.explanation.keys import entry_at
 from rigdesign.explanation.rules import declared_checks, depends_on
-from rigdesign.new_case.outline import Outline
+from rigdesign.new_case.outline import Outline, locating_sister
 
 SCHEMA_FILE = "case.schema.json"
 WIDTH = 110
 MOST_NAMED = 4
 """Checks that a comment names; of more it names the topics."""
+FIRST_SENTENCE = re.compile(r"(?<!e\.g)\. (?=[A-Z])")
 PARTITION = 8e-3
 """Wall between chamber and cold section [m]."""
 COLD_SHARE = 0.15
@@ -47,8 +49,10 @@ def tables(outline: Outline) -> Iterator[tuple[str, str, list[Line]]]:
         yield "", "gearboxes.test.oil", [*oil, ("sump_temperature", temperature)]
     else:
         yield "", "gearboxes.test.oil", [("oil", _quoted(outline.oil)), ("inlet_temperature", temperature)]
-    bearing = [("diameter", _quoted(outline.bearings))] if outline.journal else _rolling(outline)
-    yield "both bearings of both shafts", "gearboxes.test.all_bearings", bearing
+    if outline.journal:
+        yield "all four bearings", "gearboxes.test.all_bearings", [("diameter", _quoted(outline.bearings))]
+    else:
+        yield from _rolling(outline.bearings)
     if outline.box is not None:
         yield "box of the test gearbox", "gearboxes.test.housing", _housing(outline, outline.box)
     slave: list[Line] = [("like", '"test"')]
@@ -62,14 +66,19 @@ def tables(outline: Outline) -> Iterator[tuple[str, str, list[Line]]]:
     yield "the test, counted at the pinion of the test gearbox", "schedule", run
 
 
-def _rolling(outline: Outline) -> list[Line]:
-    return [("type", '"rolling"'), ("designation", _quoted(outline.bearings))]
+def _rolling(designation: str) -> Iterator[tuple[str, str, list[Line]]]:
+    """The same bearing everywhere; one that cannot hold its shaft has a sister at the rear that can."""
+    lines = [("type", '"rolling"'), ("designation", _quoted(designation))]
+    yield "all four bearings", "gearboxes.test.all_bearings", lines
+    locating = locating_sister(designation)
+    for gear in ("pinion", "wheel") if locating else ():
+        path = f"gearboxes.test.bearings.{gear}_rear"
+        yield "", path, [("designation", _quoted(locating)), ("locating", "true")]
 
 
 def _housing(outline: Outline, box: tuple[float, float, float]) -> list[Line]:
     """Outer measures of the box as those of the case; its end walls hold bearings and seals."""
-    bore = units.parse(outline.bearings, "length") if outline.journal else 0.03
-    inner = box[0] - 2.0 * (0.75 * bore + SEAL_WIDTH)
+    inner = box[0] - 2.0 * (outline.bearing_width + SEAL_WIDTH)
     cold = COLD_SHARE * inner
     chamber = inner - 2.0 * (cold + PARTITION)
     return [
@@ -98,11 +107,11 @@ def commented_text(outline: Outline, case: Case, folder: Path) -> str:
         place = path.replace(".all_bearings.", f".bearings.{next(iter(case.gearboxes['test'].bearings))}.")
         if (once := WRITTEN_ONCE.get(path.rpartition(".")[2])) is not None:
             return wrap(once[1], WIDTH)
-        entry = entry_at(place, outline.lubrication if ".oil." in place else "")
+        entry = entry_at(place, _kind(outline, place))
         if entry is None:
             return ()
         moved = [check.id for check in checks if depends_on(case, check, place)]
-        said = entry.description.partition(". ")[0].rstrip(".")
+        said = FIRST_SENTENCE.split(entry.description, maxsplit=1)[0].rstrip(".")
         text = f"{said}. {_of_checks(moved, [check.id for check in checks])}"
         return wrap(text.replace("``", "").strip(), WIDTH)
 
@@ -115,6 +124,13 @@ def commented_text(outline: Outline, case: Case, folder: Path) -> str:
         "",
     )
     return "\n".join([*head, *_written(outline, comment)])
+
+
+def _kind(outline: Outline, path: str) -> str:
+    """Which kind of table a key stands in, where its table comes in kinds."""
+    if ".bearings." in path:
+        return "journal" if outline.journal else "rolling"
+    return outline.lubrication if ".oil." in path else ""
 
 
 def _of_checks(moved: Sequence[str], all_checks: Sequence[str]) -> str:

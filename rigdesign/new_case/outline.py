@@ -78,6 +78,28 @@ class Outline:
         """Whether the bearings are plain ones, given by a diameter."""
         return units.kind_of(self.bearings) == "length"
 
+    @property
+    def bearing_width(self) -> float:
+        """Width of a bearing [m]: of a plain one three quarters of its diameter."""
+        if self.journal:
+            return 0.75 * units.parse(self.bearings, "length")
+        from dynamics.bearing.rolling_catalogue import catalogue_bearing
+
+        return catalogue_bearing(self.bearings).width
+
+
+def locating_sister(designation: str) -> str:
+    """Bearing of the same size that holds its shaft, for one that does not (NU, N): NJ. Empty for any other."""
+    from dynamics.bearing.protocol import BearingError
+    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+
+    if catalogue_bearing(designation).locating:
+        return ""
+    try:
+        return catalogue_bearing(re.sub(r"^NU?", "NJ", designation.strip().upper())).designation
+    except BearingError:
+        return ""
+
 
 def outline_from(answers: Mapping[str, str]) -> Outline:
     """The outline that answers by key make; keys without an answer are absent.
@@ -130,7 +152,22 @@ def _read(question: Question, text: str) -> Any:
         return _box(text, question)
     if not text:
         raise units.QuantityError("is empty", f"write e.g. {question.example}")
+    if question.key == "bearings" and units.kind_of(text) != "length":
+        _check_designation(text)
     return text
+
+
+def _check_designation(text: str) -> None:
+    from dynamics.bearing.protocol import BearingError
+    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+
+    try:
+        catalogue_bearing(text)
+    except BearingError as error:
+        problem = str(error).partition(": ")[2].partition("; ")[0]
+        raise units.QuantityError(
+            f"neither a diameter nor a designation, {problem}", "write e.g. 40 mm or NU 208"
+        ) from None
 
 
 def _number(text: str, question: Question) -> float:

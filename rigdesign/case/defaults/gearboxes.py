@@ -3,12 +3,12 @@
 from rigdesign.case.defaults.parts import (
     bearing_bore,
     bearing_width,
-    mesh_of,
     normal_module,
     only_mesh,
     section_diameter,
     shaft_diameter,
     shafts_of,
+    tabled,
 )
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
@@ -59,10 +59,9 @@ def _pressure_angle(tree: RawTree, box: str, mesh: str) -> Filling:
 
 @book.default("gearboxes.*.meshes.*.profile_shift_split")
 def _profile_shift_split(tree: RawTree, box: str, mesh: str) -> Filling:
-    at = f"gearboxes.{box}.gears"
-    if any(
-        tree.has(f"{at}.{gear}.profile_shift") for gear in tree.names(at) if mesh_of(tree, box, gear) == mesh
-    ):
+    at = f"gearboxes.{box}"
+    pair = [tree.text(f"{at}.meshes.{mesh}.{side}") for side in ("pinion", "wheel")]
+    if any(tree.has(f"{at}.gears.{gear}.profile_shift") for gear in pair):
         return None
     return assumed(
         "equal", "no gear states its profile shift: both get half of what the centre distance asks for"
@@ -158,16 +157,25 @@ def _plain(tree: RawTree, box: str, bearing: str) -> bool:
 
 @book.default("gearboxes.*.bearings.*.locating")
 def _locating(tree: RawTree, box: str, bearing: str) -> Filling:
-    """The bearing towards the coupling, where none of the shaft is stated to be locating."""
+    """The bearing towards the coupling, or the only one that can, where none of the shaft is stated to be locating."""
     at = f"gearboxes.{box}.bearings"
     shaft = tree.text(f"{at}.{bearing}.shaft")
     mates = [name for name in tree.names(at) if tree.text(f"{at}.{name}.shaft") == shaft]
     if not tree.has(f"gearboxes.{box}.housing") or any(tree.has(f"{at}.{name}.locating") for name in mates):
         return None
+    able = [name for name in mates if _holds_axially(tree, box, name)]
+    if len(able) == 1 < len(mates):
+        return follows(True, "the other one cannot hold the shaft") if bearing in able else None
     side = "rear" if box == tree.names("gearboxes")[0] else "front"
     if tree.text(f"{at}.{bearing}.side") != side:
         return None
     return assumed(True, "the bearing on the side of the coupling holds the shaft")
+
+
+def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
+    """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
+    found = tabled(tree, box, bearing)
+    return found is None or found.locating
 
 
 # ------------------------------------------------------------------ oil

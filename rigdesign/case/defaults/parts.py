@@ -1,11 +1,11 @@
 """What defaults need to know of the parts of a gearbox before it is validated: pairs, diameters, distances."""
 
-import re
+from typing import TYPE_CHECKING
 
 from rigdesign.case.defaults.raw_tree import RawTree
 
-BORE_CODES = {"00": 10e-3, "01": 12e-3, "02": 15e-3, "03": 17e-3}
-"""Bores [m] of the last two digits of a designation below 04; from there on five times the number in millimetres."""
+if TYPE_CHECKING:
+    from dynamics.bearing.rolling_catalogue import CatalogueBearing
 
 
 def shaft_of(tree: RawTree, box: str, kind: str, part: str) -> str | None:
@@ -52,24 +52,38 @@ def bearings_on(tree: RawTree, box: str, shaft: str) -> list[str]:
     return [name for name in bearings if shaft_of(tree, box, "bearings", name) == shaft]
 
 
+def tabled(tree: RawTree, box: str, bearing: str) -> "CatalogueBearing | None":
+    """The rolling bearing of the catalogue that a bearing names; None for any other."""
+    designation = tree.text(f"gearboxes.{box}.bearings.{bearing}.designation")
+    if designation is None:
+        return None
+    from dynamics.bearing.protocol import BearingError
+    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+
+    try:
+        return catalogue_bearing(designation)
+    except BearingError:
+        return None
+
+
 def bearing_bore(tree: RawTree, box: str, bearing: str) -> float | None:
     """Journal or bore of a bearing [m]: stated, or that of its designation."""
     at = f"gearboxes.{box}.bearings.{bearing}"
-    for key in ("diameter", "bore_diameter", "bore"):
-        if (stated := tree.length(f"{at}.{key}")) is not None:
-            return stated
-    code = re.search(r"(\d{3,})\D*$", tree.text(f"{at}.designation") or "")
-    if code is None:
-        return None
-    digits = code[1][-2:]
-    return BORE_CODES.get(digits, 5e-3 * int(digits) or None)
+    found = tabled(tree, box, bearing)
+    if found is not None:
+        return found.bore
+    stated = tree.length(f"{at}.diameter")
+    return tree.length(f"{at}.catalogue.bore") if stated is None else stated
 
 
 def bearing_width(tree: RawTree, box: str, bearing: str) -> float | None:
-    """Width of a bearing [m]; three quarters of its bore where the case states none, as in NU 406 and its like."""
-    stated = tree.length(f"gearboxes.{box}.bearings.{bearing}.width")
-    bore = bearing_bore(tree, box, bearing)
-    return stated if stated is not None or bore is None else 0.75 * bore
+    """Width of a bearing [m]: stated, or that of its designation."""
+    at = f"gearboxes.{box}.bearings.{bearing}"
+    found = tabled(tree, box, bearing)
+    if found is not None:
+        return found.width
+    stated = tree.length(f"{at}.width")
+    return tree.length(f"{at}.catalogue.width") if stated is None else stated
 
 
 def shaft_diameter(tree: RawTree, box: str, shaft: str) -> float | None:

@@ -233,3 +233,32 @@ def test_the_locked_power_is_that_of_the_file(minimal: Case) -> None:
     assert power == pytest.approx(87.8e3, rel=1e-3)
     jets = minimal.gearboxes["test"].jets
     assert jets is not None and math.isclose(jets.flow * 870.0 * 2000.0 * 10.0, 0.01 * power, rel_tol=0.01)
+
+
+def test_one_of_the_bearings_may_differ(tmp_path: Path) -> None:
+    """By its name alone, or as a bearing of another name that says where it sits."""
+    more = '\n[gearboxes.test.bearings.pinion_rear]\nshell_conductance = "5000 W/(m2 K)"\n'
+    more += '[gearboxes.test.bearings.end]\nshaft = "test_wheel"\nside = "rear"\nlocating = true\n'
+    bearings = load_case(minimal_case(tmp_path, more)).gearboxes["test"].bearings
+    assert sorted(bearings) == ["end", "pinion_front", "pinion_rear", "wheel_front"]
+    assert bearings["pinion_rear"].shell_conductance == pytest.approx(5000.0)
+    assert (bearings["pinion_rear"].shaft, bearings["pinion_rear"].side) == ("test_pinion", "rear")
+    assert {bearing.diameter for bearing in bearings.values()} == {0.03}
+
+
+def test_a_gear_in_two_meshes_splits_neither_where_it_states_its_shift(tmp_path: Path) -> None:
+    """The split of a mesh is settled by the shift of either of its own gears, whatever other mesh they are in."""
+    more = """
+[gearboxes.test.gears.second]
+teeth = 24
+face_width = "14 mm"
+[gearboxes.test.meshes.other]
+pinion = "pinion"
+wheel = "second"
+normal_module = "4.5 mm"
+centre_distance = "91.5 mm"
+"""
+    (tmp_path / "case.toml").write_text(MINIMAL + more, encoding="utf-8")
+    with pytest.raises(CaseError) as caught:
+        load_case(tmp_path)
+    assert not any("profile shifts" in fault.problem for fault in caught.value.faults)
