@@ -18,10 +18,6 @@ WIDTH = 110
 MOST_NAMED = 4
 """Checks that a comment names; of more it names the topics."""
 FIRST_SENTENCE = re.compile(r"(?<!e\.g)\. (?=[A-Z])")
-PARTITION = 8e-3
-"""Wall between chamber and cold section [m]."""
-COLD_SHARE = 0.15
-"""Length of a cold section as a share of the inner length."""
 
 Comment = Callable[[str], Sequence[str]]
 """Lines of the comment at a path."""
@@ -77,15 +73,10 @@ def _rolling(designation: str) -> Iterator[tuple[str, str, list[Line]]]:
 
 
 def _housing(outline: Outline, box: tuple[float, float, float]) -> list[Line]:
-    """Outer measures of the box as those of the case; its end walls hold bearings and seals."""
+    """Outer measures of a box of one chamber as those of the case; its end walls hold bearings and seals."""
     inner = box[0] - 2.0 * (outline.bearing_width + SEAL_WIDTH)
-    cold = COLD_SHARE * inner
-    chamber = inner - 2.0 * (cold + PARTITION)
     return [
-        ("warm_length", _millimetres(chamber)),
-        ("cold_length_front", _millimetres(cold)),
-        ("cold_length_rear", _millimetres(cold)),
-        ("partition_thickness", _millimetres(PARTITION)),
+        ("warm_length", _millimetres(inner)),
         ("width", _millimetres(box[1])),
         ("height", _millimetres(box[2])),
     ]
@@ -129,8 +120,8 @@ def commented_text(outline: Outline, case: Case, folder: Path) -> str:
 def _kind(outline: Outline, path: str) -> str:
     """Which kind of table a key stands in, where its table comes in kinds."""
     if ".bearings." in path:
-        return "journal" if outline.journal else "rolling"
-    return outline.lubrication if ".oil." in path else ""
+        return f"type = {'journal' if outline.journal else 'rolling'}"
+    return f"lubrication = {outline.lubrication}" if ".oil." in path else ""
 
 
 def _of_checks(moved: Sequence[str], all_checks: Sequence[str]) -> str:

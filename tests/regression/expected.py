@@ -2,7 +2,7 @@
 
     python -m tests.regression.expected [NAME ...] [--all]
 
-from the root of the project runs the named cases (all four without a name), carries over every verdict, and every
+from the root of the project runs the named cases (all without a name), carries over every verdict, and every
 utilisation outside its tolerance, with ``--all`` every one; the reasons stay. What it changed is printed, and the
 diff is to be read: a commit that moves a utilisation says why, and a reason that no longer holds is written anew. A
 check that is new gets an empty reason, which tests/regression/test_cases.py refuses until it is written.
@@ -18,7 +18,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from tests.builders.paths import CASES
 
-NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting")
+NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting", "fzg")
 UTILISATION_TOLERANCE = 0.005
 """Relative. A wrong formula among many seldom moves a check by more than a few per cent."""
 ROUNDING = 5e-4
