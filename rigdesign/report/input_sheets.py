@@ -128,12 +128,13 @@ def oil_sheet(result: RunResult) -> Sheet | None:
         return None
     cells = [_oil_cells(case, circuit) for _, circuit in circuits]
     rows = [(name, [column[number] for column in cells]) for number, name in enumerate(OIL_ROWS)]
+    rows = [(name, row) for name, row in rows if set(row) != {"–"}]
     return Sheet(title="Oil", columns=[name for name, _ in circuits], rows=rows)
 
 
 OIL_ROWS = (
-    "oil", "kinematic viscosity at 40 °C", "kinematic viscosity at 100 °C", "inlet temperature",
-    "viscosity at the inlet", "density at the inlet", "flow", "jet velocity",
+    "oil", "kinematic viscosity at 40 °C", "kinematic viscosity at 100 °C", "temperature of inlet or sump",
+    "viscosity there", "density there", "flow", "jet velocity", "level above the shafts", "oil in the sump",
 )  # fmt: skip
 
 
@@ -146,7 +147,8 @@ def _circuits(case: CaseSheet) -> Iterator[tuple[str, CaseSheet]]:
 
 def _oil_cells(case: CaseSheet, circuit: CaseSheet) -> list[str]:
     oil = _oil(case, circuit.raw("oil"))
-    inlet = _stated(circuit.raw("inlet_temperature"), "temperature")
+    held = "sump_temperature" if circuit.raw("sump_temperature") else "inlet_temperature"
+    inlet = _stated(circuit.raw(held), "temperature")
     viscosities = ["–"] * 4
     if oil is not None:
         at = [ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0, *([] if inlet is None else [inlet])]
@@ -155,8 +157,8 @@ def _oil_cells(case: CaseSheet, circuit: CaseSheet) -> list[str]:
         if inlet is not None:
             viscosities[3] = f"{number_text(oil.density(inlet), 3)} kg/m³"
     forty, hundred, warm, density = viscosities
-    flow, jet = circuit.value("flow"), circuit.value("jet_velocity")
-    return [circuit.raw("oil"), forty, hundred, circuit.value("inlet_temperature"), warm, density, flow, jet]
+    others = [circuit.value(key) for key in ("flow", "jet_velocity", "level", "volume")]
+    return [circuit.raw("oil"), forty, hundred, circuit.value(held), warm, density, *others]
 
 
 def _stated(text: str, kind: str) -> float | None:

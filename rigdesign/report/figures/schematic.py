@@ -235,9 +235,10 @@ CIRCUITS = (("oil", "gear oil"), ("bearing_oil", "bearing oil"))
 
 
 def _circuit(box: CaseSheet, key: str, words: str) -> tuple[str, str]:
-    """Oil of a circuit; its temperature and flow."""
+    """Oil of a circuit or sump; its temperature and flow."""
     oil = box.table(key)
-    stated = (oil.value("inlet_temperature", ""), oil.value("flow", ""))
+    words = "sump" if oil.raw("lubrication") == "dip" else words
+    stated = (oil.value("inlet_temperature", "") or oil.value("sump_temperature", ""), oil.value("flow", ""))
     return f"{words} {oil.raw('oil')}", ", ".join(part for part in stated if part)
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 
+from rigdesign.coupling.boundary import BEARING_OIL
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.oil import OilStream
 from rigdesign.results.housing import CoolingBalance, GearHeatSplit, HousingTemperatures
@@ -31,7 +32,7 @@ def loss_rows(stage: str, losses: Sequence[PlacedLoss]) -> list[LossRow]:
 
 
 def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
-    """Oil streams of one stage."""
+    """Oil streams of one stage; none for bearings that are not fed, whose heat is in the oil of the gears."""
     return [
         OilRow(
             consumer=stream.name,
@@ -42,6 +43,7 @@ def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
             heat_W=stream.heat,
         )
         for stream in streams
+        if stream.flow or stream.heat or not stream.name.endswith(BEARING_OIL)
     ]
 
 
