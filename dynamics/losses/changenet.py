@@ -33,7 +33,7 @@ class BathNumbers(NamedTuple):
     froude: float
     """omega^2 R/g"""
     reynolds: float
-    """omega R b/nu, the number the regimes are told apart by"""
+    """omega R b/nu, the number that separates the regimes"""
     acceleration: float
     """gamma = omega^2 (b R m)^(1/3) [m/s2]"""
 

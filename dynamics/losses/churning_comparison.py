@@ -51,10 +51,10 @@ def compare_churning(stage: tuple[RunningGear, RunningGear], bath: OilBath) -> C
     }
     near = [law for law in laws if factors[law] <= EXTRAPOLATION]
     best = near[0] if near else min(laws, key=lambda law: factors[law])
-    told = ", ".join(f"{law} {factor:.3g}" for law, factor in factors.items())
+    factors_text = ", ".join(f"{law} {factor:.3g}" for law, factor in factors.items())
     reason = (
-        f"{best}: first law extrapolated by no more than {EXTRAPOLATION:g} ({told})"
+        f"{best}: first law extrapolated by no more than {EXTRAPOLATION:g} ({factors_text})"
         if near
-        else f"{best}: least extrapolated of all ({told}); measure the no-load torque"
+        else f"{best}: least extrapolated of all ({factors_text}); measure the no-load torque"
     )
     return ChurningComparison(losses=losses, recommended=best, reason=reason)

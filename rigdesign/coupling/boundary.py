@@ -14,7 +14,7 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.joints import behind_shell, foot_joint

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from dynamics.drivetrain.graph import Drivetrain
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.rig.model import Rig
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 from dynamics.bearing.protocol import BearingState
@@ -18,9 +18,10 @@ from rigdesign.case.heat_split import HeatSplit
 from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.bearing_heat import body_shares
 from rigdesign.coupling.dip import churning
-from rigdesign.coupling.flank_heat import MeshSplit, mesh_split
+from rigdesign.coupling.flank_heat import mesh_split
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.loads import MeshModel, first_torques
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed, gear_oil, injected_flow, jet_velocity
@@ -33,42 +34,6 @@ LEAST_DAMPER_WORK = 1.0
 """Work of a mesh damper [W] that warns at least: nothing of it matters below."""
 ANDERSON_LOEWENTHAL = "anderson_loewenthal_power"
 """Among the details of a windage loss: what their correlation gives for the gear [W]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PlacedLoss:
-    """A loss with its place in the case and its way into oil and bodies."""
-
-    gearbox: str
-    part: str
-    """Mesh, bearing, seals or gear of that gearbox."""
-    loss: Loss
-    into_body: float
-    """Power that enters solid bodies [W]; the rest goes into the oil at once, but for what is no heat."""
-    not_heat: float = 0.0
-    """Power of the motor that is heat of no part: work of a mesh damper [W]."""
-    pumped: float = 0.0
-    """Power that the pump gives at this place, beyond what brakes the shaft [W]: heat into the oil."""
-    split: MeshSplit | None = None
-    """Of a mesh loss, the way into its two gears."""
-    given: bool = False
-    end_share: float = 0.0
-    """Of a seal loss, the share that arises where the shaft leaves the housing: next to the bearings, in their oil."""
-
-    @property
-    def name(self) -> str:
-        """``gearbox.part``."""
-        return f"{self.gearbox}.{self.part}"
-
-    @property
-    def into_oil(self) -> float:
-        """Power that goes into the oil at once [W]."""
-        return self.loss.power + self.pumped - self.into_body - self.not_heat
-
-    @property
-    def into_bearing_oil(self) -> float:
-        """Of ``into_oil``, what goes into the oil of the bearings [W]; the rest goes into that of the gears."""
-        return self.into_oil * (1.0 if self.loss.kind == "bearing" else self.end_share)
 
 
 def rotating_losses(

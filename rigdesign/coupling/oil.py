@@ -11,7 +11,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import FedOil, JetOil
 from rigdesign.case.model import Case
 from rigdesign.case.oil_circuits import place_of
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.properties.oil import oil_outlet
 from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig

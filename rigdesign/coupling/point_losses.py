@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from dynamics.bearing.protocol import BearingState
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 
 

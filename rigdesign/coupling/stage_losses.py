@@ -9,7 +9,8 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loads import BracingState, MeshModel, mesh_models, respond
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.losses import PlacedLoss, mesh_losses, oil_jets, rotating_losses
+from rigdesign.coupling.losses import mesh_losses, oil_jets, rotating_losses
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig

@@ -6,7 +6,7 @@ the tank with storage, the second gives the end of the step. A step is cut where
 a heater that comes to its setpoint), and where an on-off thermostat switches.
 
 What a consumer gives back during a step is taken as heat: its return temperature against the supply and the flow it
-was told before that step. So heat is kept whatever the step, and the lag between circuit and consumers is one step.
+was given before that step. So heat is kept whatever the step, and the lag between circuit and consumers is one step.
 """
 
 import math

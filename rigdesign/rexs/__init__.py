@@ -1,6 +1,6 @@
 """REXS files (Reusable Engineering EXchange Standard, FVA), read and turned into a neutral gear unit.
 
-    read_rexs(path) -> RexsModel        reader: XML, JSON or zip, told apart by content
+    read_rexs(path) -> RexsModel        reader: XML, JSON or zip, recognised by content
     import_gear_unit(model) -> GearUnitImport   gears, meshes, shafts, bearings, couplings, oil and loads in SI, with
                                         what was mapped, what was not, and what a case needs beyond it
 

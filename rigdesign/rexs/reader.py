@@ -1,4 +1,4 @@
-"""A REXS file of any encoding: told apart by what is in it, whatever its name ends with."""
+"""A REXS file of any encoding, recognised by what is in it, whatever its name ends with."""
 
 from pathlib import Path
 

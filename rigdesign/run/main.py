@@ -18,7 +18,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks import all_checks
 from rigdesign.checks.rules import overall
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, schedule_of

@@ -13,7 +13,7 @@ from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.loads import laws_of
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears

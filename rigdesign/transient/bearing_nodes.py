@@ -11,7 +11,7 @@ from dynamics.bearing.protocol import HeatStar
 from rigdesign.coupling.bearing_heat import conductances, on_surface
 from rigdesign.coupling.bearing_seats import bearing_seats
 from rigdesign.coupling.boundary import BEARING_FILM
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm, VolumeLink

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from rigdesign.coupling.boundary import BEARING_OIL
-from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.oil import OilStream
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.results.housing import CoolingBalance, GearHeatSplit, HousingTemperatures
 from rigdesign.results.thermal import HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
 from rigdesign.results.units import L_MIN, ZERO

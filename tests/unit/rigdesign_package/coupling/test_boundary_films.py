@@ -11,8 +11,9 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
-from rigdesign.coupling.losses import PlacedLoss, rotating_losses
+from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import oil_streams
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig

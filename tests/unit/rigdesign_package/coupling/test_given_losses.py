@@ -12,7 +12,8 @@ from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import brace_initial, mesh_models, respond
-from rigdesign.coupling.losses import PlacedLoss, mesh_losses, rotating_losses
+from rigdesign.coupling.losses import mesh_losses, rotating_losses
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

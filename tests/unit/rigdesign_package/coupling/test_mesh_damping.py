@@ -8,7 +8,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.records.housing import cooling_balance
 from rigdesign.results.rows.housing import loss_rows
