@@ -1,6 +1,6 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, diff, validate, explain, new, mesh, schema, doctor, completion; ``--verbose``
+Commands: check, study, compare, diagnose, diff, validate, explain, new, import, mesh, schema, doctor, completion; ``--verbose``
 and ``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; diff: both can be read; validate: no
@@ -21,6 +21,7 @@ from rigdesign.cli.commands import (
     diff,
     doctor,
     explain,
+    import_rexs,
     mesh,
     new,
     schema,
@@ -39,6 +40,7 @@ __all__ = [
     "diff",
     "doctor",
     "explain",
+    "import_rexs",
     "main",
     "mesh",
     "new",
