@@ -11,9 +11,14 @@ from rigdesign.rexs_case.entries import Entry, Origins, Table, millimetres, quot
 from rigdesign.rexs_case.gear_keys import gear_entries, material_entry, mesh_entries, toothing_of
 from rigdesign.rexs_case.operation_keys import oil_tables, operation_of, schedule_tables
 from rigdesign.rexs_case.pinion_load import pinion_loads
+from rigdesign.rexs_case.shaft_keys import shaft_tables
 from rigdesign.rexs_case.stage import SeatedGear, Stage
 
-LIKE_THE_TEST = "assumed: the slave gearbox equals the test gearbox, without a housing; a REXS file holds one unit and no rig"
+LIKE_THE_TEST = (
+    "the slave gearbox equals the test gearbox, without a housing; a REXS file holds one unit, no rig"
+)
+EPICYCLIC = ("planetary_stage", "ring_gear")
+"""Components that make the axes of some gears turn: speed and torque of a pair do not follow from its teeth."""
 OFF_THE_TIPS = 0.02
 """Room between tips and walls in the housing that is suggested [m]."""
 
@@ -46,14 +51,16 @@ def _tables(imported: GearUnitImport, stage: Stage, origins: Origins) -> Iterato
         if (position := gear_position(seated)) is not None:
             target = f"gears[{seated.gear.id}].position"
             entries.append(origins.stated("position", millimetres(position), target))
-        remark = (f"gear {seated.gear.id} {seated.gear.name}",)
+        remark: tuple[str, ...] = (f"gear {seated.gear.id} {seated.gear.name}",)
         if seated is stage.wheel and toothing.contradiction:
             remark += ("its profile shift in the file contradicts the centre distance, which counts",)
         yield Table(f"gearboxes.test.gears.{seated.name}", tuple(entries), remark)
     mesh_remark = f"cylindrical_stage {stage.mesh.id} {stage.mesh.name}"
     yield Table("gearboxes.test.meshes.main", tuple(mesh_entries(origins, stage)), (mesh_remark,))
     yield from bearing_tables(origins, stage)
-    operation = operation_of(stage, pinion_loads(unit, stage.mesh))
+    yield from shaft_tables(origins, stage)
+    epicyclic = any(item.place.startswith(EPICYCLIC) for item in imported.missing)
+    operation = operation_of(stage, () if epicyclic else pinion_loads(unit, stage.mesh))
     yield from oil_tables(origins, unit, stage, operation)
     like = Entry("like", '"test"', "assumed", LIKE_THE_TEST, markable=False)
     yield Table("gearboxes.slave", (like,), tuple(_housing_remarks(stage)))
@@ -66,7 +73,7 @@ def _housing_remarks(stage: Stage) -> Iterator[str]:
     distance = toothing_of(stage).centre_distance
     sizes = [tip for tip in tips if tip is not None]
     room = max((_room(seated) or 0.0 for seated in stage.gears), default=0.0)
-    length = room or max((seated.gear.face_width or 0.0 for seated in stage.gears)) + 0.06
+    length = room or max(seated.gear.face_width or 0.0 for seated in stage.gears) + 0.06
     width, height = 0.2, 0.2
     if distance is not None and len(sizes) == 2:
         width = distance + 0.5 * sum(sizes) + 2.0 * OFF_THE_TIPS + 0.02

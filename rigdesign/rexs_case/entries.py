@@ -1,7 +1,7 @@
 """Keys of an imported case: taken from the file, assumed, or needed from the user; and their form in TOML."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,6 +10,8 @@ from rigdesign.rexs.faults import printable
 
 WIDEST_TEXT = 400
 """Characters of a text taken over from a file."""
+MOST_PLACES = 6
+"""Attributes that one source names; of more it names the first."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,9 @@ class Origins:
 
     def __init__(self, file: str, mapped: Sequence[MappedAttribute]) -> None:
         self.file = file
-        self._first: Mapping[str, MappedAttribute] = {item.target: item for item in reversed(mapped)}
+        self._first: dict[str, MappedAttribute] = {}
+        for item in mapped:
+            self._first.setdefault(item.target, item)
 
     def knows(self, target: str) -> bool:
         """Whether the file states what stands at a place of the gear unit."""
@@ -71,9 +75,15 @@ class Origins:
         """Name of the attribute, empty where the file does not state it."""
         return self._first[target].attribute if target in self._first else ""
 
+    def under(self, target: str) -> tuple[str, ...]:
+        """Places of the gear unit that begin with ``target``."""
+        return tuple(known for known in self._first if known.startswith(target))
+
     def stated(self, key: str, value: str, *targets: str, note: str = "") -> Entry:
         """A key with its source: component and attribute of the first target, then those of the others."""
         found = [self._first[target] for target in targets if target in self._first]
+        if note and len(found) > MOST_PLACES:
+            found = found[:1]
         places = "; ".join(dict.fromkeys(map(_place, found))) or "structure of the model"
         text = f"{self.file}: {places}" + (f" ({note})" if note else "")
         return Entry(key, value, "stated", text, targets)
@@ -130,7 +140,8 @@ def _entry(entry: Entry, with_examples: bool) -> Iterator[str]:
         yield f"# NEEDED, {printable(entry.text)}:"
         yield f"{'' if with_examples else '# '}{entry.key} = {entry.value}"
     elif not entry.markable:
-        yield f"# {printable(' '.join(entry.text.split()))[:WIDEST_TEXT]}"
+        said = "assumed: " if entry.kind == "assumed" else ""
+        yield f"# {said}{printable(' '.join(entry.text.split()))[:WIDEST_TEXT]}"
         yield f"{entry.key} = {entry.value}"
     else:
         mark = "source" if entry.kind == "stated" else "assumed"

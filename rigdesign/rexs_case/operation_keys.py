@@ -52,12 +52,12 @@ def oil_tables(origins: Origins, unit: GearUnit, stage: Stage, operation: Operat
         reason = (
             f"gears dip at a pitch line velocity of {operation.velocity:.3g} m/s, at most {FASTEST_DIP:g} m/s"
         )
-        kind = Entry("lubrication", '"dip"', "assumed", f"assumed: {reason}; or jet", markable=False)
+        kind = Entry("lubrication", '"dip"', "assumed", f"{reason}; or jet", markable=False)
         level = assumed("level", '"0 mm"', "oil up to the shaft axes, as in an FZG rig")
         yield Table("gearboxes.test.oil", (kind, name, level, temperature))
     else:
         why = "plain bearings need fed oil" if journals else f"above {FASTEST_DIP:g} m/s at the pitch line"
-        kind = Entry("lubrication", '"jet"', "assumed", f"assumed: oil is injected, {why}", markable=False)
+        kind = Entry("lubrication", '"jet"', "assumed", f"oil is injected, {why}", markable=False)
         yield Table("gearboxes.test.oil", (kind, name, temperature))
     if custom is not None:
         yield custom

@@ -17,7 +17,16 @@ from rigdesign.rexs_case.case_tables import LIKE_THE_TEST, case_tables
 from rigdesign.rexs_case.entries import Entry, Table, toml_text
 from rigdesign.rexs_case.stage import chosen_stage
 
-NOT_OF_THE_STAGE = "of another stage, or without a key in the case of this one"
+FOREIGN_STAGES = ("bevel_stage", "worm_stage", "planetary_stage", "ring_gear")
+OTHER_PART = "of another stage, or a value that the case works out itself"
+REASONS = {
+    "operating_cases": "of another load case, which the case names in a comment, or not needed at the pinion",
+    "bearings": "of a bearing of another stage, of one that its designation describes, or of operation",
+    "couplings": "the couplings of a rig join two gearboxes: write drivetrain.couplings",
+    "materials": "of built-in materials only; for another one write a table under materials",
+    "shafts": "the places along the shafts count",
+}
+"""First part of a place of the gear unit -> why the case does not take it."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +48,7 @@ class ImportedCase:
     assumed : in place of what the file lacks
     defaults : further defaults of the tool, not of the test gearbox
     needed : what the user has to give, with the reason or remedy
+    left_out : parts of the file that no case has
     """
 
     path: Path
@@ -48,6 +58,7 @@ class ImportedCase:
     assumed: tuple[Assumption, ...]
     defaults: int
     needed: tuple[str, ...]
+    left_out: tuple[str, ...]
 
 
 def import_case(file: Path, out: Path, stage: int | None = None) -> ImportedCase:
@@ -126,7 +137,7 @@ def _account(
         mapped=mapped,
         listed=(*imported.listed, *(_not_used(item) for item in unused)),
         assumed=(
-            Assumption("gearboxes.slave", 'like "test"', LIKE_THE_TEST.partition(": ")[2]),
+            Assumption("gearboxes.slave", 'like "test"', LIKE_THE_TEST),
             *own,
             *shown,
         ),
@@ -134,10 +145,10 @@ def _account(
             [item for item in defaults if not item.path.startswith(("gearboxes.test.", "gearboxes.slave."))]
         ),
         needed=tuple(needed),
+        left_out=tuple(item.place for item in imported.missing if item.place.startswith(FOREIGN_STAGES)),
     )
 
 
 def _not_used(item: MappedAttribute) -> ListedAttribute:
-    return ListedAttribute(
-        item.component, item.type, item.attribute, item.written, NOT_OF_THE_STAGE, item.load_case
-    )
+    reason = REASONS.get(item.target.split("[")[0].split(".")[0], OTHER_PART)
+    return ListedAttribute(item.component, item.type, item.attribute, item.written, reason, item.load_case)

@@ -10,11 +10,13 @@ from rigdesign.cli.terminal.console import new_console
 if TYPE_CHECKING:
     from rigdesign.rexs.attribute_log import ListedAttribute
     from rigdesign.rexs_case.write import ImportedCase
+WIDEST = 36
+"""Characters of a value in a column; the case has it in full."""
 
 
 @app.command(name="import")
 def import_rexs(file: Path, /, *, out: OutFolder, stage: int | None = None) -> int:
-    """Write a case from a REXS file (.rexs, .rexsj, .rexsz): one gear stage becomes the test gearbox.
+    """Write a case from a REXS file (.rexs, .rexsj, .rexsz): one stage becomes the test gearbox.
 
     What the file does not state is a default of the tool, marked as an assumption; what the user has to give stands in
     the case as a comment with an example.
@@ -47,9 +49,9 @@ def _report(result: "ImportedCase") -> Iterator[str]:
     yield f"\nmissing in the file, assumed: {len(result.assumed)}"
     yield from _aligned([(item.path, item.value, item.reason) for item in result.assumed])
     if result.defaults:
-        yield (
-            f"  and {result.defaults} defaults of drivetrain, schedule, limits and solvers, each in the report of a check"
-        )
+        yield f"  and {result.defaults} defaults of drivetrain, schedule, limits and solvers, in the report of a check"
+    if result.left_out:
+        yield f"\nleft out, a case has no such stage: {', '.join(result.left_out)}"
     if result.needed:
         yield f"\nmissing in the file, to be given by you before the case loads: {len(result.needed)}"
         yield from (f"  {line}" for line in result.needed)
@@ -58,6 +60,10 @@ def _report(result: "ImportedCase") -> Iterator[str]:
 
 
 def _aligned(rows: Sequence[tuple[str, str, str]]) -> Iterator[str]:
+    rows = [
+        (path, value if len(value) <= WIDEST else f"{value[: WIDEST - 3]}...", text)
+        for path, value, text in rows
+    ]
     widths = [max((len(row[column]) for row in rows), default=0) for column in (0, 1)]
     for path, value, text in rows:
         yield f"  {path:<{widths[0]}}  {value:<{widths[1]}}  {text}"
