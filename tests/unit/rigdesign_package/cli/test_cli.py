@@ -76,7 +76,7 @@ remove = ["housing"]
 
 
 COMMANDS = (
-    "check", "study", "compare", "diagnose", "diff", "validate", "explain", "new", "mesh", "schema", "doctor",
+    "check", "study", "compare", "diagnose", "diff", "validate", "explain", "new", "import", "mesh", "schema", "doctor",
     "completion",
 )  # fmt: skip
 

@@ -191,6 +191,26 @@ def test_a_stage_that_is_not_there_lists_those_that_are(tmp_path: Path) -> None:
     assert not (tmp_path / "case").exists()
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            'id="number_of_teeth" unit="none">16<',
+            'id="number_of_teeth" unit="none">many<',
+            "gearboxes.test.gears.pinion.teeth, e.g. 24",
+        ),
+        ('id="normal_module" unit="mm">4.5<', 'id="normal_module" unit="mm">1e300<', "normal_module"),
+        ('unit="N m">372.6<', 'unit="N m">1e300<', "schedule.test_torque"),
+    ],
+)
+def test_unusable_values_are_said_and_the_rest_is_written(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    result = of_changed(tmp_path, (old, new))
+    assert any(words in line for line in result.needed)
+    assert "face_width" in (tmp_path / "case/case.toml").read_text()
+
+
 def test_a_file_without_a_stage_makes_no_case(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="no cylindrical stage"):
         of_changed(tmp_path, ('type="cylindrical_stage"', 'type="bevel_stage"'))
