@@ -123,7 +123,8 @@ def _account(
     stated_paths = {place for place, _ in placed}
     defaults: list[Assumption] = []
     if isinstance(tried, CaseError):
-        needed += [str(fault) for fault in tried.faults] or [str(tried)]
+        trial = "with these examples, " if needed else ""
+        needed += [f"{trial}{fault}" for fault in tried.faults or (tried,)]
     else:
         defaults = [
             Assumption(mark.path, mark.shown, (mark.assumed or "").removeprefix("default of the tool: "))
