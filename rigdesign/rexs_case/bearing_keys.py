@@ -1,12 +1,19 @@
 """Keys of the bearings: a tabled designation, else the numbers of the file, else a tabled bearing of the same bore."""
 
 import math
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from rigdesign.rexs.gear_unit import UnitBearing
+from rigdesign.rexs_case.bearing_choice import (
+    can_hold,
+    has_own_numbers,
+    nearest_tabled,
+    same_bore,
+    series_of,
+    tabled_bearing,
+)
 from rigdesign.rexs_case.entries import (
     Entry,
     Origins,
@@ -20,19 +27,8 @@ from rigdesign.rexs_case.entries import (
 from rigdesign.rexs_case.stage import SIDES, SeatedGear, Stage
 
 if TYPE_CHECKING:
-    from dynamics.bearing.rolling_catalogue import BearingKind, CatalogueBearing
+    from dynamics.bearing.rolling_catalogue import CatalogueBearing
 
-KINDS: dict[str, "BearingKind"] = {
-    "radial_grooved_ball_bearing": "deep_groove_ball",
-    "radial_roller_bearing": "cylindrical_roller",
-    "radial_tapered_roller_bearing": "tapered_roller",
-    "angular_contact_ball_bearing": "angular_contact_ball",
-}
-"""Type in REXS -> kind of a case."""
-SAME_BORE = 0.1
-"""Difference of two bores, over the bore, up to which one bearing may stand for another."""
-PRINTED = 0.01
-"""The same up to which a designation and a stated bore are of one bearing."""
 CLASSES = ("C2", "CN", "C3", "C4", "C5")
 RPM = math.pi / 30.0
 
@@ -80,7 +76,7 @@ def _seats(seated: SeatedGear, helical: bool) -> Iterator[Seat]:
     places = [seated.bearing_at(bearing) for bearing in seated.bearings]
     known = _ordered(seated, places)
     holds = _locating(seated.bearings)
-    able = [number for number, bearing in enumerate(seated.bearings) if _can_hold(bearing)]
+    able = [number for number, bearing in enumerate(seated.bearings) if can_hold(bearing)]
     wanted = able[-1] if helical and holds is None and able else None
     for number, bearing in enumerate(seated.bearings):
         yield Seat(
@@ -110,22 +106,9 @@ def _locating(bearings: tuple[UnitBearing, ...]) -> int | None:
     """Which bearing holds the shaft: that for both directions, else the first for one; None leaves it open."""
     for wanted in (("both_directions",), ("positive", "negative")):
         for number, bearing in enumerate(bearings):
-            if bearing.axial_force in wanted and _can_hold(bearing):
+            if bearing.axial_force in wanted and can_hold(bearing):
                 return number
     return None
-
-
-def _can_hold(bearing: UnitBearing) -> bool:
-    """Whether the bearing, as the case will have it, carries axial load."""
-    if bearing.kind == "journal":
-        return True
-    tabled, sibling = tabled_bearing(bearing), nearest_tabled(bearing)
-    if tabled is not None:
-        return tabled.locating
-    if sibling is None:
-        return False
-    free = sibling.kind == "cylindrical_roller" and bearing.axial_force == "no_direction"
-    return not free if _complete(bearing) else sibling.locating
 
 
 def _place(origins: Origins, seat: Seat) -> Iterator[Entry]:
@@ -160,9 +143,9 @@ def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Ta
         entries.append(
             origins.stated("designation", quoted(tabled.designation), f"{at}.catalogue.designation")
         )
-    elif sibling is not None and _complete(bearing):
+    elif sibling is not None and has_own_numbers(bearing):
         numbers = tuple(_catalogue(origins, bearing, sibling))
-    elif sibling is not None and _same_bore(bearing, sibling):
+    elif sibling is not None and same_bore(bearing, sibling):
         written = bearing.catalogue.designation or bearing.name or "a bearing without designation"
         reason = f"stands for {written}, which is not tabled: the nearest one in bore and outside diameter"
         entries.append(assumed("designation", quoted(sibling.designation), reason))
@@ -192,82 +175,13 @@ def _condition(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:
         yield origins.stated("contamination_factor", f"{factor:.9g}", f"{at}.catalogue.contamination_factor")
 
 
-def tabled_bearing(bearing: UnitBearing) -> "CatalogueBearing | None":
-    """The tabled bearing of a designation, suffixes left out; None where the bore of the file is another one."""
-    from dynamics.bearing.protocol import BearingError
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing
-
-    written = (bearing.catalogue.designation or "").strip()
-    basic = re.match(r"[A-Za-z]*\s*\d{3,5}", written)
-    for name in (written, basic[0] if basic else ""):
-        try:
-            found = catalogue_bearing(name)
-        except BearingError:
-            continue
-        kind = KINDS.get(bearing.catalogue.type or "", found.kind)
-        bore = bearing.inner_diameter
-        if kind == found.kind and (bore is None or abs(bore / found.bore - 1.0) <= PRINTED):
-            return found
-    return None
-
-
-def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
-    """Tabled bearing of the same kind, of the same series if there is one, with the nearest diameters.
-
-    None for a kind that a case does not have, and where no bore is known.
-    """
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
-
-    bore, kind = bearing.inner_diameter, KINDS.get(bearing.catalogue.type or "")
-    if bore is None or kind is None:
-        return None
-    outside, series = bearing.outer_diameter, _series(bearing)
-    known = [catalogue_bearing(name) for name in tabled_designations()]
-    return min(
-        (item for item in known if item.kind == kind),
-        key=lambda item: (
-            item.series != series,
-            abs(math.log(item.bore / bore))
-            + abs(math.log(item.outside_diameter / (outside or item.outside_diameter))),
-            not item.locating,
-        ),
-        default=None,
-    )
-
-
-def _series(bearing: UnitBearing) -> str | None:
-    """Dimension series by the designation: 62 of 6207, 2 of NJ 204; None for one without friction coefficients."""
-    from dynamics.bearing.rolling_catalogue import DESCRIBED_SERIES
-
-    digits = re.search(r"\d{3,5}", bearing.catalogue.designation or "")
-    kind = KINDS.get(bearing.catalogue.type or "")
-    if digits is None or kind is None:
-        return None
-    stem = digits[0][:-2]
-    return next((name for name in (stem, f"{stem}B") if name in DESCRIBED_SERIES[kind]), None)
-
-
-def _same_bore(bearing: UnitBearing, other: "CatalogueBearing") -> bool:
-    return bearing.inner_diameter is not None and abs(bearing.inner_diameter / other.bore - 1.0) <= SAME_BORE
-
-
-def _complete(bearing: UnitBearing) -> bool:
-    """Whether diameters, width and load ratings are stated; the rest scales from a tabled bearing."""
-    data = bearing.catalogue
-    stated = (
-        bearing.inner_diameter, bearing.outer_diameter, bearing.width, data.dynamic_load_rating,
-        data.static_load_rating,
-    )  # fmt: skip
-    return None not in stated and (bearing.outer_diameter or 0.0) > 1.2 * (bearing.inner_diameter or 0.0)
-
-
 def _catalogue(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing") -> Iterator[Entry]:
     """Numbers of the file, and what it lacks from a tabled bearing of the kind, scaled by its diameters."""
     at, data = f"bearings[{bearing.id}]", bearing.catalogue
     bore, outside = bearing.inner_diameter or 0.0, bearing.outer_diameter or 0.0
     like = f"as {sibling.designation}"
     yield origins.stated("kind", quoted(sibling.kind), f"{at}.catalogue.type")
-    if (series := _series(bearing)) is not None:
+    if (series := series_of(bearing)) is not None:
         yield origins.stated("series", quoted(series), f"{at}.catalogue.designation")
     else:
         yield assumed("series", quoted(sibling.series), f"{like}, the nearest tabled bearing of the kind")

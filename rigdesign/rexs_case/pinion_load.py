@@ -87,6 +87,6 @@ def _at_pinion(
 
 def _torque(load: ShaftLoad, ratios: Mapping[int, float], speed: float | None) -> float | None:
     """A load reduced to the pinion [N m]: the same power at its speed."""
-    if load.torque is not None and load.shaft in ratios:
+    if load.torque is not None and load.shaft is not None and load.shaft in ratios:
         return load.torque * ratios[load.shaft]
     return load.power / speed if load.power is not None and speed else None

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from rigdesign.rexs.gear_unit import ShaftSection, UnitBearing, UnitShaft
-from rigdesign.rexs_case.bearing_keys import gear_position, tabled_bearing
+from rigdesign.rexs_case.bearing_choice import tabled_bearing
+from rigdesign.rexs_case.bearing_keys import gear_position
 from rigdesign.rexs_case.entries import Entry, Origins, Table, assumed, millimetres
 from rigdesign.rexs_case.stage import SeatedGear, Stage
 
