@@ -92,6 +92,17 @@ def has_own_numbers(bearing: UnitBearing) -> bool:
     return None not in stated and (bearing.outer_diameter or 0.0) > 1.2 * (bearing.inner_diameter or 0.0)
 
 
+def example_designation(diameter: float | None) -> str:
+    """A tabled bearing that holds its shaft, with the bore that is nearest to a shaft diameter [m]."""
+    from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
+
+    known = [catalogue_bearing(name) for name in tabled_designations()]
+    wanted = 0.04 if diameter is None else diameter
+    return min(
+        (item for item in known if item.locating), key=lambda item: abs(item.bore - wanted)
+    ).designation
+
+
 def can_hold(bearing: UnitBearing) -> bool:
     """Whether the bearing, as the case will have it, carries axial load."""
     if bearing.kind == "journal":
@@ -100,6 +111,6 @@ def can_hold(bearing: UnitBearing) -> bool:
     if tabled is not None:
         return tabled.locating
     if sibling is None:
-        return False
+        return bearing.axial_force in ("both_directions", "positive", "negative")
     free = sibling.kind == "cylindrical_roller" and bearing.axial_force == "no_direction"
     return not free if has_own_numbers(bearing) else sibling.locating

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from rigdesign.rexs.gear_unit import UnitBearing
 from rigdesign.rexs_case.bearing_choice import (
     can_hold,
+    example_designation,
     has_own_numbers,
     nearest_tabled,
     same_bore,
@@ -24,7 +25,7 @@ from rigdesign.rexs_case.entries import (
     quantity,
     quoted,
 )
-from rigdesign.rexs_case.stage import SIDES, SeatedGear, Stage
+from rigdesign.rexs_case.stage import SIDES, SeatedGear, Stage, diameter_at
 
 if TYPE_CHECKING:
     from dynamics.bearing.rolling_catalogue import CatalogueBearing
@@ -38,6 +39,7 @@ class Seat:
     """A bearing with its place in the case.
 
     locating : whether it holds its shaft, by the file or because one has to
+    diameter : of the shaft section there [m]
     """
 
     name: str
@@ -46,6 +48,7 @@ class Seat:
     bearing: UnitBearing
     position: float | None
     locating: Literal["stated", "assumed", ""]
+    diameter: float | None
 
 
 def bearing_tables(origins: Origins, stage: Stage) -> Iterator[Table]:
@@ -85,8 +88,13 @@ def _seats(seated: SeatedGear, helical: bool) -> Iterator[Seat]:
             side=SIDES[number],
             bearing=bearing,
             position=places[number] if known else None,
+            diameter=_section_diameter(seated, places[number]),
             locating="stated" if number == holds else "assumed" if number == wanted else "",
         )
+
+
+def _section_diameter(seated: SeatedGear, place: float | None) -> float | None:
+    return None if seated.shaft is None or place is None else diameter_at(seated.shaft, place)
 
 
 def _ordered(seated: SeatedGear, places: list[float | None]) -> bool:
@@ -150,7 +158,8 @@ def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Ta
         reason = f"stands for {written}, which is not tabled: the nearest one in bore and outside diameter"
         entries.append(assumed("designation", quoted(sibling.designation), reason))
     else:
-        entries.append(needed("designation", '"NU 208"', "designation or catalogue numbers of this bearing"))
+        example = quoted(example_designation(seat.diameter))
+        entries.append(needed("designation", example, _missing(seat)))
     if seat.locating == "stated":
         entries.append(origins.stated("locating", "true", f"{at}.axial_force"))
     elif seat.locating == "assumed":
@@ -159,6 +168,14 @@ def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Ta
     yield Table(path, tuple(entries), (title,))
     if numbers:
         yield Table(f"{path}.catalogue", numbers)
+
+
+def _missing(seat: Seat) -> str:
+    """What is to be given of a bearing, with what is known of it."""
+    written = seat.bearing.catalogue.designation or seat.bearing.name
+    known = "" if not written else f" ({written})"
+    bore = "" if seat.diameter is None else f"; the shaft has {1e3 * seat.diameter:.4g} mm there"
+    return f"designation or catalogue numbers of this bearing{known}{bore}"
 
 
 def _condition(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:

@@ -6,10 +6,8 @@ from rigdesign.rexs.gear_unit import ShaftSection, UnitBearing, UnitShaft
 from rigdesign.rexs_case.bearing_choice import tabled_bearing
 from rigdesign.rexs_case.bearing_keys import gear_position
 from rigdesign.rexs_case.entries import Entry, Origins, Table, assumed, millimetres
-from rigdesign.rexs_case.stage import SeatedGear, Stage
+from rigdesign.rexs_case.stage import SAME, SeatedGear, Stage, diameter_at, mean_diameter
 
-SAME = 1e-6
-"""Difference of two measures that is round-off [m]."""
 STUB = 2.5
 """Length from the rear bearing to the coupling, in diameters of the shaft, as by the defaults of a drivetrain."""
 
@@ -33,11 +31,11 @@ def _sections(origins: Origins, seated: SeatedGear) -> Entry | None:
     if bores[0] is None or bores[1] is None:
         return None
     if _connected(shaft) and all(
-        abs((_diameter(shaft, place) or 0.0) - bore) <= SAME
+        abs((diameter_at(shaft, place) or 0.0) - bore) <= SAME
         for place, bore in ((front, bores[0]), (rear, bores[1]))
     ):
         first = f"shafts[{shaft.id}].sections[{shaft.sections[0].id}]"
-        value = _written([(item.length, _mean(item), _inner(item)) for item in shaft.sections])
+        value = _written([(item.length, mean_diameter(item), _inner(item)) for item in shaft.sections])
         targets = [
             item for item in origins.under(f"shafts[{shaft.id}].sections") if not item.startswith(first)
         ]
@@ -59,25 +57,14 @@ def _connected(shaft: UnitShaft) -> bool:
     """Whether the sections follow each other from the start of the shaft without a gap."""
     end = 0.0
     for section in shaft.sections:
-        if abs(section.start - end) > SAME or section.length <= 0.0 or _inner(section) >= _mean(section):
+        if (
+            abs(section.start - end) > SAME
+            or section.length <= 0.0
+            or _inner(section) >= mean_diameter(section)
+        ):
             return False
         end += section.length
     return bool(shaft.sections)
-
-
-def _diameter(shaft: UnitShaft, place: float) -> float | None:
-    """Outside diameter at a place, at a step the smaller one."""
-    here = [
-        _mean(item)
-        for item in shaft.sections
-        if item.start - SAME <= place <= item.start + item.length + SAME
-    ]
-    return min(here, default=None)
-
-
-def _mean(section: ShaftSection) -> float:
-    """Of a cone its mean diameter."""
-    return 0.5 * (section.outer_begin + section.outer_end)
 
 
 def _inner(section: ShaftSection) -> float:

@@ -4,9 +4,11 @@ from dataclasses import dataclass
 from math import copysign
 
 from rigdesign.base.errors import UsageError
-from rigdesign.rexs.gear_unit import GearUnit, UnitBearing, UnitGear, UnitMesh, UnitShaft
+from rigdesign.rexs.gear_unit import GearUnit, ShaftSection, UnitBearing, UnitGear, UnitMesh, UnitShaft
 
 SIDES = ("front", "rear")
+SAME = 1e-6
+"""Difference of two measures that is round-off [m]."""
 
 
 @dataclass(frozen=True)
@@ -113,3 +115,18 @@ def _seated(unit: GearUnit, name: str, gear: UnitGear, first: UnitGear) -> Seate
 
 def _shaft(unit: GearUnit, gear: UnitGear) -> UnitShaft | None:
     return next((shaft for shaft in unit.shafts if shaft.id == gear.shaft), None)
+
+
+def diameter_at(shaft: UnitShaft, place: float) -> float | None:
+    """Outside diameter at a place, at a step the smaller one."""
+    here = [
+        mean_diameter(item)
+        for item in shaft.sections
+        if item.start - SAME <= place <= item.start + item.length + SAME
+    ]
+    return min(here, default=None)
+
+
+def mean_diameter(section: ShaftSection) -> float:
+    """Of a cone its mean diameter."""
+    return 0.5 * (section.outer_begin + section.outer_end)
