@@ -1,7 +1,7 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, diff, validate, explain, new, mesh, schema, doctor, completion; ``--verbose``
-and ``--quiet`` go with each.
+Commands: check, study, compare, diagnose, diff, validate, explain, new, import, mesh, schema, doctor, completion;
+``--verbose`` and ``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; diff: both can be read; validate: no
 gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is
@@ -21,6 +21,7 @@ from rigdesign.cli.commands import (
     diff,
     doctor,
     explain,
+    import_rexs,
     mesh,
     new,
     schema,
@@ -39,6 +40,7 @@ __all__ = [
     "diff",
     "doctor",
     "explain",
+    "import_rexs",
     "main",
     "mesh",
     "new",

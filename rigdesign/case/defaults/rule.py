@@ -111,9 +111,17 @@ def fill(tree: RawTree, rule: Rule) -> None:
         if depth and not tree.has(".".join(keys[:depth])):
             continue
         if rule.completes and tree.has(".".join(keys)):
-            _complete(tree.at(".".join(keys)), rule.known(tree, *names))
-        elif not tree.has(".".join(keys)) and (found := rule.known(tree, *names)) is not None:
+            _complete(tree.at(".".join(keys)), _known(rule, tree, names))
+        elif not tree.has(".".join(keys)) and (found := _known(rule, tree, names)) is not None:
             _insert(tree.root, keys, _written(found))
+
+
+def _known(rule: Rule, tree: RawTree, names: tuple[str, ...]) -> Filling:
+    """What a rule knows: nothing where a stated value is so far beyond its limits that no number follows from it."""
+    try:
+        return rule.known(tree, *names)
+    except OverflowError:
+        return None
 
 
 def _complete(stated: Any, found: Filling) -> None:

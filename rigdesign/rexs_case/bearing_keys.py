@@ -1,0 +1,272 @@
+"""Keys of the bearings: a tabled designation, else the numbers of the file, else a tabled bearing of the same bore."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from rigdesign.rexs.gear_unit import UnitBearing
+from rigdesign.rexs_case.bearing_choice import (
+    can_hold,
+    example_designation,
+    has_own_numbers,
+    nearest_tabled,
+    same_bore,
+    series_of,
+    tabled_bearing,
+)
+from rigdesign.rexs_case.entries import (
+    Entry,
+    Origins,
+    Table,
+    assumed,
+    millimetres,
+    needed,
+    quantity,
+    quoted,
+)
+from rigdesign.rexs_case.stage import SIDES, SeatedGear, Stage, diameter_at
+
+if TYPE_CHECKING:
+    from dynamics.bearing.rolling_catalogue import CatalogueBearing
+
+CLASSES = ("C2", "CN", "C3", "C4", "C5")
+RPM = math.pi / 30.0
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A bearing with its place in the case.
+
+    locating : whether it holds its shaft, by the file or because one has to
+    diameter : of the shaft section there [m]
+    """
+
+    name: str
+    shaft: str
+    side: str
+    bearing: UnitBearing
+    position: float | None
+    locating: Literal["stated", "assumed", ""]
+    diameter: float | None
+
+
+def bearing_tables(origins: Origins, stage: Stage) -> Iterator[Table]:
+    """The bearings of both shafts; a shaft with less than two gets what the user has to give."""
+    helical = bool(stage.pinion.gear.helix_angle)
+    for seated in stage.gears:
+        for seat in _seats(seated, helical):
+            path = f"gearboxes.test.bearings.{seat.name}"
+            title = f"{origins.file}: bearing {seat.bearing.id} {seat.bearing.name}"
+            if seat.bearing.kind == "journal":
+                yield Table(path, (*_place(origins, seat), *_journal(origins, seat.bearing)), (title,))
+            else:
+                yield from _rolling(origins, seat, path, title)
+        for side in SIDES[len(seated.bearings) :]:
+            remedy = f"the file has {len(seated.bearings)} bearings on the shaft of the {seated.name}"
+            example = '{ type = "rolling", designation = "NU 208" }'
+            entry = needed(
+                f"{seated.name}_{side}", example.replace("{ ", f"{{ {_at(seated, side)}, "), remedy
+            )
+            yield Table("gearboxes.test.bearings", (entry,))
+
+
+def _at(seated: SeatedGear, side: str) -> str:
+    return f'shaft = "test_{seated.name}", side = "{side}"'
+
+
+def _seats(seated: SeatedGear, helical: bool) -> Iterator[Seat]:
+    places = [seated.bearing_at(bearing) for bearing in seated.bearings]
+    known = _ordered(seated, places)
+    holds = _locating(seated.bearings)
+    able = [number for number, bearing in enumerate(seated.bearings) if can_hold(bearing)]
+    wanted = able[-1] if helical and holds is None and able else None
+    for number, bearing in enumerate(seated.bearings):
+        yield Seat(
+            name=f"{seated.name}_{SIDES[number]}",
+            shaft=f"test_{seated.name}",
+            side=SIDES[number],
+            bearing=bearing,
+            position=places[number] if known else None,
+            diameter=_section_diameter(seated, places[number]),
+            locating="stated" if number == holds else "assumed" if number == wanted else "",
+        )
+
+
+def _section_diameter(seated: SeatedGear, place: float | None) -> float | None:
+    return None if seated.shaft is None or place is None else diameter_at(seated.shaft, place)
+
+
+def _ordered(seated: SeatedGear, places: list[float | None]) -> bool:
+    """Whether front bearing, gear and rear bearing stand on the shaft in this order, counted from its start."""
+    front_to_rear = [places[0] if places else None, seated.gear.position, *places[1:]]
+    known = [place for place in front_to_rear if place is not None]
+    return seated.direction > 0.0 and len(known) == 3 and 0.0 <= known[0] < known[1] < known[2]
+
+
+def gear_position(seated: SeatedGear) -> float | None:
+    """Middle of the face from the start of the shaft, where its bearings have places as well."""
+    places = [seated.bearing_at(bearing) for bearing in seated.bearings]
+    return seated.gear.position if _ordered(seated, places) else None
+
+
+def _locating(bearings: tuple[UnitBearing, ...]) -> int | None:
+    """Which bearing holds the shaft: that for both directions, else the first for one; None leaves it open."""
+    for wanted in (("both_directions",), ("positive", "negative")):
+        for number, bearing in enumerate(bearings):
+            if bearing.axial_force in wanted and can_hold(bearing):
+                return number
+    return None
+
+
+def _place(origins: Origins, seat: Seat) -> Iterator[Entry]:
+    at = f"bearings[{seat.bearing.id}]"
+    yield origins.stated("shaft", quoted(seat.shaft), note="shaft of the gear")
+    yield origins.stated("side", quoted(seat.side), note="order along the shaft")
+    if seat.position is not None:
+        side = "inner" if origins.knows(f"{at}.place.inner_position") else "outer"
+        yield origins.stated("position", millimetres(seat.position), f"{at}.place.{side}_position")
+
+
+def _journal(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:
+    at = f"bearings[{bearing.id}]"
+    if bearing.inner_diameter is None:
+        yield needed("diameter", '"40 mm"', "diameter of the journal")
+    else:
+        yield origins.stated("diameter", millimetres(bearing.inner_diameter), f"{at}.inner_diameter")
+    if bearing.width is not None:
+        yield origins.stated("width", millimetres(bearing.width), f"{at}.width")
+    if bearing.radial_clearance:
+        value = quantity(1e6 * bearing.radial_clearance, "um")
+        yield origins.stated("diametral_clearance", value, f"{at}.radial_clearance")
+
+
+def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Table]:
+    bearing, at = seat.bearing, f"bearings[{seat.bearing.id}]"
+    tabled, sibling = tabled_bearing(bearing), nearest_tabled(bearing)
+    kind = origins.stated("type", '"rolling"', note="rolling bearing")
+    entries = [Entry("type", '"rolling"', "stated", kind.text, markable=False), *_place(origins, seat)]
+    numbers: tuple[Entry, ...] = ()
+    if tabled is not None:
+        entries.append(
+            origins.stated("designation", quoted(tabled.designation), f"{at}.catalogue.designation")
+        )
+    elif sibling is not None and has_own_numbers(bearing):
+        numbers = tuple(_catalogue(origins, bearing, sibling))
+    elif sibling is not None and same_bore(bearing, sibling):
+        written = bearing.catalogue.designation or bearing.name or "a bearing without designation"
+        reason = f"stands for {written}, which is not tabled: the nearest one in bore and outside diameter"
+        entries.append(assumed("designation", quoted(sibling.designation), reason))
+    else:
+        example = quoted(example_designation(seat.diameter))
+        entries.append(needed("designation", example, _missing(seat)))
+    if seat.locating == "stated":
+        entries.append(origins.stated("locating", "true", f"{at}.axial_force"))
+    elif seat.locating == "assumed":
+        entries.append(assumed("locating", "true", "one bearing takes the axial force of helical gears"))
+    entries += _condition(origins, bearing)
+    yield Table(path, tuple(entries), (title,))
+    if numbers:
+        yield Table(f"{path}.catalogue", numbers)
+
+
+def _missing(seat: Seat) -> str:
+    """What is to be given of a bearing, with what is known of it."""
+    written = seat.bearing.catalogue.designation or seat.bearing.name
+    known = "" if not written else f" ({written})"
+    bore = "" if seat.diameter is None else f"; the shaft has {1e3 * seat.diameter:.4g} mm there"
+    return f"designation or catalogue numbers of this bearing{known}{bore}"
+
+
+def _condition(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:
+    """Clearance as delivered, and cleanliness; a clearance in operation is computed."""
+    at, clearance = f"bearings[{bearing.id}]", bearing.radial_clearance
+    operating = origins.attribute(f"{at}.radial_clearance").startswith("operating")
+    if clearance is not None and clearance > 0.0 and not operating:
+        yield origins.stated("radial_clearance", quantity(1e6 * clearance, "um"), f"{at}.radial_clearance")
+    name = (bearing.clearance_class or "").replace("C0", "CN")
+    if name in CLASSES:
+        yield origins.stated("clearance_class", quoted(name), f"{at}.clearance_class")
+    factor = bearing.catalogue.contamination_factor
+    if factor is not None and factor <= 1.0:
+        yield origins.stated("contamination_factor", f"{factor:.9g}", f"{at}.catalogue.contamination_factor")
+
+
+def _catalogue(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing") -> Iterator[Entry]:
+    """Numbers of the file, and what it lacks from a tabled bearing of the kind, scaled by its diameters."""
+    at, data = f"bearings[{bearing.id}]", bearing.catalogue
+    bore, outside = bearing.inner_diameter or 0.0, bearing.outer_diameter or 0.0
+    like = f"as {sibling.designation}"
+    yield origins.stated("kind", quoted(sibling.kind), f"{at}.catalogue.type")
+    if (series := series_of(bearing)) is not None:
+        yield origins.stated("series", quoted(series), f"{at}.catalogue.designation")
+    else:
+        yield assumed("series", quoted(sibling.series), f"{like}, the nearest tabled bearing of the kind")
+    yield origins.stated("bore", millimetres(bore), f"{at}.inner_diameter")
+    yield origins.stated("outside_diameter", millimetres(outside), f"{at}.outer_diameter")
+    yield origins.stated("width", millimetres(bearing.width or 0.0), f"{at}.width")
+    for key, force, field in (
+        ("dynamic_rating", data.dynamic_load_rating, "dynamic_load_rating"),
+        ("static_rating", data.static_load_rating, "static_load_rating"),
+        ("fatigue_limit", data.fatigue_limit_load, "fatigue_limit_load"),
+    ):
+        if force is not None:
+            yield origins.stated(key, quantity(force, "N"), f"{at}.catalogue.{field}")
+    scale = sibling.mean_diameter / (0.5 * (bore + outside))
+    for key, speed, of_sibling in (
+        ("limiting_speed", data.limiting_speed, sibling.limiting_speed),
+        ("reference_speed", data.reference_speed, sibling.reference_speed),
+    ):
+        if speed is not None:
+            yield origins.stated(key, quantity(speed / RPM, "rpm"), f"{at}.catalogue.{key}")
+        else:
+            value = of_sibling * scale / RPM
+            ends = (f'"{0.7 * value:.3g} rpm"', f'"{1.3 * value:.3g} rpm"')
+            yield assumed(key, f'"{value:.3g} rpm"', f"{like}: same speed times mean diameter", *ends)
+    yield from _of_kind(origins, bearing, sibling, like)
+
+
+def _of_kind(
+    origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing", like: str
+) -> Iterator[Entry]:
+    """What only one kind of bearing has: raceways, contact angle and axial factors."""
+    at, data = f"bearings[{bearing.id}]", bearing.catalogue
+    if sibling.kind == "cylindrical_roller":
+        bore, outside = bearing.inner_diameter or 0.0, bearing.outer_diameter or 0.0
+        section = sibling.outside_diameter - sibling.bore
+        for key, raceway in (
+            ("inner_raceway", sibling.inner_raceway),
+            ("outer_raceway", sibling.outer_raceway),
+        ):
+            value = bore + (raceway - sibling.bore) / section * (outside - bore)
+            yield assumed(key, millimetres(round(value, 5)), f"{like}: same share of the section height")
+        if bearing.axial_force is not None:
+            carries = "false" if bearing.axial_force == "no_direction" else "true"
+            yield origins.stated("carries_axial_load", carries, f"{at}.axial_force")
+    if sibling.kind not in ("tapered_roller", "angular_contact_ball"):
+        return
+    angle = data.contact_angle or (math.atan(data.limit_e / 1.5) if data.limit_e else None)
+    for key, stated, of_sibling, unit, field in (
+        (
+            "contact_angle",
+            angle and math.degrees(angle),
+            math.degrees(sibling.contact_angle),
+            "deg",
+            "contact_angle",
+        ),
+        ("axial_limit", data.limit_e, sibling.axial_limit, "", "limit_e"),
+        ("axial_factor", data.axial_factor, sibling.axial_factor, "", "axial_factor"),
+        (
+            "static_axial_factor",
+            data.static_axial_factor,
+            sibling.static_axial_factor,
+            "",
+            "static_axial_factor",
+        ),
+    ):
+        value = stated or of_sibling
+        text = quantity(value, unit) if unit else f"{value:.9g}"
+        if stated:
+            yield origins.stated(key, text, f"{at}.catalogue.{field}", f"{at}.catalogue.limit_e")
+        else:
+            yield assumed(key, text, f"{like}, the nearest tabled bearing of the kind")

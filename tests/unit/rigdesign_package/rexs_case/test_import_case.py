@@ -1,0 +1,227 @@
+"""`rigdesign import`: a REXS file becomes a case that loads, every value with its source, nothing overwritten."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from rigdesign.base.errors import CaseError, OutputError, RexsError, UsageError
+from rigdesign.case import load_case
+from rigdesign.rexs.gear_unit_import import import_gear_unit
+from rigdesign.rexs.reader import parse_rexs
+from rigdesign.rexs_case.pinion_load import pinion_loads
+from rigdesign.rexs_case.write import ImportedCase, import_case
+from tests.builders.commands import Rigdesign, rigdesign
+from tests.builders.rexs import SUFFIXES, archive_of, changed, rexs_file
+
+__all__ = ["rigdesign"]
+DESIGNATION = ('<attribute id="catalogue_designation">NJ 406</attribute>', "")
+VISCOSITY = '<attribute id="viscosity_at_100_degree_celsius" unit="mm^2 / s">10.7</attribute>'
+
+
+def of_changed(folder: Path, *changes: tuple[str, str]) -> ImportedCase:
+    """Import of the example unit with replacements in its text."""
+    file = folder / "unit.rexs"
+    file.write_bytes(changed(*changes))
+    return import_case(file, folder / "case")
+
+
+@pytest.mark.parametrize("version", ["1.0", "2.0"])
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_every_encoding_becomes_the_same_case_that_loads(tmp_path: Path, version: str, suffix: str) -> None:
+    result = import_case(rexs_file(version, suffix), tmp_path)
+    assert result.needed == ()
+    case = load_case(tmp_path)
+    box, slave = case.gearboxes["test"], case.gearboxes["slave"]
+    assert (box.gears["pinion"].teeth, box.gears["wheel"].teeth) == (16, 24)
+    assert (box.gears["pinion"].profile_shift, box.gears["wheel"].profile_shift) == (0.182, 0.172)
+    assert box.meshes["main"].centre_distance == pytest.approx(0.0915)
+    assert {bearing.label for bearing in box.bearings.values()} == {"NJ 406"}
+    assert [box.bearings[f"pinion_{side}"].position for side in ("front", "rear")] == [0.02, 0.115]
+    assert box.sump is not None
+    assert case.schedule.test_torque == pytest.approx(372.6)
+    assert case.schedule.test_speed == pytest.approx(2250.0 * math.pi / 30.0)
+    assert slave.gears["pinion"].face_width == box.gears["pinion"].face_width
+    assert box.housing is None
+    assert slave.housing is None
+
+
+def test_tips_are_those_of_the_file(tmp_path: Path) -> None:
+    """d_a = m (z + 2 x + 2) - 2 k of ISO 21771 gives the stated diameters back."""
+    import_case(rexs_file(), tmp_path)
+    for gear, tip in zip(load_case(tmp_path).gearboxes["test"].gears.values(), (82.46, 118.36), strict=True):
+        assert gear.profile_shift is not None
+        full = 4.5 * (gear.teeth + 2.0 * gear.profile_shift + 2.0)
+        assert full - 2e3 * gear.tip_shortening == pytest.approx(tip, abs=1e-6)
+
+
+def test_every_value_has_its_source_and_the_account_is_complete(tmp_path: Path) -> None:
+    result = import_case(rexs_file(), tmp_path)
+    marks = {mark.path: mark for mark in load_case(tmp_path).origin.marks}
+    for path, entry in result.stated:
+        source = marks[path].source
+        assert source == entry.text
+        assert source.startswith("fzg_2.0.rexs: ")
+    assert (
+        marks["gearboxes.test.gears.pinion.teeth"].source
+        == "fzg_2.0.rexs: cylindrical_gear 11, number_of_teeth"
+    )
+    assert marks["gearboxes.test.oil.level"].assumed
+    unit = import_gear_unit(parse_rexs(rexs_file().read_bytes(), "fzg"))
+    assert len(result.mapped) + len(result.listed) == len(unit.mapped) + len(unit.listed)
+    assert result.assumed[0].path == "gearboxes.slave"
+
+
+def test_shafts_are_those_of_the_file(tmp_path: Path) -> None:
+    import_case(rexs_file(), tmp_path)
+    power = load_case(tmp_path).drivetrain
+    assert power is not None
+    for shaft in ("test_pinion", "slave_wheel"):
+        assert [item.outer_diameter for item in power.shafts[shaft].sections] == pytest.approx(
+            [0.03, 0.036, 0.03]
+        )
+
+
+def test_other_load_cases_stand_in_comments(tmp_path: Path) -> None:
+    import_case(rexs_file(), tmp_path)
+    assert (
+        "# load case 2: 302 N m, 1500 rpm, 40 % of the time, oil 80 degC"
+        in (tmp_path / "case.toml").read_text()
+    )
+
+
+@pytest.mark.parametrize("side", ["pinion", "wheel"])
+def test_torque_at_the_pinion_is_the_same_power_from_either_side(side: str) -> None:
+    """372.6 N m at 2250 rpm on the pinion are 558.9 N m at 1500 rpm on the wheel."""
+    unit = import_gear_unit(parse_rexs(rexs_file().read_bytes(), "fzg")).unit
+    if side == "wheel":
+        from dataclasses import replace
+
+        case = unit.operating_cases[0]
+        load = replace(case.loads[0], shaft=4, torque=-372.6 * 1.5)
+        case = replace(case, speeds={4: -1500.0 * math.pi / 30.0}, loads=(load,))
+        unit = replace(unit, operating_cases=(case,))
+    first = pinion_loads(unit, unit.meshes[0])[0]
+    assert first.torque == pytest.approx(372.6)
+    assert first.speed == pytest.approx(2250.0 * math.pi / 30.0)
+
+
+def test_what_is_needed_is_a_comment_with_an_example_that_loads(tmp_path: Path) -> None:
+    result = of_changed(tmp_path, (VISCOSITY, ""))
+    assert len(result.needed) == 1
+    assert result.needed[0].startswith("gearboxes.test.oil.oil, e.g.")
+    path = tmp_path / "case/case.toml"
+    with pytest.raises(CaseError, match=r"gearboxes\.test\.oil\.oil"):
+        load_case(path)
+    path.write_text(path.read_text().replace('# oil = "FVA 3A"', 'oil = "FVA 3A"'))
+    assert load_case(path).gearboxes["test"].sump is not None
+
+
+def test_a_bearing_that_is_not_tabled_keeps_its_own_numbers(tmp_path: Path) -> None:
+    result = of_changed(tmp_path, (">NJ 406<", ">NJ 9999<"))
+    assert result.needed == ()
+    bearing = load_case(tmp_path / "case").gearboxes["test"].bearings["pinion_front"]
+    assert bearing.type == "rolling"
+    assert (bearing.data.dynamic_rating, bearing.data.static_rating) == (60500.0, 53000.0)
+    assert bearing.data.bore < bearing.data.inner_raceway < bearing.data.outer_raceway
+    speeds = [item for item in result.assumed if item.path.endswith("pinion_front.catalogue.limiting_speed")]
+    assert len(speeds) == 1
+
+
+def test_a_bearing_without_numbers_gets_a_tabled_one_of_its_bore(tmp_path: Path) -> None:
+    loads = '<attribute id="radial_dynamic_load_rating" unit="kN">60.5</attribute>'
+    result = of_changed(tmp_path, (">NJ 406<", ">XY<"), (loads, ""))
+    assert result.needed == ()
+    said = {item.path: item for item in result.assumed}["gearboxes.test.bearings.pinion_front.designation"]
+    assert "stands for XY" in said.reason
+    assert load_case(tmp_path / "case").gearboxes["test"].bearings["pinion_front"].shaft_diameter == 0.03
+
+
+def test_centre_distance_follows_from_the_profile_shifts(tmp_path: Path) -> None:
+    of_changed(tmp_path, ('<attribute id="center_distance" unit="mm">91.5</attribute>', ""))
+    distance = load_case(tmp_path / "case").gearboxes["test"].meshes["main"].centre_distance
+    assert distance == pytest.approx(0.0915, abs=5e-6)
+
+
+def test_a_contradicting_profile_shift_is_left_out_and_said(tmp_path: Path) -> None:
+    of_changed(tmp_path, (">0.172<", ">0.3<"))
+    assert "contradicts the centre distance" in (tmp_path / "case/case.toml").read_text()
+    assert load_case(tmp_path / "case").gearboxes["test"].gears["wheel"].profile_shift is None
+
+
+def test_the_suggested_housing_loads(tmp_path: Path) -> None:
+    import_case(rexs_file(), tmp_path)
+    path = tmp_path / "case.toml"
+    text = path.read_text()
+    start, end = text.index("# [gearboxes.test.housing]"), text.index("# and then, in the table")
+    housing = text[start:end].replace("# ", "")
+    slave = 'like = "test"\n'
+    path.write_text(text.replace(text[start:end], housing).replace(slave, f'{slave}remove = ["housing"]\n'))
+    assert load_case(path).gearboxes["test"].housing is not None
+
+
+def test_a_case_is_never_overwritten(tmp_path: Path) -> None:
+    import_case(rexs_file(), tmp_path)
+    before = (tmp_path / "case.toml").read_bytes()
+    with pytest.raises(OutputError, match="is there already"):
+        import_case(rexs_file("1.0"), tmp_path)
+    assert (tmp_path / "case.toml").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"\x89PNG\r\n\x1a\n", "give a REXS file"),
+        (rexs_file().read_bytes()[:3000], "line"),
+        (archive_of({"unit.rexs": b"<" + b" " * 80_000_000}), "MB"),
+    ],
+)  # fmt: skip
+def test_bad_files_write_nothing(tmp_path: Path, rigdesign: Rigdesign, content: bytes, words: str) -> None:
+    file = tmp_path / "bad.rexsz"
+    file.write_bytes(content)
+    ended = rigdesign("import", file, "--out", tmp_path / "case")
+    assert ended.status == RexsError.exit_code == 2
+    assert words in ended.err
+    assert not (tmp_path / "case").exists()
+
+
+def test_a_stage_that_is_not_there_lists_those_that_are(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"--stage 2: no such stage(.|\n)*1: 16/24 teeth, module 4.5 mm"):
+        import_case(rexs_file(), tmp_path / "case", 2)
+    assert not (tmp_path / "case").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            'id="number_of_teeth" unit="none">16<',
+            'id="number_of_teeth" unit="none">many<',
+            "teeth, e.g. 24",
+        ),
+        ('id="normal_module" unit="mm">4.5<', 'id="normal_module" unit="mm">1e300<', "normal_module"),
+        ('unit="N m">372.6<', 'unit="N m">1e300<', "schedule.test_torque"),
+    ],
+)
+def test_unusable_values_are_said_and_the_rest_is_written(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    result = of_changed(tmp_path, (old, new))
+    assert any(words in line for line in result.needed)
+    assert "face_width" in (tmp_path / "case/case.toml").read_text()
+
+
+def test_a_file_without_a_stage_makes_no_case(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no cylindrical stage"):
+        of_changed(tmp_path, ('type="cylindrical_stage"', 'type="bevel_stage"'))
+    assert not (tmp_path / "case").exists()
+
+
+def test_the_terminal_accounts_for_the_file(tmp_path: Path, rigdesign: Rigdesign) -> None:
+    ended = rigdesign("import", rexs_file(), "--out", tmp_path / "case")
+    assert ended.status == 0
+    for words in (
+        "mapped: ", "listed, not mapped: ", "missing in the file, assumed: ", "the slave gearbox equals",
+        "nothing more is needed",
+    ):  # fmt: skip
+        assert words in ended.out
