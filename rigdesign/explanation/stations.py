@@ -172,9 +172,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__bearing_films="film, drag torque and heat of the bearing",
         case__geometry="journal and bore in the housing",
     ),
+    "gearboxes.*.bearings.*.catalogue": _at(case__rolling_bearing="numbers of a bearing that no table has"),
     "gearboxes.*.bearings.*.diametral_clearance": _at(
-        coupling__bearing_films="film of the bearing",
-        coupling__expansion="clearance that thermal expansion changes",
+        case__bearings="clearance that thermal expansion changes, film of the bearing"
     ),
     "gearboxes.*.bearings.*.locating": _at(case__geometry="point from which the shaft expands axially"),
     "gearboxes.*.bearings.*.axial_play": _at(
@@ -186,6 +186,27 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.bearings.*.radial_stiffness": _at(case__bearings="kept for the record, enters nothing"),
     "gearboxes.*.bearings.*.radial_damping": _at(case__bearings="kept for the record, enters nothing"),
+    **{
+        f"oil_circuits.*{table}": _at(
+            case__oil_circuits="part of the circuit that feeds its consumers",
+            coupling__oil_circuits="temperature at which oil is fed, heat of heater and cooler",
+        )
+        for table in (
+            "",
+            ".tank",
+            ".pump",
+            ".heater",
+            ".tank_cooler",
+            ".tank_cooler.coolant",
+            ".tank_cooler.rated",
+            ".lines.*",
+            ".lines.*.cooler",
+            ".lines.*.cooler.coolant",
+            ".lines.*.cooler.rated",
+            ".lines.*.supply_pipe",
+            ".lines.*.return_pipe",
+        )
+    },
     "gearboxes.*.seals.*": _at(
         coupling__losses="loss of the seals",
         case__geometry="gap between shaft and wall",

@@ -1,11 +1,13 @@
 """Small oil circuits for tests."""
 
+from pathlib import Path
 from typing import Any
 
 from rigdesign.oil_circuit.circuit import Circuit, SupplyLine
 from rigdesign.oil_circuit.cooler import Coolant, Cooler, RatedPoint
 from rigdesign.oil_circuit.parts import Consumer, Tank
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699, Oil
+from tests.builders.paths import CASES
 
 ZERO = 273.15
 LITRE_A_MINUTE = 1e-3 / 60.0
@@ -27,3 +29,25 @@ def line(name: str = "gears", litres: float = 15.0, **given: Any) -> SupplyLine:
 def circuit(*lines: SupplyLine, oil: Oil = MIL_PRF_23699, tank: Tank = TANK, **given: Any) -> Circuit:
     """A circuit of 80 l."""
     return Circuit(name="test", oil=oil, tank=tank, lines=lines or (line(),), **given)
+
+
+PLANT = f"""
+extends = "{(CASES / "uhcf_prototype" / "given_losses.toml").as_posix()}"
+name = "plant"
+title = "plant"
+[oil_circuits.warm]
+oil = "MIL-PRF-23699"
+tank = {{ volume = "60 l", fill = "45 l", suction_minimum = "10 l", wall_conductance = "4 W/K" }}
+pump = {{ flow = "6 l/min", pressure = "5 bar", efficiency = 0.7 }}
+heater = {{ power_limit = "1.5 kW", setpoint = "140 degC" }}
+[oil_circuits.warm.lines.mesh]
+consumers = ["test.gear_oil"]
+setpoint = "140 degC"
+"""
+
+
+def plant_case(folder: Path) -> Path:
+    """Write the prototype with given losses, its gear oil from a circuit whose heater is 1.4 kW short."""
+    file = folder / "case.toml"
+    file.write_text(PLANT, encoding="utf-8")
+    return file

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 
+from dynamics.bearing.rolling_state import RollingState
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
 from rigdesign.coupling.initial_state import initial_state
@@ -26,6 +27,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.records.dynamics import bracing_drift
 from rigdesign.records.housing import cooling_balance
 from rigdesign.rig.model import Rig, build_rig
+from tests.builders.oil_circuit import plant_case
 
 CASE = "cases/uhcf_prototype"
 TEMPERATURE, LENGTH, TORQUE = 0.05, 0.5e-6, 1e-3
@@ -445,6 +447,49 @@ def test_too_few_iterations_show_their_residuals() -> None:
         solve_point(rig, held_points(rig)[-1])
     assert caught.value.exit_code == 3
     assert "numerics.coupling_passes" in str(caught.value)
+
+
+@cache
+def on_roller_bearings() -> tuple[Rig, PointResult]:
+    """The FZG rig: roller bearings that conduct to shaft and housing."""
+    rig = build_rig(load_case("cases/fzg"), "quick")
+    return rig, solve_point(rig, held_points(rig)[-1])
+
+
+def test_seat_temperature_cools_a_rolling_bearing() -> None:
+    """T = (P + G_s T_s + G_h T_h + C T_oil)/(G_s + G_h + C): seats left at room temperature take more heat away."""
+    rig, whole = on_roller_bearings()
+    frozen = frozenset({"seat_temperature"})
+    without = solve_point(rig, whole.point, freeze=frozen, start=whole.last.coupling_state)
+    name = "test.pinion_front"
+    found = []
+    for result in (whole, without):
+        state, bearing = result.last.coupling_state, result.last.bearings[name]
+        assert isinstance(bearing, RollingState)
+        shaft, housing = (state.seat_temperature[f"{name}.{seat}"] for seat in ("shaft", "housing"))
+        conductances = bearing.shaft_conductance, bearing.housing_conductance, bearing.capacity_rate
+        carried = math.fsum(
+            g * t for g, t in zip(conductances, (shaft, housing, state.oil_outlet["test.gear_oil"]))
+        )
+        by_hand = (bearing.power + carried) / math.fsum(conductances)
+        assert bearing.film_temperature == pytest.approx(by_hand, abs=TEMPERATURE)
+        found.append(bearing.film_temperature)
+    assert found[0] - found[1] > CLEAR * TEMPERATURE
+
+
+def test_oil_supply_feeds_what_the_heater_can_hold(tmp_path: Path) -> None:
+    """A heater that is 1.4 kW short: supply and outlet of the warm oil stay together, far below the setpoint."""
+    rig = build_rig(load_case(plant_case(tmp_path)), "quick")
+    whole = solve_point(rig, held_points(rig)[-1])
+    state = whole.last.coupling_state
+    without = solve_point(rig, whole.point, freeze=frozenset({"oil_supply"}), start=state)
+    stream, fed = (
+        next(s for s in result.last.streams if s.name == "test.gear_oil") for result in (whole, without)
+    )
+    assert fed.inlet == pytest.approx(413.15)
+    assert fed.inlet - stream.inlet > CLEAR * TEMPERATURE
+    moved = (fed.outlet - stream.outlet) / (fed.inlet - stream.inlet)
+    assert 0.5 < moved < 1.0
 
 
 def test_unknown_arrow_is_refused() -> None:

@@ -91,7 +91,9 @@ def test_a_shipped_case_is_found_by_its_name_from_anywhere(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert rigdesign.load_case("uhcf_prototype").path.parent.name == "uhcf_prototype"
-    with pytest.raises(rigdesign.CaseError, match=r"name of a shipped case: loop_1to1, .*uhcf_prototype"):
+    with pytest.raises(
+        rigdesign.CaseError, match=r"name of a shipped case: fzg, loop_1to1, .*uhcf_prototype"
+    ):
         rigdesign.load_case("uhcf_protoype")
     (tmp_path / "uhcf_prototype").mkdir()
     with pytest.raises(rigdesign.CaseError, match=r"no case\.toml in this folder"):

@@ -11,30 +11,14 @@ from rigdesign.oil_circuit.steady import SetpointNotHeldError
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.rig.model import Rig, build_rig
-from tests.builders.oil_circuit import ZERO
-from tests.builders.paths import CASES
+from tests.builders.oil_circuit import ZERO, plant_case
 
 pytestmark = pytest.mark.whole_run
-TEXT = f"""
-extends = "{(CASES / "uhcf_prototype" / "given_losses.toml").as_posix()}"
-name = "plant"
-title = "plant"
-[oil_circuits.warm]
-oil = "MIL-PRF-23699"
-tank = {{ volume = "60 l", fill = "45 l", suction_minimum = "10 l", wall_conductance = "4 W/K" }}
-pump = {{ flow = "6 l/min", pressure = "5 bar", efficiency = 0.7 }}
-heater = {{ power_limit = "1.5 kW", setpoint = "140 degC" }}
-[oil_circuits.warm.lines.mesh]
-consumers = ["test.gear_oil"]
-setpoint = "140 degC"
-"""
 
 
 @pytest.fixture(scope="module")
 def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
-    file = tmp_path_factory.mktemp("case") / "case.toml"
-    file.write_text(TEXT)
-    return load_case(file)
+    return load_case(plant_case(tmp_path_factory.mktemp("case")))
 
 
 @pytest.fixture(scope="module")

@@ -29,7 +29,10 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
     reference = SimpleNamespace(feeds={"gear_oil": (cool, 1), "bearing_oil": (cool, 4)})
     ambient = SimpleNamespace(warming_time=None)
     rig: Any = SimpleNamespace(
-        case=SimpleNamespace(gearboxes={"test": test, "reference": reference}, ambient=ambient)
+        case=SimpleNamespace(
+            gearboxes={"test": test, "reference": reference}, ambient=ambient, oil_circuits={}
+        ),
+        oil_circuits={},
     )
     heats = {
         "test.gear_oil": (413.15, -1400.0),
@@ -41,7 +44,7 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
         point=SimpleNamespace(stage="test"),
         losses=[SimpleNamespace(loss=SimpleNamespace(power=9300.0), pumped=0.0, not_heat=0.0)],
         streams=[
-            SimpleNamespace(name=name, inlet=inlet, heat=heat, flow=1e-4)
+            SimpleNamespace(name=name, inlet=inlet, heat=heat, to_tank=heat, flow=1e-4)
             for name, (inlet, heat) in heats.items()
         ],
         fields={},

@@ -170,13 +170,20 @@ def mark_or_die(task):
     return task.number
 
 
+def wait_for(path):
+    end = time.monotonic() + 60.0
+    while not path.exists() and time.monotonic() < end:
+        time.sleep(0.05)
+
+
 @pytest.mark.whole_run
 def test_what_is_finished_when_another_process_dies_is_not_computed_again(tmp_path):
     tasks = [Marked(str(tmp_path), number) for number in range(3)]
     with ProcessWorkers(2) as workers:
         outcomes = workers.compute(mark_or_die, tasks)
         found = [next(outcomes)]
-        time.sleep(4.0)  # 2 is finished, then 1 dies, before anybody asks
+        wait_for(tmp_path / "done-2")
+        time.sleep(4.0)  # 1 dies after it, before anybody asks
         found += outcomes
     assert sorted(found, key=lambda row: row[0]) == [(0, 0), (1, None), (2, 2)]
     assert len(list(tmp_path.glob("2-*"))) == 1
