@@ -69,6 +69,7 @@ class Predictor:
         self.features = features_of(self.settings, self.channels)
         if not self.settings:
             raise UsageError("no operating points; give one setting at least")
+        _require_held_sumps(case)
         with self._solving():
             self._reduced = ReducedRig(case, self.settings, self.channels, fidelity)
             self._points = self._reduced.converged_base()
@@ -284,3 +285,13 @@ class Predictor:
         """Errors of the tool, linear algebra on one thread."""
         with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
             yield
+
+
+def _require_held_sumps(case: Case) -> None:
+    """The reduced model knows the temperature of every oil that wets a housing."""
+    for name, box in case.gearboxes.items():
+        if box.housing is not None and box.gear_oil_temperature is None:
+            raise UsageError(
+                f"gearboxes.{name}.oil.sump_temperature is left out: the model that measured data are held against needs "
+                'it; state the measured one, e.g. sump_temperature = "90 degC"'
+            )

@@ -1,14 +1,17 @@
 """The reduced predictor against the full model, its derivatives against differences of its own values."""
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import changed_together, load_case
 from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
+from tests.builders.fzg_case import HELD, fzg_case
 from tests.builders.paths import CASES
 
 pytestmark = pytest.mark.whole_run
@@ -137,3 +140,10 @@ def test_a_loop_without_housing_has_no_links():
     full = predict(changed_together(case, TIGHT), settings, channels)
     assert predictor.base == pytest.approx(full.values, abs=5e-3)
     assert set(predictor.sources()) >= {"oil:test.gear_oil", "film:test.pinion_front"}
+
+
+def test_a_sump_that_finds_its_own_temperature_is_refused(tmp_path: Path) -> None:
+    case = load_case(fzg_case(tmp_path, sumps={"test": "", "slave": HELD}))
+    setting = OperatingCondition(name="a", speed=200.0, torque=300.0)
+    with pytest.raises(UsageError, match=r"gearboxes\.test\.oil\.sump_temperature is left out"):
+        Predictor(case, [setting], [Channel(name="power", quantity="motor_power")])
