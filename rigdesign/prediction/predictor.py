@@ -292,6 +292,6 @@ def _require_held_sumps(case: Case) -> None:
     for name, box in case.gearboxes.items():
         if box.housing is not None and box.gear_oil_temperature is None:
             raise UsageError(
-                f"gearboxes.{name}.oil.sump_temperature is left out: the model that measured data are held against needs "
-                'it; state the measured one, e.g. sump_temperature = "90 degC"'
+                f"gearboxes.{name}.oil.sump_temperature is left out: the model that measured data are held against "
+                'needs it; state the measured one, e.g. sump_temperature = "90 degC"'
             )
