@@ -1,10 +1,12 @@
 """How points are computed: any executor, once prepared, a defect stops, a point that fails is a result."""
 
 import csv
+import json
 import os
-import time
+import subprocess
+import sys
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from rigdesign.base.errors import MissingLibraryError
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers
 from rigdesign.cli.ending import exit_status
 from rigdesign.studies.solver import PointDefectError
+from tests.builders.paths import ROOT
 from tests.builders.study import InProcess, run_study
 from tests.builders.study_functions import CURVES, curves, defective, prepare_curves
 
@@ -151,41 +154,12 @@ def test_a_study_of_names_is_a_grid(tmp_path):
         assert [row["oil.name"] for row in csv.DictReader(table)] == ["FVA 3", "MIL-PRF-23699"]
 
 
-@dataclass(frozen=True)
-class Marked:
-    """A task that leaves a file each time it is computed."""
-
-    folder: str
-    number: int
-
-
-def mark_or_die(task):
-    (Path(task.folder) / f"{task.number}-{time.monotonic_ns()}").touch()
-    if task.number == 1:
-        while not list(Path(task.folder).glob("done-2")):
-            time.sleep(0.01)
-        time.sleep(0.5)  # until the outcome of 2 is with the pool
-        os._exit(9)
-    (Path(task.folder) / f"done-{task.number}").touch()
-    return task.number
-
-
-def wait_for(path):
-    end = time.monotonic() + 60.0
-    while not path.exists() and time.monotonic() < end:
-        time.sleep(0.05)
-
-
 @pytest.mark.whole_run
 def test_what_is_finished_when_another_process_dies_is_not_computed_again(tmp_path):
-    tasks = [Marked(str(tmp_path), number) for number in range(3)]
-    with ProcessWorkers(2) as workers:
-        outcomes = workers.compute(mark_or_die, tasks)
-        found = [next(outcomes)]
-        wait_for(tmp_path / "done-2")
-        time.sleep(4.0)  # 1 dies after it, before anybody asks
-        found += outcomes
-    assert sorted(found, key=lambda row: row[0]) == [(0, 0), (1, None), (2, 2)]
+    """In a process of its own, as a study is."""
+    subprocess.run([sys.executable, "-m", "tests.builders.dying_task", str(tmp_path)], check=True, cwd=ROOT)
+    found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
+    assert sorted(found, key=lambda row: row[0]) == [[0, 0], [1, None], [2, 2]]
     assert len(list(tmp_path.glob("2-*"))) == 1
     assert len(list(tmp_path.glob("1-*"))) == 2
 
