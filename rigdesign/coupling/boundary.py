@@ -1,6 +1,5 @@
 """Boundary conditions of a housing: the case's laws with this iteration's fluids, films, speeds and losses."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,7 +13,7 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
-from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.joints import behind_shell, foot_joint
@@ -186,16 +185,15 @@ def _with_free_sump(
     chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
     fed = context.box.fed_bearings is not None
     own = (GEAR_OIL,) if fed else (GEAR_OIL, BEARING_OIL, BEARING_FILM)
-    films = [
-        c
-        for c in conditions
-        if isinstance(c, Film) and c.kind.startswith(own) and c.fluid_temperature == chamber
-    ]
-    heat = math.fsum(
-        placed.into_oil - (placed.into_bearing_oil if fed else 0.0)
-        for placed in losses
-        if placed.gearbox == context.name
-    )
+    films: list[Film] = []
+    rest: list[Condition] = []
+    for condition in conditions:
+        film = condition if isinstance(condition, Film) else None
+        if film is not None and film.kind.startswith(own) and film.fluid_temperature == chamber:
+            films.append(film)
+        else:
+            rest.append(condition)
+    heat = heat_into_gear_oil(losses, context.name, bearings_fed=fed)
     sump = StreamNetwork(
         specific_heat=gear_oil(context.rig, context.name).heat_capacity(chamber),
         volumes=(Volume(name=GEAR_OIL, power=heat),),
@@ -203,7 +201,7 @@ def _with_free_sump(
             VolumeFilm(surface=film.surface, volume=GEAR_OIL, kind=film.kind, law=film.law) for film in films
         ),
     )
-    return [*(condition for condition in conditions if condition not in films), sump]
+    return [*rest, sump]
 
 
 def _radiation_in_film(context: _Context, entry: str, surface: str) -> bool:

@@ -11,7 +11,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import FedOil, JetOil
 from rigdesign.case.model import Case
 from rigdesign.case.oil_circuits import place_of
-from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.properties.oil import oil_outlet
 from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig
@@ -69,7 +69,7 @@ def oil_streams(
     for name, box in rig.case.gearboxes.items():
         own = [placed for placed in losses if placed.gearbox == name]
         into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
-        into_gears = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
+        into_gears = heat_into_gear_oil(own, name, bearings_fed=True)
         films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
         heat = wall_heat[f"{name}.gear_oil"]
         if box.fed_bearings is None:

@@ -1,5 +1,7 @@
 """A power loss with its place in the case and its way into oil and bodies."""
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from dynamics.losses.mesh_loss import Loss
@@ -40,3 +42,15 @@ class PlacedLoss:
     def into_bearing_oil(self) -> float:
         """Of ``into_oil``, what goes into the oil of the bearings [W]; the rest goes into that of the gears."""
         return self.into_oil * (1.0 if self.loss.kind == "bearing" else self.end_share)
+
+
+def heat_into_gear_oil(losses: Iterable[PlacedLoss], gearbox: str, *, bearings_fed: bool) -> float:
+    """Power that losses of a gearbox give to the oil of its gears at once [W].
+
+    bearings_fed : heat that arises at the bearings goes into an oil of their own; else into that of the gears too
+    """
+    return math.fsum(
+        placed.into_oil - (placed.into_bearing_oil if bearings_fed else 0.0)
+        for placed in losses
+        if placed.gearbox == gearbox
+    )

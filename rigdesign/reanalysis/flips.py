@@ -161,7 +161,7 @@ def _is(check: Check, patterns: Sequence[str]) -> bool:
 
 def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iterator[Candidate]:
     """Inputs of the design that may move the checks; gears of one box with the same width move together."""
-    written = {row.path: row.value for row in solved.case.inputs}
+    written = solved.case.origin.value_of
     for title, paths, in_heat in _inputs(solved.case, targets, heat):
         by_text: dict[str, list[str]] = {}
         for path in paths:

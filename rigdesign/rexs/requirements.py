@@ -18,7 +18,7 @@ class MissingInput:
 
     place : in the gear unit, e.g. ``gears[6].quality_grade``
     needed : True where nothing can be assumed for it
-    remedy : what to state, or what an assumption may rest on
+    remedy : what to state, or what an assumption may be taken from
     """
 
     place: str

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
-from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
@@ -87,7 +87,7 @@ def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tup
 def _gear_heat(rig: Rig, name: str, losses: Sequence[PlacedLoss]) -> float:
     """Losses into the gear oil [W]: with those of bearings that are not fed, but for the friction of nodes."""
     if rig.case.gearboxes[name].fed_bearings is not None:
-        return math.fsum(p.into_oil - p.into_bearing_oil for p in losses if p.gearbox == name)
+        return heat_into_gear_oil(losses, name, bearings_fed=True)
     seated = seated_bearings(rig, name)
     return math.fsum(
         placed.into_oil
