@@ -20,7 +20,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil import FEED, HEATER_AND_COOLER, LEAK
-from rigdesign.transient.oil_supply import StreamHeats, SupplyHistory
+from rigdesign.transient.oil_supply import StreamHeats, SupplyHistory, in_parts
 from rigdesign.transient.phases import Phase, Timeline
 from thermal.conditions.streams import StreamNetwork
 
@@ -66,12 +66,15 @@ def stream_heats(
 ) -> StreamHeats:
     """Heat of every oil stream over one branch from the histories of all its housings.
 
-    The housings have times of their own: each heat is interpolated to the times of all.
+    The housings have times of their own: each heat is interpolated to the times of all, and to parts of the steps that
+    the circuits need.
 
     supply : temperatures with which the housings were fed; None without oil circuits
     """
     first = histories[0]
     times = np.unique(np.concatenate([history.times for history in histories]))
+    if supply is not None:
+        times = in_parts(times)
     numbers = first.phase[np.minimum(np.searchsorted(first.times, times), len(first.times) - 1)]
     heats: dict[str, FloatArray] = {}
     for history in histories:

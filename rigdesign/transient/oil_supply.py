@@ -27,6 +27,8 @@ FloatArray = NDArray[np.float64]
 SWEEP_TOLERANCE = 0.5
 """Difference of the supply temperatures of housings and circuits that ends the sweeps [K]."""
 MOST_SWEEPS = 8
+PARTS = 4
+"""Parts of a time step of the housings in which the circuits are computed: supply temperatures are curved over it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,29 +166,30 @@ class Secants:
     """
 
     def __init__(self) -> None:
-        self._times: FloatArray | None = None
-        self._fed: list[FloatArray] = []
-        self._found: list[FloatArray] = []
+        self._sweeps: list[tuple[SupplyHistory, SupplyHistory]] = []
 
     def following(self, fed: SupplyHistory, found: SupplyHistory) -> SupplyHistory:
-        """What to feed next.
+        """What to feed next, at the times of ``found``.
 
         fed, found : that of this sweep, and what the circuits gave under its heats
         """
-        times = self._times = found.times if self._times is None else self._times
-        for history, kept in ((fed, self._fed), (found, self._found)):
-            kept.append(
-                np.concatenate(
-                    [np.interp(times, history.times, values) for values in history.supplies.values()]
-                )
-            )
-        after = self._found[-1]
-        if len(self._fed) > 1:
-            residuals = np.array(self._found) - np.array(self._fed)
+        self._sweeps.append((fed, found))
+        ins, outs = (
+            np.array([np.concatenate(list(each.sampled(found.times).values())) for each in histories])
+            for histories in zip(*self._sweeps, strict=True)
+        )
+        after = outs[-1]
+        if len(outs) > 1:
+            residuals = outs - ins
             shares = np.linalg.lstsq(np.diff(residuals, axis=0).T, residuals[-1], rcond=1e-6)[0]
-            after = after - np.diff(np.array(self._found), axis=0).T @ shares
+            after = after - np.diff(outs, axis=0).T @ shares
         parts = np.split(after, len(found.supplies))
-        return replace(found, times=times, supplies=dict(zip(found.supplies, parts, strict=True)))
+        return replace(found, supplies=dict(zip(found.supplies, parts, strict=True)))
+
+
+def in_parts(times: FloatArray) -> FloatArray:
+    """The times (n,), and between each two of them `PARTS` - 1 more."""
+    return np.interp(np.arange(PARTS * (len(times) - 1) + 1) / PARTS, np.arange(len(times)), times)
 
 
 def circuits_over(

@@ -1,6 +1,6 @@
 """An oil circuit and a body in turn, each over all times: the same as both in one set of equations."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 
@@ -15,11 +15,13 @@ from rigdesign.oil_circuit.parts import Heater, Tank
 from rigdesign.oil_circuit.state import CircuitState
 from rigdesign.properties.oil import FVA_3
 from rigdesign.transient.oil_supply import (
+    SWEEP_TOLERANCE,
     Secants,
     StreamHeats,
     SupplyHistory,
     WallAnswer,
     circuits_over,
+    in_parts,
 )
 from rigdesign.transient.phases import Knot, Phase
 from tests.builders.oil_circuit import ZERO, circuit, line
@@ -129,6 +131,33 @@ def test_walls_that_are_one_body_are_known_at_once() -> None:
     reference, _ = together(500.0)
     last = sweeps(2, exact, limit=500.0)[-1].supplies["gears"]
     assert np.max(np.abs(last - reference)) < 0.3
+
+
+def test_time_steps_of_housings_that_change_from_sweep_to_sweep_do_not_keep_them_apart() -> None:
+    """Supply temperatures are curved over the long steps of a housing: straight lines between the ends of its steps
+    would differ by more than the sweeps may, whenever the steps change."""
+    given = np.linspace(0.0, 1.0, 13) ** 2 * DURATION, np.linspace(0.0, 1.0, 10) ** 2 * DURATION
+
+    def last_change(cut: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> float:
+        start: Mapping[str, CircuitState] = {"test": CircuitState.uniform(plant(), ROOM)}
+        fed = SupplyHistory(
+            times=np.zeros(1), supplies={"gears": np.full(1, SETPOINT)}, circuits={}, states=()
+        )
+        secants, change = Secants(), 0.0
+        for sweep in range(8):
+            times = cut(given[sweep % 2])
+            supply = np.interp(TIMES, fed.times, fed.supplies["gears"])
+            warm = np.interp(times, TIMES, body(supply, TIMES))
+            heats = StreamHeats(
+                times=times, phases=(PHASE,), phase=np.zeros(len(times), dtype=np.int32),
+                heats={"gears": WALL * (warm - fed.sampled(times)["gears"])}, leaked={}, supplies=fed.sampled(times),
+            )  # fmt: skip
+            found = circuits_over(start, heats, {"gears": PROMPT})
+            change = found.change(fed)
+            fed = secants.following(fed, found)
+        return change
+
+    assert last_change(in_parts) < SWEEP_TOLERANCE < last_change(lambda times: times)
 
 
 def test_the_circuit_keeps_its_heat() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.rig.model import build_rig
+from rigdesign.transient.housing_history import BranchPlan
 from rigdesign.transient.phases import schedule_phases
 from rigdesign.transient.thermal_history import _read
 from tests.builders.paths import CASES
@@ -31,9 +32,7 @@ def test_in_a_warm_room_a_rig_at_20_degrees_has_the_clearances_of_its_drawing(tm
         energy=SimpleNamespace(closure=0.0),
     )  # fmt: skip
     history: Any = SimpleNamespace(
-        name="schedule",
-        phases=schedule_phases(rig.case),
-        start=0.0,
+        plan=BranchPlan(name="schedule", phases=schedule_phases(rig.case)),
         solution=solution,
         fields=[drawing, room],
     )
