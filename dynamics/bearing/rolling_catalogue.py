@@ -171,7 +171,9 @@ def catalogue_bearing(designation: str) -> CatalogueBearing:
     if wanted in table:
         return table[wanted]
     basics = {_key(row.designation): row.designation for row in table.values()}
-    near = difflib.get_close_matches(wanted, basics, n=4, cutoff=0.5) or list(basics)[:4]
+    letters = re.match(r"[A-Z]*", wanted)
+    alike = [key for key in basics if letters and letters[0] and key.startswith(letters[0])]
+    near = difflib.get_close_matches(wanted, basics, n=4, cutoff=0.5) or (alike or list(basics))[:4]
     raise BearingError(
         f"bearing designation = {designation!r}: not among the {len(basics)} tabled bearings (nearest: "
         f"{', '.join(basics[key] for key in near)}); take one of these or give the catalogue numbers of the bearing"
