@@ -145,7 +145,7 @@ class UnitBearing:
 
     kind : rolling with catalogue numbers; journal (hydrodynamic); stiffness: a support of given stiffness, no more
     inner_diameter, outer_diameter, width : of bore, outer ring, ring; of a journal bearing its bore, shell and width
-    radial_clearance : in operation, else as delivered; of a journal bearing the diametral one [m]
+    radial_clearance : as delivered, else in operation; of a journal bearing the diametral one [m]
     axial_force : direction in which it takes axial force: both_directions, positive, negative, no_direction
     radial_stiffness, axial_stiffness : [N/m]
     lubrication : as REXS has it, e.g. ``oil_bath``

@@ -230,6 +230,30 @@ def test_ring_gears_are_named_and_left_out() -> None:
     assert "not of two cylindrical gears" in reasons(result, 13)["center_distance"]
 
 
+def test_the_clearance_as_delivered_counts_before_that_in_operation() -> None:
+    stated = '<attribute id="operating_radial_bearing_clearance" unit="mum">25.0</attribute>'
+    delivered = stated.replace("operating_", "").replace("25.0", "45.0")
+    for both in (stated + delivered, delivered + stated):
+        result = imported((stated, both))
+        assert {bearing.radial_clearance for bearing in result.unit.bearings} == {45e-6}
+        reason = reasons(result, 20)["operating_radial_bearing_clearance"]
+        assert reason == "the clearance as delivered counts"
+
+
+def test_the_power_of_a_load_case_replaces_the_torque_of_its_component() -> None:
+    """The component states 372.6 N m; a load case with 50 kW has no torque of its own, and the other way round."""
+    text = changed().decode()
+    start = text.index("<load_spectrum")
+    torque = '<attribute id="torque_around_u_axis" unit="N m">302.0</attribute>'
+    power = '<attribute id="power" unit="kW">50.0</attribute>'
+    named = '<component id="27" type="external_load" name="pinion torque">'
+    of_component = torque.replace("302.0", "372.6")
+    unit = imported((text[start:], text[start:].replace(torque, power)), (named, named + of_component)).unit
+    assert [(load.torque, load.power) for case in unit.operating_cases for load in case.loads] == [
+        (372.6, None), (None, 50e3),
+    ]  # fmt: skip
+
+
 def test_a_hydrodynamic_bearing() -> None:
     kind = ('type="rolling_bearing_with_catalog_geometry"', 'type="hydrodynamic_radial_plain_bearing"')
     clearance = ("operating_radial_bearing_clearance", "diameter_clearance_plain_bearing")
