@@ -148,7 +148,7 @@ class RunningGear:
 class Immersion:
     """Part of a disc below the oil surface.
 
-    radius : of the disc [m]; depth : of its lowest point below the surface, 0 if it hangs above [m]
+    radius : of the disc [m]; depth : of its lowest point below the surface, 0 if it is above the surface [m]
     half_angle : half of the wetted angle [rad], 0 to pi; chord : width of the disc at the surface [m]
     side_area : both faces [m2]; rim_area : smooth cylinder [m2]; volume : displaced oil [m3]
     """
