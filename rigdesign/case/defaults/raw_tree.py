@@ -1,4 +1,4 @@
-"""Values of a case file before it is validated: marks are looked through, what cannot be read is None."""
+"""Values of a case file before it is validated, without source, assumption and range; None where unreadable."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -39,6 +39,11 @@ class RawTree:
         """Keys of a table; none where there is no table."""
         node = self.at(path)
         return [key for key in node if isinstance(key, str)] if isinstance(node, Mapping) else []
+
+    def count(self, path: str) -> int:
+        """Entries of a list; none where there is no list."""
+        node = self.at(path)
+        return len(node) if isinstance(node, list | tuple) else 0
 
     def text(self, path: str) -> str | None:
         """A text."""

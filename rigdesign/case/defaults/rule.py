@@ -50,8 +50,8 @@ class Rule:
     """One rule and the path it is for.
 
     within : start of the path down to a table that the case has to state; empty where the rule makes its tables
-    completes : of a table of named parts, parts are added to those that are stated; not where one of these is a
-        stranger, so that a misspelt name stays a fault
+    completes : of a table of named parts, parts are added to those that are stated; not where one of these has
+        an unknown name, so that a misspelt one stays a fault
     """
 
     path: str
@@ -66,7 +66,7 @@ def assumed(value: Any, reason: str, low: Any = None, high: Any = None) -> Given
 
 
 def follows(value: Any, reason: str) -> Given:
-    """A name or measure that the rest of the case settles."""
+    """A name or measure that follows from the rest of the case."""
     return Given(value=value, reason=reason, is_assumption=False)
 
 
