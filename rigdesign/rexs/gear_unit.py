@@ -63,7 +63,10 @@ class UnitMesh:
 
 @dataclass(frozen=True)
 class ShaftSection:
-    """A piece of a shaft: cylinder or cone, solid where its bores are zero; diameters at its begin and end [m]."""
+    """A piece of a shaft: cylinder or cone, solid where its bores are zero; diameters at its begin and end [m].
+
+    start : from the start of the shaft; zero where the file states none for the only section
+    """
 
     id: int
     start: float
@@ -72,8 +75,6 @@ class ShaftSection:
     outer_end: float
     inner_begin: float = 0.0
     inner_end: float = 0.0
-    start_stated: bool = True
-    """False for the only section of a shaft, which then starts at zero."""
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,6 @@ from rigdesign.rexs_case.stage import GearStage, SeatedGear
 LIKE_THE_TEST = (
     "the slave gearbox equals the test gearbox, without a housing; a REXS file holds one unit, no rig"
 )
-EPICYCLIC = ("planetary_stage", "ring_gear")
-"""Components that make the axes of some gears turn: speed and torque of a pair do not follow from its teeth."""
 OFF_THE_TIPS = 0.02
 """Room between tips and walls in the housing that is suggested [m]."""
 
@@ -59,8 +57,7 @@ def _tables(imported: GearUnitImport, stage: GearStage, origins: Origins) -> Ite
     yield CaseTable("gearboxes.test.meshes.main", tuple(mesh_entries(origins, stage)), (mesh_remark,))
     yield from bearing_tables(origins, stage)
     yield from shaft_tables(origins, stage)
-    epicyclic = any(item.place.startswith(EPICYCLIC) for item in imported.missing)
-    operation = operation_of(stage, () if epicyclic else pinion_loads(unit, stage.mesh))
+    operation = operation_of(stage, () if imported.epicyclic else pinion_loads(unit, stage.mesh))
     yield from oil_tables(origins, unit, stage, operation)
     like = Entry("like", '"test"', "assumed", LIKE_THE_TEST, markable=False)
     yield CaseTable("gearboxes.slave", (like,), tuple(_housing_remarks(stage)))

@@ -17,7 +17,6 @@ from rigdesign.rexs_case.case_tables import LIKE_THE_TEST, case_tables
 from rigdesign.rexs_case.entries import CaseTable, Entry, toml_text
 from rigdesign.rexs_case.stage import chosen_stage
 
-FOREIGN_STAGES = ("bevel_stage", "worm_stage", "planetary_stage", "ring_gear")
 OTHER_PART = "of another stage, or a value that the case works out itself"
 REASONS = {
     "operating_cases": "of another load case, which the case names in a comment, or not needed at the pinion",
@@ -146,7 +145,7 @@ def _account(
             [item for item in defaults if not item.path.startswith(("gearboxes.test.", "gearboxes.slave."))]
         ),
         needed=tuple(needed),
-        left_out=tuple(item.place for item in imported.missing if item.place.startswith(FOREIGN_STAGES)),
+        left_out=imported.other_stages,
     )
 
 

@@ -15,11 +15,6 @@ def reasons(result: GearUnitImport, component: int) -> dict[str, str]:
     return {item.attribute: item.reason for item in result.listed if item.component == component}
 
 
-def missing(result: GearUnitImport) -> dict[str, bool]:
-    """Place -> whether it is needed."""
-    return {item.place: item.needed for item in result.missing}
-
-
 def test_gears_and_mesh() -> None:
     unit = imported().unit
     assert unit.gear(11) == UnitGear(
@@ -68,7 +63,7 @@ def test_without_a_spectrum_the_components_are_the_case() -> None:
     result = imported((spectrum, ""))
     (case,) = result.unit.operating_cases
     assert (case.id, case.speeds[3], case.lubricant_temperature) == (None, pytest.approx(235.6194), 363.15)
-    assert missing(result)["operating_cases.torque"] is True
+    assert [load.torque for load in case.loads] == [None]
 
 
 def test_two_spectra_are_told_apart() -> None:
@@ -94,55 +89,6 @@ def test_every_attribute_is_mapped_or_listed() -> None:
     assert (width.written, width.target, width.value) == ("14.0 mm", "gears[11].face_width", 0.014)
     life = next(item for item in result.listed if item.load_case == "accumulation")
     assert (life.component, life.reason) == (20, "a value over all load cases")
-
-
-def test_what_a_case_needs_beyond_it() -> None:
-    assert missing(imported()) == {
-        "shafts[25].bearings": False, "lubrication": False, "housing": False, "surroundings": False,
-    }  # fmt: skip
-    old = missing(imported(version="1.0"))
-    assert old["gears[11].quality_grade"] is False
-    assert all(not needed for needed in old.values())
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "place"),
-    [
-        ('id="number_of_teeth"', 'id="x"', "gears[11].teeth"),
-        ('id="face_width" unit="mm">14.0', 'id="face_width" unit="mm">0', "gears[11].face_width"),
-        ('id="normal_module" unit="mm"', 'id="normal_module" unit="deg"', "gears[11].normal_module"),
-        ('type="cylindrical_stage"', 'type="bevel_stage"', "meshes"),
-        ('type="cylindrical_stage"', 'type="bevel_stage"', "bevel_stage 13"),
-        ('type="lubricant"', 'type="grease"', "lubricant"),
-        ('id="viscosity_at_40', 'id="viscosity_at_50', "lubricant.viscosity_40"),
-        ('"outer_part"', '"other"', ""),
-        ('"inner_part"', '"other"', "shafts[3].bearings"),
-        ('id="torque_around_u_axis"', 'id="torque"', "operating_cases[1].torque"),
-        (
-            'type="rolling_bearing_with_catalog_geometry"',
-            'type="concept_bearing"',
-            "bearings[20].catalogue.designation",
-        ),
-    ],
-)
-def test_needed_inputs(old: str, new: str, place: str) -> None:
-    found = imported((old, new))
-    needed = [item.place for item in found.missing if item.needed]
-    assert (place in needed) if place else needed == []
-    assert found.missing[: len(needed)] == tuple(item for item in found.missing if item.needed)
-
-
-def test_a_centre_distance_is_needed_unless_both_profile_shifts_are_there() -> None:
-    without = ('id="center_distance"', 'id="x"')
-    assert missing(imported(without))["meshes[13].centre_distance"] is False
-    shift = ('id="addendum_modification_coefficient" unit="none">0.182', 'id="y" unit="none">0.182')
-    assert missing(imported(without, shift))["meshes[13].centre_distance"] is True
-
-
-def test_a_bearing_without_designation_by_its_dimensions() -> None:
-    assert imported(('id="catalogue_designation"', 'id="x"')).missing[0].needed is False
-    both = imported(('id="catalogue_designation"', 'id="x"'), ('id="width"', 'id="y"'))
-    assert both.missing[0].place == "bearings[20].catalogue.designation"
 
 
 @pytest.mark.parametrize(
@@ -211,8 +157,7 @@ def test_the_only_section_of_a_shaft_starts_at_zero() -> None:
     section = text[text.index('<component id="26"') : text.index('<component id="27"')]
     result = imported((section, section.replace("u_coordinate_on_shaft", "x")))
     (found,) = result.unit.shaft(25).sections
-    assert (found.start, found.start_stated) == (0.0, False)
-    assert missing(result)["shafts[25].sections[26].start"] is False
+    assert found.start == 0.0
 
 
 def test_the_wheel_may_be_named_first() -> None:
@@ -225,7 +170,9 @@ def test_ring_gears_are_named_and_left_out() -> None:
     wheel = text[text.index('<component id="12"') : text.index('<component id="13"')]
     result = imported((wheel, wheel.replace('"cylindrical_gear"', '"ring_gear"')))
     assert result.unit.meshes == ()
-    assert missing(result)["ring_gear 12"] is True
+    assert result.other_stages == ("ring_gear 12",)
+    assert result.epicyclic
+    assert not imported().epicyclic
     assert reasons(result, 12)["number_of_teeth"] == "a ring_gear has no counterpart in a case"
     assert "not of two cylindrical gears" in reasons(result, 13)["center_distance"]
 
