@@ -6,7 +6,7 @@ parts of the rig hold away from this sump while it runs (a catch tray, a return 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Self
 
 from dynamics.gear.pair import GearPair
@@ -93,6 +93,10 @@ class DippedGear:
             value = getattr(self, name)
             if not value > 0.0:
                 raise LossError(f"dipped gear: {name} = {value:.6g}: must be above 0; correct the gear data")
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise LossError(f"dipped gear: {field.name} = {value}: must be finite; correct the gear data")
         if not (
             self.tip_radius > self.root_radius > self.shaft_radius and self.pitch_radius > self.shaft_radius
         ):

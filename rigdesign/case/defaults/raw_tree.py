@@ -1,5 +1,6 @@
 """Values of a case file before it is validated, without source, assumption and range; None where unreadable."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -51,9 +52,11 @@ class RawTree:
         return node if isinstance(node, str) else None
 
     def number(self, path: str) -> float | None:
-        """A bare number."""
+        """A bare number that is finite."""
         node = self.at(path)
-        return float(node) if isinstance(node, int | float) and not isinstance(node, bool) else None
+        if not isinstance(node, int | float) or isinstance(node, bool) or not abs(node) < math.inf:
+            return None
+        return float(node)
 
     def si(self, path: str, kind: str) -> float | None:
         """A quantity in SI units; None for one that is missing or cannot be read."""

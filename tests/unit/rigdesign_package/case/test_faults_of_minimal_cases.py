@@ -34,6 +34,8 @@ def error_of(folder: Path, old: str, new: str) -> CaseError:
     ("old", "new", "first"),
     [
         ("teeth = 16", 'teeth = "many"', 'gears.pinion.teeth = "many"'),
+        ("teeth = 16", "teeth = nan", "gears.pinion.teeth = nan"),
+        ("teeth = 16", "teeth = inf", "gears.pinion.teeth = inf"),
         ("teeth = 24", "", "gears.wheel.teeth: a required key is missing"),
         ('normal_module = "4.5 mm"', "normal_module = 4.5", "normal_module = 4.5: a bare number"),
         ('centre_distance = "91.5 mm"', 'centre_distance = "91.5 bar"', "unit 'bar' is one of pressure"),
