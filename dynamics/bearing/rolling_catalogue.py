@@ -1,7 +1,7 @@
 """Catalogue numbers of rolling bearings: a small table by designation, any other bearing by its numbers.
 
-The table `rolling_bearings.csv` lies beside this module; each row names catalogue and page of its numbers, and a
-column `memory` the names of those that could not be read there.
+The table `rolling_bearings.csv` lies next to this module; each row names catalogue and page of its numbers, and a
+column `unconfirmed` the names of those that could not be read there.
 """
 
 import csv
@@ -35,6 +35,11 @@ DESCRIBED_SERIES: dict[BearingKind, tuple[str, ...]] = {
 }
 """Dimension series for which both friction laws have coefficients."""
 
+LEAST_ELEMENT = 0.1
+"""Diameter of rolling elements over D - d below which a static rating does not belong to its bearing (0.2 to 0.35 in
+catalogues)."""
+LEAST_ROLLER = 0.3
+"""Length over diameter of rollers below which it does not (0.7 to 3 in catalogues)."""
 TABLE = "rolling_bearings.csv"
 RPM = math.pi / 30.0
 
@@ -58,7 +63,7 @@ class CatalogueBearing:
     inner_raceway, outer_raceway : diameters F, E of cylindrical roller bearings [m]
     locating : carries axial load; False for NU and N
     rolling_elements : where known; None derives them, see `dynamics.bearing.rolling_elements`
-    source, memory : where the numbers come from, and the names of those that could not be read there
+    source, unconfirmed : where the numbers come from, and the names of those that could not be read there
 
     Raises BearingError naming key, value and remedy.
     """
@@ -85,7 +90,7 @@ class CatalogueBearing:
     locating: bool = True
     rolling_elements: RollingElements | None = None
     source: str = "given"
-    memory: tuple[str, ...] = ()
+    unconfirmed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -142,9 +147,29 @@ class CatalogueBearing:
 
     @cached_property
     def elements(self) -> RollingElements:
-        """Rolling elements, given or derived."""
+        """Rolling elements, given or derived.
+
+        Raises BearingError for a static rating that no rolling elements between bore and outside diameter have.
+        """
         if self.rolling_elements is not None:
             return self.rolling_elements
+        derived = self._derived_elements()
+        section, size = self.outside_diameter - self.bore, derived.diameter
+        fits = LEAST_ELEMENT * section <= size < 0.5 * section
+        if derived.roller:
+            fits = fits and LEAST_ROLLER * size <= derived.length <= self.width
+        if not fits:
+            length = f" and {1e3 * derived.length:.3g} mm long" if derived.roller else ""
+            raise self._wrong(
+                "static_rating",
+                f"{self.static_rating:.6g} N",
+                f"would need {derived.count} rolling elements of {1e3 * size:.3g} mm{length}, which do not fit d = "
+                f"{1e3 * self.bore:.4g}, D = {1e3 * self.outside_diameter:.4g}, B = {1e3 * self.width:.4g} mm; give "
+                "C_0 and main dimensions of the catalogue",
+            )
+        return derived
+
+    def _derived_elements(self) -> RollingElements:
         if self.kind == "deep_groove_ball":
             return deep_groove_balls(self.mean_diameter, self.static_rating, self.f_0)
         if self.kind == "angular_contact_ball":
@@ -171,7 +196,9 @@ def catalogue_bearing(designation: str) -> CatalogueBearing:
     if wanted in table:
         return table[wanted]
     basics = {_key(row.designation): row.designation for row in table.values()}
-    near = difflib.get_close_matches(wanted, basics, n=4, cutoff=0.5) or list(basics)[:4]
+    letters = re.match(r"[A-Z]*", wanted)
+    alike = [key for key in basics if letters and letters[0] and key.startswith(letters[0])]
+    near = difflib.get_close_matches(wanted, basics, n=4, cutoff=0.5) or (alike or list(basics))[:4]
     raise BearingError(
         f"bearing designation = {designation!r}: not among the {len(basics)} tabled bearings (nearest: "
         f"{', '.join(basics[key] for key in near)}); take one of these or give the catalogue numbers of the bearing"
@@ -225,5 +252,5 @@ def _bearing(row: Mapping[str, str]) -> CatalogueBearing:
         outer_raceway=number("outer_raceway_mm", 1e-3),
         locating=row["locating"] == "1",
         source=row["source"],
-        memory=tuple(row["memory"].split()),
+        unconfirmed=tuple(row["unconfirmed"].split()),
     )

@@ -111,6 +111,8 @@ def deep_groove_balls(pitch_diameter: float, static_rating: float, f_0: float | 
         arc = 2.0 * (count - 1) * math.asin(diameter / pitch_diameter)
         if arc <= FILLING_ANGLE:
             best = (count, diameter)
+    if best is None:
+        raise _no_balls(static_rating)
     return _balls(best, pitch_diameter, 0.0, "C_0 by ISO 76 and a filling angle of 198 degrees (assumed)")
 
 
@@ -123,6 +125,8 @@ def angular_contact_balls(
         diameter = _ball_diameter(count, pitch_diameter, static_rating, contact_angle, None)
         if diameter is not None and count * diameter <= BALL_FILL * math.pi * pitch_diameter:
             best = (count, diameter)
+    if best is None:
+        raise _no_balls(static_rating)
     return _balls(
         best,
         pitch_diameter,
@@ -160,19 +164,22 @@ def _ball_diameter(
         factor = iso76_2006.f_0(diameter * math.cos(angle) / pitch) if f_0 is None else f_0
         return iso76_2006.C_0r_ball(count, diameter * 1e3, angle, factor) - static_rating
 
-    largest = 0.39 * pitch
-    if excess(largest) < 0.0:
+    smallest, largest = 1e-3 * pitch, 0.39 * pitch
+    if excess(smallest) > 0.0 or excess(largest) < 0.0:
         return None
-    root: float = brentq(excess, 1e-3 * pitch, largest, xtol=1e-9)
+    root: float = brentq(excess, smallest, largest, xtol=1e-9)
     return root
 
 
-def _balls(best: tuple[int, float] | None, pitch: float, angle: float, source: str) -> RollingElements:
-    if best is None:
-        raise BearingError(
-            "rolling elements: no ball number between 5 and 39 gives the static rating in this section; correct C_0, "
-            "bore and outside diameter or give the rolling elements themselves"
-        )
+def _no_balls(static_rating: float) -> BearingError:
+    return BearingError(
+        f"rolling elements: static_rating = {static_rating:.6g} N: no number of balls from 5 to {MOST_BALLS - 1} has "
+        "it between bore and outside diameter; correct C_0, bore and outside diameter or give the rolling elements "
+        "themselves"
+    )
+
+
+def _balls(best: tuple[int, float], pitch: float, angle: float, source: str) -> RollingElements:
     count, diameter = best
     return RollingElements(
         count=count, diameter=diameter, pitch_diameter=pitch, contact_angle=angle, source=source

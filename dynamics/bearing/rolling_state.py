@@ -100,8 +100,8 @@ def limit_warnings(state: RollingState, data: CatalogueBearing, *, drag_in_bath:
         )
     if state.film_temperature > STABILISED_TEMPERATURE:
         yield (
-            f"bearing temperature = {state.film_temperature - 273.15:.0f} degC: above 120 degC, rings grow; order "
-            "stabilised rings or cool the bearing"
+            f"bearing temperature = {state.film_temperature - 273.15:.0f} degC: above 120 degC, rings change their "
+            "size; order stabilised rings or cool the bearing"
         )
     yield from _axial_warnings(state, data)
 

@@ -6,7 +6,7 @@ parts of the rig hold away from this sump while it runs (a catch tray, a return 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Self
 
 from dynamics.gear.pair import GearPair
@@ -93,6 +93,10 @@ class DippedGear:
             value = getattr(self, name)
             if not value > 0.0:
                 raise LossError(f"dipped gear: {name} = {value:.6g}: must be above 0; correct the gear data")
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise LossError(f"dipped gear: {field.name} = {value}: must be finite; correct the gear data")
         if not (
             self.tip_radius > self.root_radius > self.shaft_radius and self.pitch_radius > self.shaft_radius
         ):
@@ -148,7 +152,7 @@ class RunningGear:
 class Immersion:
     """Part of a disc below the oil surface.
 
-    radius : of the disc [m]; depth : of its lowest point below the surface, 0 if it hangs above [m]
+    radius : of the disc [m]; depth : of its lowest point below the surface, 0 if it is above the surface [m]
     half_angle : half of the wetted angle [rad], 0 to pi; chord : width of the disc at the surface [m]
     side_area : both faces [m2]; rim_area : smooth cylinder [m2]; volume : displaced oil [m3]
     """

@@ -8,12 +8,13 @@ from pydantic import BaseModel, ValidationError
 from rigdesign.base.errors import WIDEST, Fault
 from rigdesign.base.units import describe
 from rigdesign.case.fields import FAULT
-from rigdesign.case.kinds import kind_key, kind_of
+from rigdesign.case.kinds import kind_key, kind_of, variant_of
 from rigdesign.case.paths import Slot, nearest, slot_at
 from rigdesign.case.provenance import KEYS, MARKS, item_name
 
 IMPOSSIBLE = frozenset(("literal_error", "bool_type", "int_type", "int_from_float", "float_type"))
 """Kinds of error of a value that its place holds in no case."""
+MISSING = "a required key is missing"
 
 
 def faults_of(error: ValidationError, model: type[BaseModel], tree: Mapping[str, Any]) -> list[Fault]:
@@ -45,7 +46,7 @@ def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault
     kind, given, context = entry["type"], entry["input"], entry.get("ctx", {})
     if kind == "missing":
         slot = slot_at(model, tree, keys)
-        return Fault(path, "", "a required key is missing", _addition(path, slot))
+        return Fault(path, "", MISSING, _addition(path, slot))
     if kind == "extra_forbidden":
         return Fault(path, written(given), "unknown key", _known_here(keys, model, tree))
     if kind == FAULT:
@@ -106,11 +107,15 @@ def _accepted(kind: str, given: object, context: Mapping[str, Any], slot: Slot |
 
 def _known_here(keys: Sequence[str], model: type[BaseModel], tree: Mapping[str, Any]) -> str:
     slot = slot_at(model, tree, keys[:-1])
-    names = [name for table in (slot.models() if slot else ()) for name in table.model_fields]
+    models = list(slot.models()) if slot else []
+    owner = next((model for model in models if keys[-1] in model.model_fields), None)
+    if owner is not None:
+        return f"a key of {variant_of(owner, models)}: state that as well, or remove it"
+    names = list(dict.fromkeys(name for table in models for name in table.model_fields))
     meant = nearest(keys[-1], names)
     if meant:
         return "did you mean " + " or ".join(f"'{name}'" for name in meant) + "?"
-    return "remove it; known here: " + ", ".join(dict.fromkeys(names))
+    return "remove it; known here: " + ", ".join(names)
 
 
 def _misspelt_mark(path: str, given: Mapping[str, Any]) -> Fault:
@@ -131,13 +136,15 @@ def _unknown_kind(path: str, given: object, context: Mapping[str, Any], key: str
             path, written(given), f"{describe(given)} is not accepted here", f'write a table with {key} = "…"'
         )
     if not tag:
-        return Fault(
-            f"{path}.{key}", "", "a required key is missing", "add it: a law of heat transfer, see the schema"
-        )
+        return Fault(f"{path}.{key}", "", MISSING, "add it: a law of heat transfer, see the schema")
     meant = nearest(tag, choices.replace('"', "").split(", "), 1)
     hint = f'did you mean "{meant[0]}"? ' if meant else ""
     return Fault(
-        f"{path}.{key}", f'"{tag}"', "not one of the choices", f"{hint}write {choices}", impossible=True
+        f"{path}.{key}",
+        written(given.get(key, tag)),
+        "not one of the choices",
+        f"{hint}write {choices}",
+        impossible=True,
     )
 
 

@@ -8,9 +8,10 @@ from pydantic import ValidationError
 
 from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.case.defaults.consequences import causes_first
 from rigdesign.case.defaults.fill import filled_as_a_whole, with_defaults
 from rigdesign.case.equal_parts import EqualParts, written_out
-from rigdesign.case.faults import faults_of, written
+from rigdesign.case.faults import MISSING, faults_of, written
 from rigdesign.case.model import Case, Origin
 from rigdesign.case.paths import Slot, known_paths, nearest_paths, places, slot_at
 from rigdesign.case.provenance import Mark, is_marked, item_name, take_off
@@ -106,7 +107,8 @@ def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:
     try:
         case = Case.model_validate(plain)
     except ValidationError as error:
-        raise CaseError(equal.as_written([*faults_of(error, Case, plain), *faults]), str(file)) from None
+        found = causes_first([*faults_of(error, Case, plain), *faults], marks, MISSING)
+        raise CaseError(equal.as_written(found), str(file)) from None
     faults += broken_rules(case)
     if faults:
         raise CaseError(equal.as_written(faults), str(file))

@@ -97,7 +97,7 @@ class CatalogueNumbers(Part):
         from dynamics.bearing.protocol import BearingError
 
         try:
-            catalogue_data("", self)
+            _ = catalogue_data("", self).elements
         except BearingError as error:
             problem, _, remedy = str(error).partition(": ")[2].partition("; ")
             raise fault(problem, remedy or "correct the number by the catalogue") from None

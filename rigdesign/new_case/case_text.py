@@ -6,7 +6,6 @@ from pathlib import Path
 from textwrap import wrap
 
 from rigdesign.base import units
-from rigdesign.case.defaults.housings import SEAL_WIDTH
 from rigdesign.case.defaults.known import WRITTEN_ONCE
 from rigdesign.case.model import Case
 from rigdesign.explanation.keys import entry_at
@@ -49,8 +48,8 @@ def tables(outline: Outline) -> Iterator[tuple[str, str, list[Line]]]:
         yield "all four bearings", "gearboxes.test.all_bearings", [("diameter", _quoted(outline.bearings))]
     else:
         yield from _rolling(outline.bearings)
-    if outline.box is not None:
-        yield "box of the test gearbox", "gearboxes.test.housing", _housing(outline, outline.box)
+    if outline.box is not None and outline.inner_length is not None:
+        yield "box of the test gearbox", "gearboxes.test.housing", _housing(outline.box, outline.inner_length)
     slave: list[Line] = [("like", '"test"')]
     if outline.box is not None:
         slave.append(("remove", '["housing"]'))
@@ -72,11 +71,10 @@ def _rolling(designation: str) -> Iterator[tuple[str, str, list[Line]]]:
         yield "", path, [("designation", _quoted(locating)), ("locating", "true")]
 
 
-def _housing(outline: Outline, box: tuple[float, float, float]) -> list[Line]:
-    """Outer measures of a box of one chamber as those of the case; its end walls hold bearings and seals."""
-    inner = box[0] - 2.0 * (outline.bearing_width + SEAL_WIDTH)
+def _housing(box: tuple[float, float, float], inner_length: float) -> list[Line]:
+    """Outer measures of a box of one chamber as those of the case."""
     return [
-        ("warm_length", _millimetres(inner)),
+        ("warm_length", _millimetres(inner_length)),
         ("width", _millimetres(box[1])),
         ("height", _millimetres(box[2])),
     ]

@@ -1,13 +1,13 @@
 """The numbers a new case is made of: what they are called, what they hold, and whether they agree with each other."""
 
-import math
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from rigdesign.base import units
 from rigdesign.base.errors import UsageError
+from rigdesign.case.defaults.housings import SEAL_WIDTH
 
 MOST_SHIFT = 1.5
 """Sum of the profile shifts, in modules, beyond which a centre distance belongs to other gears."""
@@ -18,7 +18,7 @@ class Question:
     """One number of a new case.
 
     key : field of `Outline`; kind : kind of the quantity, empty for anything else
-    asked : what a user is asked; example : what may be answered; required : nothing stands for it when left out
+    asked : what a user is asked; example : a possible answer; required : there is no default for it
     """
 
     key: str
@@ -49,6 +49,30 @@ QUESTIONS = (
     Question("name", "", "short name of the case", "my_rig", required=False),
 )  # fmt: skip
 FLAGS = {question.key: question.flag for question in QUESTIONS}
+
+
+@dataclass(frozen=True)
+class AnswerFault:
+    """What is wrong with answers: keys of the questions one of which has to be answered otherwise, and one sentence."""
+
+    keys: tuple[str, ...]
+    text: str
+
+
+class AnswersError(UsageError):
+    """Answers that no case can be made of, with every fault found."""
+
+    def __init__(self, faults: Sequence[AnswerFault]) -> None:
+        super().__init__(
+            "\n  ".join(["no case was written:", *dict.fromkeys(fault.text for fault in faults)])
+        )
+        self.faults = tuple(faults)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the questions that have to be answered again, in the order of `QUESTIONS`."""
+        named = {key for fault in self.faults for key in fault.keys}
+        return tuple(question.key for question in QUESTIONS if question.key in named)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,6 +111,11 @@ class Outline:
 
         return catalogue_bearing(self.bearings).width
 
+    @property
+    def inner_length(self) -> float | None:
+        """Length of the box between its end walls, which hold bearings and seals [m]; None without a box."""
+        return None if self.box is None else self.box[0] - 2.0 * (self.bearing_width + SEAL_WIDTH)
+
 
 def locating_sister(designation: str) -> str:
     """Bearing of the same size that holds its shaft, for one that does not (NU, N): NJ. Empty for any other."""
@@ -106,54 +135,81 @@ def outline_from(answers: Mapping[str, str]) -> Outline:
 
     Raises
     ------
-    UsageError
+    AnswersError
         With everything that is missing, cannot be read or contradicts something else, each by its flag.
     """
-    missing = [question for question in QUESTIONS if question.required and question.key not in answers]
-    faults = [f'{one.flag} is missing: {one.asked}; add e.g. {one.flag} "{one.example}"' for one in missing]
-    values: dict[str, Any] = {}
+    faults, values = [], {}
     for question in QUESTIONS:
-        if question.key in answers:
+        answer = answers.get(question.key)
+        if answer is not None:
             try:
-                values[question.key] = _read(question, answers[question.key].strip())
+                values[question.key] = read_answer(question, answer)
             except units.QuantityError as error:
-                faults.append(f'{question.flag} "{answers[question.key]}": {error}')
-    if not faults:
-        known = {field.name for field in fields(Outline)}
-        outline = Outline(
-            **{"name": "my_rig", **{key: value for key, value in values.items() if key in known}}
-        )
-        faults = list(_contradictions(outline))
-        if not faults:
-            return outline
-    raise UsageError("no case was written:\n  " + "\n  ".join(faults))
+                faults.append(AnswerFault((question.key,), f'{question.flag} "{answer}": {error}'))
+        elif question.required:
+            text = (
+                f'{question.flag} is missing: {question.asked}; add e.g. {question.flag} "{question.example}"'
+            )
+            faults.append(AnswerFault((question.key,), text))
+    if faults:
+        raise AnswersError(faults)
+    outline = Outline(**{"name": "my_rig", **values})
+    if contradictions := list(_contradictions(outline)):
+        raise AnswersError(contradictions)
+    return outline
 
 
-def _read(question: Question, text: str) -> Any:
-    """One answer: a quantity stays as written, anything else is read."""
-    if question.kind:
-        if not units.parse(text, question.kind, question.example) > 0.0:
-            raise units.QuantityError("is not above 0", f"write e.g. {question.example}")
-        return text
-    if question.key == "teeth":
-        found = re.fullmatch(r"(\d{1,4})\s*[,/x:]\s*(\d{1,4})", text)
-        if found is None:
-            raise units.QuantityError("no two tooth numbers", f"write e.g. {question.example}")
-        return int(found[1]), int(found[2])
-    if question.key == "lubrication" and text not in ("jet", "dip"):
-        raise units.QuantityError("no kind of lubrication of the gears", "write jet or dip")
-    if question.key == "name" and not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", text):
-        raise units.QuantityError(
-            "no name", "write lower-case letters, digits and underscores, starting with a letter"
-        )
-    if question.key == "profile_shift":
-        return _number(text, question)
-    if question.key == "box":
-        return _box(text, question)
+def read_answer(question: Question, answer: str) -> Any:
+    """One answer as a field of `Outline`: a quantity stays as written, anything else is read.
+
+    Raises
+    ------
+    QuantityError
+        An answer that cannot be read or lies outside its limits, with the remedy.
+    """
+    text = answer.strip()
     if not text:
         raise units.QuantityError("is empty", f"write e.g. {question.example}")
-    if question.key == "bearings" and units.kind_of(text) != "length":
+    if question.kind and not units.parse(text, question.kind, question.example) > 0.0:
+        raise units.QuantityError("is not above 0", f"write e.g. {question.example}")
+    read = _READERS.get(question.key)
+    return text if read is None else read(text, question)
+
+
+def _teeth(text: str, question: Question) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,4})\s*[,/x:]\s*(\d{1,4})", text)
+    if found is None:
+        raise units.QuantityError("no two tooth numbers", f"write e.g. {question.example}")
+    return int(found[1]), int(found[2])
+
+
+def _bearing(text: str, question: Question) -> str:
+    if units.kind_of(text) == "length":
+        if not units.parse(text, "length") > 0.0:
+            raise units.QuantityError("a diameter that is not above 0", f"write e.g. {question.example}")
+    else:
         _check_designation(text)
+    return text
+
+
+def _oil(text: str, question: Question) -> str:
+    from rigdesign.properties.oil import OILS
+
+    if text not in OILS:
+        raise units.QuantityError("no built-in oil", f"write one of {', '.join(OILS)}")
+    return text
+
+
+def _lubrication(text: str, question: Question) -> str:
+    if text not in ("jet", "dip"):
+        raise units.QuantityError("no kind of lubrication of the gears", "write jet or dip")
+    return text
+
+
+def _name(text: str, question: Question) -> str:
+    if not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", text):
+        remedy = "write at most 60 lower-case letters, digits and underscores, starting with a letter"
+        raise units.QuantityError("no name", remedy)
     return text
 
 
@@ -170,48 +226,80 @@ def _check_designation(text: str) -> None:
         ) from None
 
 
-def _number(text: str, question: Question) -> float:
+def _profile_shift(text: str, question: Question) -> float:
     try:
-        return float(text)
+        shift = float(text)
     except ValueError:
         raise units.QuantityError("no number", f"write e.g. {question.example}") from None
+    if not abs(shift) <= MOST_SHIFT:
+        limit = f"must lie within -{MOST_SHIFT:g} to {MOST_SHIFT:g} modules"
+        raise units.QuantityError(limit, f"write e.g. {question.example}")
+    return shift
 
 
 def _box(text: str, question: Question) -> tuple[float, ...]:
     unit = re.search(r"[a-z]+$", text)
-    sides = re.split(r"\s*x\s*", text.removesuffix(unit[0]).strip() if unit else text)
+    sides = re.split(r"\s*[x×]\s*", text.removesuffix(unit[0]).strip() if unit else text)
     if unit is None or len(sides) != 3:
-        raise units.QuantityError("no three sides with a unit", f"write e.g. {question.example}")
-    return tuple(units.parse(f"{side.strip()} {unit[0]}", "length") for side in sides)
+        raise units.QuantityError(
+            "no three sides with one unit behind them", f"write e.g. {question.example}"
+        )
+    lengths = tuple(units.parse(f"{side.strip()} {unit[0]}", "length") for side in sides)
+    if not min(lengths) > 0.0:
+        raise units.QuantityError("a side that is not above 0", f"write e.g. {question.example}")
+    return lengths
 
 
-def _contradictions(outline: Outline) -> Iterator[str]:
+_READERS: Mapping[str, Callable[[str, Question], Any]] = {
+    "teeth": _teeth,
+    "bearings": _bearing,
+    "oil": _oil,
+    "lubrication": _lubrication,
+    "box": _box,
+    "profile_shift": _profile_shift,
+    "name": _name,
+}
+"""Readers of the answers that are no quantity, by key."""
+
+
+def _contradictions(outline: Outline) -> Iterator[AnswerFault]:
     """Numbers that cannot all be right, before any file is written."""
     module, distance = (units.parse(text, "length") for text in (outline.module, outline.centre_distance))
     first, second = outline.teeth
     if first > second:
-        yield f"--teeth {first},{second}: the pinion has more teeth than the wheel; write the smaller number first"
+        yield AnswerFault(
+            ("teeth",),
+            f"--teeth {first},{second}: the pinion has more teeth than the wheel; write the smaller number first",
+        )
     reference = 0.5 * module * (first + second)
-    shift = (distance - reference) / module
-    if abs(shift) > MOST_SHIFT:
-        yield (
+    if abs(distance - reference) > MOST_SHIFT * module:
+        yield AnswerFault(
+            ("teeth", "module", "centre_distance"),
             f'--centre-distance "{outline.centre_distance}" does not fit --module "{outline.module}" and --teeth '
             f"{first},{second}: their reference centre distance is {1e3 * reference:.5g} mm, profile shifts make up "
-            f"for {MOST_SHIFT:g} modules; correct one of the three"
+            f"for {MOST_SHIFT:g} modules; correct one of the three",
         )
     if outline.box is not None:
         width = outline.box[1]
         needed = distance + 0.5 * module * (first + second) + 2.0 * module
         if width <= needed:
-            yield (
+            yield AnswerFault(
+                ("box",),
                 f"--box: a width of {1e3 * width:.5g} mm does not hold both gears, which take {1e3 * needed:.5g} mm; "
-                "write outer length x width x height, the width across the shafts"
+                "write outer length x width x height, the width across the shafts",
             )
-    if outline.journal and units.parse(outline.bearings, "length") >= module * (first - 2.5):
-        root = 1e3 * module * (first - 2.5)
-        yield (
-            f'--bearings "{outline.bearings}": the shaft would not leave the root circle of the pinion, {root:.4g} mm; '
-            "write a smaller diameter"
+    face, inner = units.parse(outline.face_width, "length"), outline.inner_length
+    if inner is not None and inner <= face:
+        least = 1e3 * (face + 2.0 * (outline.bearing_width + SEAL_WIDTH))
+        yield AnswerFault(
+            ("box",),
+            f"--box: a length of {1e3 * (inner - face) + least:.5g} mm does not hold gears, bearings and "
+            f"seals, which take {least:.5g} mm; write outer length x width x height, the length along the shafts",
         )
-    if math.isclose(units.parse(outline.face_width, "length"), 0.0):
-        yield f'--face-width "{outline.face_width}": is zero; write e.g. 14 mm'
+    root = module * (first - 2.5)
+    if outline.journal and units.parse(outline.bearings, "length") >= root:
+        yield AnswerFault(
+            ("bearings",),
+            f'--bearings "{outline.bearings}": the shaft would not leave the root circle of the pinion, '
+            f"{1e3 * root:.4g} mm; write a smaller diameter",
+        )

@@ -4,14 +4,14 @@ import json
 import tempfile
 from pathlib import Path
 
-from rigdesign.base.errors import CaseError, OutputError, UsageError
-from rigdesign.base.output_folder import staged
+from rigdesign.base.errors import CaseError, Fault, OutputError
+from rigdesign.base.output_folder import prepare_output, staged
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.case.schema import json_schema
 from rigdesign.case.source import CASE_FILE
 from rigdesign.new_case.case_text import SCHEMA_FILE, commented_text, plain_text
-from rigdesign.new_case.outline import FLAGS, Outline
+from rigdesign.new_case.outline import FLAGS, AnswerFault, AnswersError, Outline
 
 PLACES = {
     ".teeth": "teeth",
@@ -36,20 +36,33 @@ def write_case(outline: Outline, out: Path) -> tuple[Path, ...]:
 
     Raises
     ------
-    UsageError
+    AnswersError
         Answers that no case can be made of, each by its flag.
     OutputError
         The folder cannot be written, or holds one of the files already.
     """
-    paths = (out / CASE_FILE, out / SCHEMA_FILE)
-    for path in paths:
-        if path.exists():
-            raise OutputError(f"{path} is there already; remove it or give another folder with --out")
+    paths = free_paths(out)
     text = commented_text(outline, _tried(outline), out)
     with staged(out) as scratch:
         (scratch / CASE_FILE).write_text(text, encoding="utf-8", newline="\n")
         (scratch / SCHEMA_FILE).write_text(schema_text(), encoding="utf-8", newline="\n")
         load_case(scratch / CASE_FILE)
+    return paths
+
+
+def free_paths(out: Path) -> tuple[Path, ...]:
+    """Paths of the files of a new case.
+
+    Raises
+    ------
+    OutputError
+        The folder cannot be written, or holds one of the files already.
+    """
+    paths = (out / CASE_FILE, out / SCHEMA_FILE)
+    for path in paths:
+        if path.exists() or path.is_symlink():
+            raise OutputError(f"{path} is there already; remove it or give another folder with --out")
+    prepare_output(out)
     return paths
 
 
@@ -65,9 +78,10 @@ def _tried(outline: Outline) -> Case:
         try:
             return load_case(file)
         except CaseError as error:
-            faults = [f"{_flag(fault.path)}: {fault}" for fault in error.faults]
-            raise UsageError("no case was written:\n  " + "\n  ".join(dict.fromkeys(faults))) from None
+            raise AnswersError([_answer_fault(fault) for fault in error.faults]) from None
 
 
-def _flag(path: str) -> str:
-    return next((FLAGS[key] for part, key in PLACES.items() if part in path), "the case")
+def _answer_fault(fault: Fault) -> AnswerFault:
+    """A fault of the case, by the answer it comes from."""
+    key = next((key for part, key in PLACES.items() if part in fault.path), None)
+    return AnswerFault(() if key is None else (key,), f"{FLAGS.get(key or '', 'the case')}: {fault}")

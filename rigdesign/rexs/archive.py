@@ -17,6 +17,7 @@ HIGHEST_RATIO = 200.0
 SMALL = 1_000_000
 """Bytes unpacked up to which the ratio does not count."""
 _PLAIN_ARCHIVE = "pack the model file and what it refers to again, as an ordinary zip archive"
+_UNPACK = "unpack it and give the model it holds"
 _BROKEN = (
     BadZipFile, zlib.error, EOFError, OSError, RuntimeError, NotImplementedError, ValueError, KeyError, IndexError,
     OverflowError, MemoryError,
@@ -52,8 +53,13 @@ def model_in_archive(content: bytes, source: str) -> tuple[str, bytes]:
     except _BROKEN as error:
         problem = f"a damaged archive ({type(error).__name__}: {str(error)[:100]})"
         faults.stop("archive", None, problem, _PLAIN_ARCHIVE)
-    if len(model) > MOST_BYTES or model.startswith(b"PK\x03\x04"):
-        faults.stop(f"entry {entry.filename[:100]}", None, "an archive or too large", _PLAIN_ARCHIVE)
+    if len(model) > MOST_BYTES:
+        problem = f"above the limit of {MOST_BYTES / 1e6:.3g} MB unpacked"
+        faults.stop(
+            f"entry {entry.filename[:100]}", None, problem, "export the model without results of calculation"
+        )
+    if model.startswith(b"PK\x03\x04"):
+        faults.stop(f"entry {entry.filename[:100]}", None, "an archive in the archive", _UNPACK)
     return entry.filename, model
 
 
@@ -91,7 +97,7 @@ def _check_entry(entry: ZipInfo, faults: FaultList) -> None:
     if entry.flag_bits & 0x1:
         faults.add(place, None, "encrypted", "pack the archive without a password")
     if name.lower().endswith(ARCHIVE_SUFFIXES):
-        faults.add(place, None, "an archive in the archive", "unpack it and give the model it holds")
+        faults.add(place, None, "an archive in the archive", _UNPACK)
 
 
 def _model_entry(entries: list[ZipInfo], faults: FaultList) -> ZipInfo:

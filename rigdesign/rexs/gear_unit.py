@@ -63,7 +63,10 @@ class UnitMesh:
 
 @dataclass(frozen=True)
 class ShaftSection:
-    """A piece of a shaft: cylinder or cone, solid where its bores are zero; diameters at its begin and end [m]."""
+    """A piece of a shaft: cylinder or cone, solid where its bores are zero; diameters at its begin and end [m].
+
+    start : from the start of the shaft; zero where the file states none for the only section
+    """
 
     id: int
     start: float
@@ -72,8 +75,6 @@ class ShaftSection:
     outer_end: float
     inner_begin: float = 0.0
     inner_end: float = 0.0
-    start_stated: bool = True
-    """False for the only section of a shaft, which then starts at zero."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,7 @@ class UnitBearing:
 
     kind : rolling with catalogue numbers; journal (hydrodynamic); stiffness: a support of given stiffness, no more
     inner_diameter, outer_diameter, width : of bore, outer ring, ring; of a journal bearing its bore, shell and width
-    radial_clearance : in operation, else as delivered; of a journal bearing the diametral one [m]
+    radial_clearance : as delivered, else in operation; of a journal bearing the diametral one [m]
     axial_force : direction in which it takes axial force: both_directions, positive, negative, no_direction
     radial_stiffness, axial_stiffness : [N/m]
     lubrication : as REXS has it, e.g. ``oil_bath``

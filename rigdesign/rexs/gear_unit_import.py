@@ -7,7 +7,6 @@ from rigdesign.rexs.external_parts import DATA_SOURCE, REFERENCED
 from rigdesign.rexs.gear_unit import GearUnit
 from rigdesign.rexs.loads import read_operation
 from rigdesign.rexs.model import RexsModel
-from rigdesign.rexs.requirements import MissingInput, missing_inputs
 from rigdesign.rexs.shafts import read_shafts
 from rigdesign.rexs.substances import read_lubricant, read_materials
 from rigdesign.rexs.supports import COUPLINGS, read_bearings, read_couplings
@@ -20,6 +19,8 @@ _TAKEN = (
     "hydrodynamic_radial_plain_bearing", *COUPLINGS, "lubricant", "material", "external_load",
 )  # fmt: skip
 """Component types of which a case takes something."""
+EPICYCLIC = ("planetary_stage", "ring_gear")
+_OTHER_STAGES = ("bevel_stage", "worm_stage", *EPICYCLIC)
 _IN_SPACE = ("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position")
 """Place and direction in the gear unit."""
 
@@ -31,7 +32,7 @@ class GearUnitImport:
     unit : the gear unit, in SI
     mapped : attributes taken over, with their place in it
     listed : attributes not taken over, with the reason
-    missing : what a case needs beyond it, needed inputs first
+    other_stages : epicyclic, bevel and worm stages and ring gears, which no case has: type and id
     renamed : names of older versions that were read as those of REXS 2.0
     """
 
@@ -41,8 +42,13 @@ class GearUnitImport:
     unit: GearUnit
     mapped: tuple[MappedAttribute, ...]
     listed: tuple[ListedAttribute, ...]
-    missing: tuple[MissingInput, ...]
+    other_stages: tuple[str, ...]
     renamed: tuple[Renaming, ...]
+
+    @property
+    def epicyclic(self) -> bool:
+        """Whether axes of gears may turn: speed and torque of a pair then do not follow from its teeth."""
+        return any(found.startswith(EPICYCLIC) for found in self.other_stages)
 
 
 def import_gear_unit(model: RexsModel) -> GearUnitImport:
@@ -57,7 +63,9 @@ def import_gear_unit(model: RexsModel) -> GearUnitImport:
     for component in newest.components:
         for attribute in (DATA_SOURCE, REFERENCED):
             log.refuse(
-                component, attribute, "the component stands in another file, which is not beside the model"
+                component,
+                attribute,
+                "the component stands in another file, which is not in the folder of the model",
             )
         if component.type in _TAKEN:
             for attribute in _IN_SPACE:
@@ -72,7 +80,7 @@ def import_gear_unit(model: RexsModel) -> GearUnitImport:
         unit=unit,
         mapped=log.mapped,
         listed=log.listed,
-        missing=missing_inputs(newest, unit),
+        other_stages=tuple(f"{found.type} {found.id}" for found in newest.of_type(*_OTHER_STAGES)),
         renamed=renamed,
     )
 

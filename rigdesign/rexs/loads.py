@@ -78,7 +78,7 @@ def _state(model: RexsModel, log: AttributeLog, components: tuple[Component, ...
         for part in casings
     ]
     share = [log.number(part, "operating_time_fraction", "%", f"{where}.time_share") for part in units]
-    duration = [log.number(part, "operating_time", "h", f"{where}.duration") for part in units]
+    duration = [log.number(part, "operating_time", "h", f"{where}.duration", above=0.0) for part in units]
     speeds = {
         part.id: log.number(part, "rotational_speed", "1 / min", f"{where}.speeds[{part.id}]")
         for part in components
@@ -107,6 +107,9 @@ def _load(model: RexsModel, log: AttributeLog, part: Component, where: str) -> S
 
 
 def _over(load: ShaftLoad, base: ShaftLoad) -> ShaftLoad:
+    """``load`` with ``base`` where it says nothing; torque and power of ``base`` count only where it has neither."""
+    if load.torque is not None or load.power is not None:
+        base = replace(base, torque=None, power=None)
     stated = {
         name: value
         for name in ("position", "torque", "power", "transmits_torque")

@@ -18,7 +18,7 @@ _WIDE_STARTS = (b"\xff\xfe", b"\xfe\xff")
 def read_rexs(path: str | Path) -> RexsModel:
     """Model of a REXS file: XML (.rexs), JSON (.rexsj) or zip (.rexsz), version 1.0 to 2.0.
 
-    Components that stand in files beside it are put in; not so for an archive.
+    Components that stand in other files of its folder are put in; not so for an archive.
 
     Raises
     ------

@@ -58,4 +58,4 @@ def _section(log: AttributeLog, part: Component, shaft: str, only: bool) -> Shaf
             log.refuse(part, attribute.id, problem)
         return None
     bores = max(inner_begin, 0.0), max(inner_end, 0.0)
-    return ShaftSection(part.id, start, length, begin, end, *bores, start_stated=stated is not None)
+    return ShaftSection(part.id, start, length, begin, end, *bores)

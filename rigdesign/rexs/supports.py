@@ -13,7 +13,8 @@ _KINDS: dict[str, Literal["rolling", "journal", "stiffness"]] = {
     "concept_bearing": "stiffness",
 }
 COUPLINGS = ("coupling", "switchable_coupling")
-_CLEARANCES = ("operating_radial_bearing_clearance", "radial_bearing_clearance", "radial_clearance")
+_CLEARANCES = ("radial_bearing_clearance", "radial_clearance", "operating_radial_bearing_clearance")
+"""As delivered before that in operation, which a case computes."""
 _JOURNAL_CLEARANCES = ("diameter_clearance_plain_bearing",)
 RIGID = 1e15
 """Stiffness [N/m], or [N m/rad] times 1000, from which on exporters mean: rigid."""
@@ -115,8 +116,13 @@ def _place(model: RexsModel, log: AttributeLog, component: Component, here: str)
 def _clearance(log: AttributeLog, component: Component, here: str) -> float | None:
     journal = component.type == "hydrodynamic_radial_plain_bearing"
     names = _JOURNAL_CLEARANCES if journal else _CLEARANCES
-    found = [log.number(component, name, "mum", f"{here}.radial_clearance") for name in names]
-    return next((value for value in found if value is not None), None)
+    taken = None
+    for name in names:
+        found = log.number(component, name, "mum", f"{here}.radial_clearance")
+        if taken is not None:
+            log.refuse(component, name, "the clearance as delivered counts")
+        taken = found if taken is None else taken
+    return taken
 
 
 def _stiffness(log: AttributeLog, component: Component, attribute: str, unit: str, here: str) -> float | None:

@@ -9,7 +9,7 @@ DEEPEST = 20
 """Levels of elements; REXS has seven."""
 MOST_ELEMENTS = 1_000_000
 _EMPTY_FILE_CODE = 3
-_TRUNCATED = {_EMPTY_FILE_CODE, 4, 5, 6, 20}
+_TRUNCATED = {_EMPTY_FILE_CODE, 5, 6, 20}
 """Expat error numbers of a file that ends too early or in the middle of something."""
 
 

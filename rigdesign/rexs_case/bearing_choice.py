@@ -1,4 +1,4 @@
-"""Which bearing of a case stands for one of a file: tabled, with numbers of its own, or the nearest tabled one."""
+"""Bearing of a case for one of a file: tabled, with numbers of its own, or the nearest tabled one."""
 
 import math
 import re
@@ -9,7 +9,7 @@ from rigdesign.rexs.gear_unit import UnitBearing
 if TYPE_CHECKING:
     from dynamics.bearing.rolling_catalogue import BearingKind, CatalogueBearing
 
-KINDS: dict[str, "BearingKind"] = {
+KIND_OF_TYPE: dict[str, "BearingKind"] = {
     "radial_grooved_ball_bearing": "deep_groove_ball",
     "radial_roller_bearing": "cylindrical_roller",
     "radial_tapered_roller_bearing": "tapered_roller",
@@ -17,7 +17,7 @@ KINDS: dict[str, "BearingKind"] = {
 }
 """Type in REXS -> kind of a case."""
 SAME_BORE = 0.1
-"""Difference of two bores, over the bore, up to which one bearing may stand for another."""
+"""Difference of two bores, over the bore, up to which one bearing may replace another."""
 PRINTED = 0.01
 """The same up to which a designation and a stated bore are of one bearing."""
 
@@ -34,7 +34,7 @@ def tabled_bearing(bearing: UnitBearing) -> "CatalogueBearing | None":
             found = catalogue_bearing(name)
         except BearingError:
             continue
-        kind = KINDS.get(bearing.catalogue.type or "", found.kind)
+        kind = KIND_OF_TYPE.get(bearing.catalogue.type or "", found.kind)
         bore = bearing.inner_diameter
         if kind == found.kind and (bore is None or abs(bore / found.bore - 1.0) <= PRINTED):
             return found
@@ -48,7 +48,7 @@ def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
     """
     from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
 
-    bore, kind = bearing.inner_diameter, KINDS.get(bearing.catalogue.type or "")
+    bore, kind = bearing.inner_diameter, KIND_OF_TYPE.get(bearing.catalogue.type or "")
     if bore is None or kind is None:
         return None
     outside, series = bearing.outer_diameter, series_of(bearing)
@@ -70,7 +70,7 @@ def series_of(bearing: UnitBearing) -> str | None:
     from dynamics.bearing.rolling_catalogue import DESCRIBED_SERIES
 
     digits = re.search(r"\d{3,5}", bearing.catalogue.designation or "")
-    kind = KINDS.get(bearing.catalogue.type or "")
+    kind = KIND_OF_TYPE.get(bearing.catalogue.type or "")
     if digits is None or kind is None:
         return None
     stem = digits[0][:-2]
@@ -78,7 +78,7 @@ def series_of(bearing: UnitBearing) -> str | None:
 
 
 def same_bore(bearing: UnitBearing, other: "CatalogueBearing") -> bool:
-    """Whether one may stand for the other by their bores."""
+    """Whether one may replace the other by their bores."""
     return bearing.inner_diameter is not None and abs(bearing.inner_diameter / other.bore - 1.0) <= SAME_BORE
 
 

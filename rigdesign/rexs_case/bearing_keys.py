@@ -16,16 +16,16 @@ from rigdesign.rexs_case.bearing_choice import (
     tabled_bearing,
 )
 from rigdesign.rexs_case.entries import (
+    CaseTable,
     Entry,
     Origins,
-    Table,
     assumed,
     millimetres,
     needed,
     quantity,
     quoted,
 )
-from rigdesign.rexs_case.stage import SIDES, SeatedGear, Stage, diameter_at
+from rigdesign.rexs_case.stage import SIDES, GearStage, SeatedGear, diameter_at
 
 if TYPE_CHECKING:
     from dynamics.bearing.rolling_catalogue import CatalogueBearing
@@ -35,7 +35,7 @@ RPM = math.pi / 30.0
 
 
 @dataclass(frozen=True)
-class Seat:
+class SeatedBearing:
     """A bearing with its place in the case.
 
     locating : whether it holds its shaft, by the file or because one has to
@@ -51,7 +51,7 @@ class Seat:
     diameter: float | None
 
 
-def bearing_tables(origins: Origins, stage: Stage) -> Iterator[Table]:
+def bearing_tables(origins: Origins, stage: GearStage) -> Iterator[CaseTable]:
     """The bearings of both shafts; a shaft with less than two gets what the user has to give."""
     helical = bool(stage.pinion.gear.helix_angle)
     for seated in stage.gears:
@@ -59,7 +59,7 @@ def bearing_tables(origins: Origins, stage: Stage) -> Iterator[Table]:
             path = f"gearboxes.test.bearings.{seat.name}"
             title = f"{origins.file}: bearing {seat.bearing.id} {seat.bearing.name}"
             if seat.bearing.kind == "journal":
-                yield Table(path, (*_place(origins, seat), *_journal(origins, seat.bearing)), (title,))
+                yield CaseTable(path, (*_place(origins, seat), *_journal(origins, seat.bearing)), (title,))
             else:
                 yield from _rolling(origins, seat, path, title)
         for side in SIDES[len(seated.bearings) :]:
@@ -68,21 +68,21 @@ def bearing_tables(origins: Origins, stage: Stage) -> Iterator[Table]:
             entry = needed(
                 f"{seated.name}_{side}", example.replace("{ ", f"{{ {_at(seated, side)}, "), remedy
             )
-            yield Table("gearboxes.test.bearings", (entry,))
+            yield CaseTable("gearboxes.test.bearings", (entry,))
 
 
 def _at(seated: SeatedGear, side: str) -> str:
     return f'shaft = "test_{seated.name}", side = "{side}"'
 
 
-def _seats(seated: SeatedGear, helical: bool) -> Iterator[Seat]:
+def _seats(seated: SeatedGear, helical: bool) -> Iterator[SeatedBearing]:
     places = [seated.bearing_at(bearing) for bearing in seated.bearings]
     known = _ordered(seated, places)
     holds = _locating(seated.bearings)
     able = [number for number, bearing in enumerate(seated.bearings) if can_hold(bearing)]
     wanted = able[-1] if helical and holds is None and able else None
     for number, bearing in enumerate(seated.bearings):
-        yield Seat(
+        yield SeatedBearing(
             name=f"{seated.name}_{SIDES[number]}",
             shaft=f"test_{seated.name}",
             side=SIDES[number],
@@ -119,7 +119,7 @@ def _locating(bearings: tuple[UnitBearing, ...]) -> int | None:
     return None
 
 
-def _place(origins: Origins, seat: Seat) -> Iterator[Entry]:
+def _place(origins: Origins, seat: SeatedBearing) -> Iterator[Entry]:
     at = f"bearings[{seat.bearing.id}]"
     yield origins.stated("shaft", quoted(seat.shaft), note="shaft of the gear")
     yield origins.stated("side", quoted(seat.side), note="order along the shaft")
@@ -141,7 +141,7 @@ def _journal(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:
         yield origins.stated("diametral_clearance", value, f"{at}.radial_clearance")
 
 
-def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Table]:
+def _rolling(origins: Origins, seat: SeatedBearing, path: str, title: str) -> Iterator[CaseTable]:
     bearing, at = seat.bearing, f"bearings[{seat.bearing.id}]"
     tabled, sibling = tabled_bearing(bearing), nearest_tabled(bearing)
     kind = origins.stated("type", '"rolling"', note="rolling bearing")
@@ -155,7 +155,7 @@ def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Ta
         numbers = tuple(_catalogue(origins, bearing, sibling))
     elif sibling is not None and same_bore(bearing, sibling):
         written = bearing.catalogue.designation or bearing.name or "a bearing without designation"
-        reason = f"stands for {written}, which is not tabled: the nearest one in bore and outside diameter"
+        reason = f"in place of {written}, which is not tabled: the nearest one in bore and outside diameter"
         entries.append(assumed("designation", quoted(sibling.designation), reason))
     else:
         example = quoted(example_designation(seat.diameter))
@@ -165,12 +165,12 @@ def _rolling(origins: Origins, seat: Seat, path: str, title: str) -> Iterator[Ta
     elif seat.locating == "assumed":
         entries.append(assumed("locating", "true", "one bearing takes the axial force of helical gears"))
     entries += _condition(origins, bearing)
-    yield Table(path, tuple(entries), (title,))
+    yield CaseTable(path, tuple(entries), (title,))
     if numbers:
-        yield Table(f"{path}.catalogue", numbers)
+        yield CaseTable(f"{path}.catalogue", numbers)
 
 
-def _missing(seat: Seat) -> str:
+def _missing(seat: SeatedBearing) -> str:
     """What is to be given of a bearing, with what is known of it."""
     written = seat.bearing.catalogue.designation or seat.bearing.name
     known = "" if not written else f" ({written})"
@@ -243,30 +243,32 @@ def _of_kind(
         if bearing.axial_force is not None:
             carries = "false" if bearing.axial_force == "no_direction" else "true"
             yield origins.stated("carries_axial_load", carries, f"{at}.axial_force")
-    if sibling.kind not in ("tapered_roller", "angular_contact_ball"):
-        return
-    angle = data.contact_angle or (math.atan(data.limit_e / 1.5) if data.limit_e else None)
-    for key, stated, of_sibling, unit, field in (
-        (
-            "contact_angle",
-            angle and math.degrees(angle),
-            math.degrees(sibling.contact_angle),
-            "deg",
-            "contact_angle",
-        ),
-        ("axial_limit", data.limit_e, sibling.axial_limit, "", "limit_e"),
-        ("axial_factor", data.axial_factor, sibling.axial_factor, "", "axial_factor"),
-        (
-            "static_axial_factor",
-            data.static_axial_factor,
-            sibling.static_axial_factor,
-            "",
-            "static_axial_factor",
-        ),
-    ):
-        value = stated or of_sibling
-        text = quantity(value, unit) if unit else f"{value:.9g}"
-        if stated:
-            yield origins.stated(key, text, f"{at}.catalogue.{field}", f"{at}.catalogue.limit_e")
-        else:
-            yield assumed(key, text, f"{like}, the nearest tabled bearing of the kind")
+    if sibling.kind in ("tapered_roller", "angular_contact_ball"):
+        yield _contact_angle(origins, bearing, sibling, like)
+        for key, stated, of_sibling, field in (
+            ("axial_limit", data.limit_e, sibling.axial_limit, "limit_e"),
+            ("axial_factor", data.axial_factor, sibling.axial_factor, "axial_factor"),
+            (
+                "static_axial_factor",
+                data.static_axial_factor,
+                sibling.static_axial_factor,
+                "static_axial_factor",
+            ),
+        ):
+            if stated is not None:
+                yield origins.stated(key, f"{stated:.9g}", f"{at}.catalogue.{field}")
+            else:
+                yield assumed(key, f"{of_sibling:.9g}", f"{like}, the nearest tabled bearing of the kind")
+
+
+def _contact_angle(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing", like: str) -> Entry:
+    """Contact angle of the file; of a tapered roller bearing also by its limit e = 1.5 tan(alpha) (ISO 281)."""
+    data, at = bearing.catalogue, f"bearings[{bearing.id}].catalogue"
+    if data.contact_angle:
+        angle = abs(data.contact_angle)
+        return origins.stated("contact_angle", quantity(math.degrees(angle), "deg"), f"{at}.contact_angle")
+    if data.limit_e is not None and sibling.kind == "tapered_roller":
+        value = quantity(math.degrees(math.atan(data.limit_e / 1.5)), "deg")
+        return origins.stated("contact_angle", value, f"{at}.limit_e", note="e = 1.5 tan(alpha), ISO 281")
+    value = quantity(math.degrees(sibling.contact_angle), "deg")
+    return assumed("contact_angle", value, f"{like}, the nearest tabled bearing of the kind")

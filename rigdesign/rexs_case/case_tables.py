@@ -7,23 +7,21 @@ from math import ceil
 from rigdesign.rexs.gear_unit import GearUnit, UnitMaterial
 from rigdesign.rexs.gear_unit_import import GearUnitImport
 from rigdesign.rexs_case.bearing_keys import bearing_tables, gear_position
-from rigdesign.rexs_case.entries import Entry, Origins, Table, millimetres, quoted
+from rigdesign.rexs_case.entries import CaseTable, Entry, Origins, millimetres, quoted
 from rigdesign.rexs_case.gear_keys import gear_entries, material_entry, mesh_entries, toothing_of
 from rigdesign.rexs_case.operation_keys import oil_tables, operation_of, schedule_tables
 from rigdesign.rexs_case.pinion_load import pinion_loads
 from rigdesign.rexs_case.shaft_keys import shaft_tables
-from rigdesign.rexs_case.stage import SeatedGear, Stage
+from rigdesign.rexs_case.stage import GearStage, SeatedGear
 
 LIKE_THE_TEST = (
     "the slave gearbox equals the test gearbox, without a housing; a REXS file holds one unit, no rig"
 )
-EPICYCLIC = ("planetary_stage", "ring_gear")
-"""Components that make the axes of some gears turn: speed and torque of a pair do not follow from its teeth."""
 OFF_THE_TIPS = 0.02
 """Room between tips and walls in the housing that is suggested [m]."""
 
 
-def case_tables(imported: GearUnitImport, stage: Stage, file: str) -> tuple[Table, ...]:
+def case_tables(imported: GearUnitImport, stage: GearStage, file: str) -> tuple[CaseTable, ...]:
     """The case of a stage.
 
     Parameters
@@ -35,14 +33,14 @@ def case_tables(imported: GearUnitImport, stage: Stage, file: str) -> tuple[Tabl
     return tuple(_tables(imported, stage, Origins(file, imported.mapped)))
 
 
-def _tables(imported: GearUnitImport, stage: Stage, origins: Origins) -> Iterator[Table]:
+def _tables(imported: GearUnitImport, stage: GearStage, origins: Origins) -> Iterator[CaseTable]:
     unit = imported.unit
     named = unit.name or origins.file.rpartition(".")[0]
     head = Entry(
         "name", quoted(_name(named)), "stated", f"{origins.file}: name of the gear unit", markable=False
     )
     version = Entry("schema_version", "1", "stated", "form of this file", markable=False)
-    yield Table("", (version, head))
+    yield CaseTable("", (version, head))
     toothing = toothing_of(stage)
     for seated in stage.gears:
         entries = list(gear_entries(origins, stage, seated))
@@ -54,20 +52,19 @@ def _tables(imported: GearUnitImport, stage: Stage, origins: Origins) -> Iterato
         remark: tuple[str, ...] = (f"gear {seated.gear.id} {seated.gear.name}",)
         if seated is stage.wheel and toothing.contradiction:
             remark += ("its profile shift in the file contradicts the centre distance, which counts",)
-        yield Table(f"gearboxes.test.gears.{seated.name}", tuple(entries), remark)
+        yield CaseTable(f"gearboxes.test.gears.{seated.name}", tuple(entries), remark)
     mesh_remark = f"cylindrical_stage {stage.mesh.id} {stage.mesh.name}"
-    yield Table("gearboxes.test.meshes.main", tuple(mesh_entries(origins, stage)), (mesh_remark,))
+    yield CaseTable("gearboxes.test.meshes.main", tuple(mesh_entries(origins, stage)), (mesh_remark,))
     yield from bearing_tables(origins, stage)
     yield from shaft_tables(origins, stage)
-    epicyclic = any(item.place.startswith(EPICYCLIC) for item in imported.missing)
-    operation = operation_of(stage, () if epicyclic else pinion_loads(unit, stage.mesh))
+    operation = operation_of(stage, () if imported.epicyclic else pinion_loads(unit, stage.mesh))
     yield from oil_tables(origins, unit, stage, operation)
     like = Entry("like", '"test"', "assumed", LIKE_THE_TEST, markable=False)
-    yield Table("gearboxes.slave", (like,), tuple(_housing_remarks(stage)))
+    yield CaseTable("gearboxes.slave", (like,), tuple(_housing_remarks(stage)))
     yield from schedule_tables(origins, unit, operation)
 
 
-def _housing_remarks(stage: Stage) -> Iterator[str]:
+def _housing_remarks(stage: GearStage) -> Iterator[str]:
     """A housing to write, without which there is no temperature field."""
     tips = [_tip(seated) for seated in stage.gears]
     distance = toothing_of(stage).centre_distance

@@ -36,7 +36,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Table:
+class CaseTable:
     """A table of the case.
 
     path : empty for the keys at its head
@@ -120,12 +120,12 @@ def millimetres(length: float) -> str:
     return quantity(1e3 * length, "mm")
 
 
-def toml_text(tables: Sequence[Table], *, with_examples: bool = False) -> str:
+def toml_text(tables: Sequence[CaseTable], *, with_examples: bool = False) -> str:
     """The tables as a file; needed keys are comments, or with examples, keys like any other."""
     return "\n".join(line for table in tables for line in _table(table, with_examples)) + "\n"
 
 
-def _table(table: Table, with_examples: bool) -> Iterator[str]:
+def _table(table: CaseTable, with_examples: bool) -> Iterator[str]:
     for remark in table.remarks:
         yield f"# {printable(' '.join(remark.split()))}"
     if table.path:

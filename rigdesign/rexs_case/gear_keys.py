@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rigdesign.rexs.gear_unit import UnitGear, UnitMaterial
 from rigdesign.rexs_case.entries import Entry, Origins, assumed, millimetres, needed, quantity
-from rigdesign.rexs_case.stage import SeatedGear, Stage
+from rigdesign.rexs_case.stage import GearStage, SeatedGear
 
 CASE_HARDENING = re.compile(r"\d+\s*(Cr|Mn|Ni|Mo)[A-Za-z]*\s*\d")
 """Designations of alloyed steels in which case-hardening steels are written: 16MnCr5, 18CrNiMo7-6."""
@@ -18,7 +18,7 @@ STANDARD_ANGLE = math.radians(20.0)
 
 @dataclass(frozen=True)
 class Toothing:
-    """Toothing of a stage as far as the file settles it.
+    """Toothing of a stage as far as the file determines it.
 
     centre_distance : stated, or from the profile shifts [m]
     shifts : profile shifts of pinion and wheel, None where neither file nor centre distance says it
@@ -37,7 +37,7 @@ class Toothing:
         return self.shifts[1] is not None and self.written == (True, False)
 
 
-def toothing_of(stage: Stage) -> Toothing:
+def toothing_of(stage: GearStage) -> Toothing:
     """Centre distance, profile shifts and tips of a stage, each from the others where the file leaves it out."""
     gears = [seated.gear for seated in stage.gears]
     stated = (gears[0].profile_shift, gears[1].profile_shift)
@@ -69,7 +69,7 @@ def _fitting(
     return (first, second), (True, True)
 
 
-def gear_entries(origins: Origins, stage: Stage, seated: SeatedGear) -> Iterator[Entry]:
+def gear_entries(origins: Origins, stage: GearStage, seated: SeatedGear) -> Iterator[Entry]:
     """Keys of a gear; its material and quality only where the file states them."""
     gear, at = seated.gear, f"gears[{seated.gear.id}]"
     toothing, side = toothing_of(stage), stage.gears.index(seated)
@@ -110,7 +110,7 @@ def material_entry(origins: Origins, material: UnitMaterial | None) -> Entry | N
     return origins.stated("material", '"case_hardened_steel"', target, note=designation)
 
 
-def mesh_entries(origins: Origins, stage: Stage) -> Iterator[Entry]:
+def mesh_entries(origins: Origins, stage: GearStage) -> Iterator[Entry]:
     """Keys of the mesh."""
     mesh, gear, at = stage.mesh, stage.pinion.gear, f"meshes[{stage.mesh.id}]"
     pinion = f"gears[{gear.id}]"
@@ -157,7 +157,7 @@ def _height(gear: UnitGear, shift: float | None) -> float | None:
     return 0.5 * (tip - reference) / module - shift
 
 
-def _shift_sum(stage: Stage, distance: float | None) -> float | None:
+def _shift_sum(stage: GearStage, distance: float | None) -> float | None:
     """Sum of the profile shifts that a centre distance fixes; None where gears cannot mesh at it."""
     gear, teeth = stage.pinion.gear, _teeth(stage)
     if distance is None or gear.normal_module is None or teeth is None:
@@ -172,7 +172,7 @@ def _shift_sum(stage: Stage, distance: float | None) -> float | None:
         return None
 
 
-def _distance(stage: Stage, total: float) -> float | None:
+def _distance(stage: GearStage, total: float) -> float | None:
     """Centre distance [m] at which `_shift_sum` is ``total``, by bisection up to two modules beyond the shifts."""
     gear, teeth = stage.pinion.gear, _teeth(stage)
     if gear.normal_module is None or teeth is None:
@@ -186,6 +186,6 @@ def _distance(stage: Stage, total: float) -> float | None:
     return 0.5 * (low + high)
 
 
-def _teeth(stage: Stage) -> tuple[int, int] | None:
+def _teeth(stage: GearStage) -> tuple[int, int] | None:
     first, second = (seated.gear.teeth for seated in stage.gears)
     return None if first is None or second is None else (first, second)

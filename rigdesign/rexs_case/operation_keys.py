@@ -4,10 +4,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.rexs.gear_unit import GearUnit, UnitLubricant
-from rigdesign.rexs_case.entries import Entry, Origins, Table, assumed, needed, quantity, quoted
+from rigdesign.rexs_case.entries import CaseTable, Entry, Origins, assumed, needed, quantity, quoted
 from rigdesign.rexs_case.pinion_load import PinionLoad
-from rigdesign.rexs_case.stage import Stage
+from rigdesign.rexs_case.stage import GearStage
 
 FASTEST_DIP = 15.0
 """Pitch line velocity up to which gears dip, beyond which oil is injected [m/s]."""
@@ -16,15 +17,14 @@ ALIKE = 0.02
 FEWEST, MOST = 1e-6, 1e-1
 """Kinematic viscosities that an oil may have [m^2/s]."""
 RPM = math.pi / 30.0
-ZERO_CELSIUS = 273.15
 
 
 @dataclass(frozen=True)
 class Operation:
-    """Operating cases at the pinion, and the pitch line velocity of the first [m/s]."""
+    """Operating cases at the pinion, and the pitch line velocity of the first [m/s]; None where it is not known."""
 
     loads: tuple[PinionLoad, ...]
-    velocity: float
+    velocity: float | None
 
     @property
     def first(self) -> PinionLoad | None:
@@ -32,38 +32,42 @@ class Operation:
         return self.loads[0] if self.loads else None
 
 
-def operation_of(stage: Stage, loads: tuple[PinionLoad, ...]) -> Operation:
+def operation_of(stage: GearStage, loads: tuple[PinionLoad, ...]) -> Operation:
     """Operation of a stage."""
     gear, speed = stage.pinion.gear, loads[0].speed if loads else None
-    radius = 0.5 * (gear.normal_module or 0.0) * (gear.teeth or 0)
-    return Operation(loads, radius * (speed or 0.0))
+    if gear.normal_module is None or gear.teeth is None or not speed:
+        return Operation(loads, None)
+    radius = 0.5 * gear.normal_module * gear.teeth / math.cos(gear.helix_angle or 0.0)
+    return Operation(loads, radius * speed)
 
 
 # ------------------------------------------------------------------ oil
 
 
-def oil_tables(origins: Origins, unit: GearUnit, stage: Stage, operation: Operation) -> Iterator[Table]:
+def oil_tables(
+    origins: Origins, unit: GearUnit, stage: GearStage, operation: Operation
+) -> Iterator[CaseTable]:
     """Oil of the test gearbox, and the oil itself where it is no built-in one."""
     journals = any(bearing.kind == "journal" for seated in stage.gears for bearing in seated.bearings)
-    dips = not journals and operation.velocity <= FASTEST_DIP
+    velocity = operation.velocity
+    dips = not journals and (velocity is None or velocity <= FASTEST_DIP)
     name, custom = _oil(origins, unit.lubricant)
     temperature = _oil_temperature(origins, operation, "sump_temperature" if dips else "inlet_temperature")
     if dips:
-        reason = (
-            f"gears dip at a pitch line velocity of {operation.velocity:.3g} m/s, at most {FASTEST_DIP:g} m/s"
-        )
+        known = "" if velocity is None else f"; here {velocity:.3g} m/s"
+        reason = f"gears dip up to a pitch line velocity of {FASTEST_DIP:g} m/s{known}"
         kind = Entry("lubrication", '"dip"', "assumed", f"{reason}; or jet", markable=False)
         level = assumed("level", '"0 mm"', "oil up to the shaft axes, as in an FZG rig")
-        yield Table("gearboxes.test.oil", (kind, name, level, temperature))
+        yield CaseTable("gearboxes.test.oil", (kind, name, level, temperature))
     else:
         why = "plain bearings need fed oil" if journals else f"above {FASTEST_DIP:g} m/s at the pitch line"
         kind = Entry("lubrication", '"jet"', "assumed", f"oil is injected, {why}", markable=False)
-        yield Table("gearboxes.test.oil", (kind, name, temperature))
+        yield CaseTable("gearboxes.test.oil", (kind, name, temperature))
     if custom is not None:
         yield custom
 
 
-def _oil(origins: Origins, oil: UnitLubricant | None) -> tuple[Entry, Table | None]:
+def _oil(origins: Origins, oil: UnitLubricant | None) -> tuple[Entry, CaseTable | None]:
     """The key of the oil, and its table where it is no built-in one."""
     example, remedy = '"FVA 3A"', "built-in oil, or a table of its own under oils with two viscosities"
     if oil is None:
@@ -88,7 +92,7 @@ def _oil(origins: Origins, oil: UnitLubricant | None) -> tuple[Entry, Table | No
             entries.append(origins.stated(key, quantity(value, unit), f"lubricant.{field}"))
         else:
             entries.append(assumed(key, f'"{usual} {unit}"', why, f'"{low} {unit}"', f'"{high} {unit}"'))
-    return origins.stated("oil", '"imported"', "lubricant.designation"), Table(
+    return origins.stated("oil", '"imported"', "lubricant.designation"), CaseTable(
         "oils.imported", tuple(entries)
     )
 
@@ -123,7 +127,7 @@ def _targets(case: str | None, place: str) -> tuple[str, ...]:
 # ------------------------------------------------------------------ schedule
 
 
-def schedule_tables(origins: Origins, unit: GearUnit, operation: Operation) -> Iterator[Table]:
+def schedule_tables(origins: Origins, unit: GearUnit, operation: Operation) -> Iterator[CaseTable]:
     """The load case with the most torque as the test; the others in comments."""
     load = operation.first
     speed, torque = (load.speed, load.torque) if load is not None else (None, None)
@@ -158,11 +162,11 @@ def schedule_tables(origins: Origins, unit: GearUnit, operation: Operation) -> I
     if len(operation.loads) > 1:
         remarks[0] += ": the load case with the most torque; the others of the file:"
         remarks += [_remark(other) for other in operation.loads[1:]]
-    yield Table("schedule", tuple(entries), tuple(remarks))
+    yield CaseTable("schedule", tuple(entries), tuple(remarks))
     yield from _plan(origins, unit, load)
 
 
-def _plan(origins: Origins, unit: GearUnit, load: PinionLoad | None) -> Iterator[Table]:
+def _plan(origins: Origins, unit: GearUnit, load: PinionLoad | None) -> Iterator[CaseTable]:
     """Time of the test: that of its load case."""
     case = None if load is None else load.case
     if case is None:
@@ -172,7 +176,7 @@ def _plan(origins: Origins, unit: GearUnit, load: PinionLoad | None) -> Iterator
         time = unit.operating_time * (1.0 if case.time_share is None else case.time_share)
         targets = (*targets, *_targets(case.id, "time_share"))
     if time:
-        yield Table("test_plan", (origins.stated("time", quantity(time / 3600.0, "h"), *targets),))
+        yield CaseTable("test_plan", (origins.stated("time", quantity(time / 3600.0, "h"), *targets),))
 
 
 def _first(origins: Origins, targets: tuple[str, ...]) -> tuple[str, ...]:

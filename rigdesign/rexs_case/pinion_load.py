@@ -3,15 +3,14 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rigdesign.rexs.gear_unit import GearUnit, OperatingCase, ShaftLoad
-from rigdesign.rexs.gear_unit import UnitMesh as Mesh
+from rigdesign.rexs.gear_unit import GearUnit, OperatingCase, ShaftLoad, UnitMesh
 
 
 @dataclass(frozen=True)
 class PinionLoad:
     """One operating case at the pinion.
 
-    speed, torque : without sign [rad/s, N m]; None where the file does not settle them
+    speed, torque : without sign [rad/s, N m]; None where the file does not determine them
     speed_of : shaft whose speed is stated; loads : ids of the loads that make the torque
     """
 
@@ -22,7 +21,7 @@ class PinionLoad:
     loads: tuple[int, ...] = ()
 
 
-def pinion_loads(unit: GearUnit, mesh: Mesh) -> tuple[PinionLoad, ...]:
+def pinion_loads(unit: GearUnit, mesh: UnitMesh) -> tuple[PinionLoad, ...]:
     """Operating cases at the pinion of a mesh, that with the most torque first."""
     shaft = unit.gear(mesh.pinion).shaft
     if shaft is None:
@@ -36,7 +35,7 @@ def pinion_loads(unit: GearUnit, mesh: Mesh) -> tuple[PinionLoad, ...]:
     return tuple(sorted(found, key=lambda load: -(load.torque or 0.0)))
 
 
-def _speeds_over(unit: GearUnit, start: int, without: Mesh | None = None) -> dict[int, float]:
+def _speeds_over(unit: GearUnit, start: int, without: UnitMesh | None = None) -> dict[int, float]:
     """Speed of every shaft that turns with ``start`` over its speed."""
     joints = list(_joints(unit, without))
     found, front = {start: 1.0}, [start]
@@ -50,7 +49,7 @@ def _speeds_over(unit: GearUnit, start: int, without: Mesh | None = None) -> dic
     return found
 
 
-def _joints(unit: GearUnit, without: Mesh | None) -> Iterator[tuple[int, int, float]]:
+def _joints(unit: GearUnit, without: UnitMesh | None) -> Iterator[tuple[int, int, float]]:
     """Shafts that turn together: the two, speed of the second over that of the first."""
     for mesh in unit.meshes:
         pinion, wheel = unit.gear(mesh.pinion), unit.gear(mesh.wheel)

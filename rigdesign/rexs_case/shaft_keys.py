@@ -5,21 +5,23 @@ from collections.abc import Iterator
 from rigdesign.rexs.gear_unit import ShaftSection, UnitBearing, UnitShaft
 from rigdesign.rexs_case.bearing_choice import tabled_bearing
 from rigdesign.rexs_case.bearing_keys import gear_position
-from rigdesign.rexs_case.entries import Entry, Origins, Table, assumed, millimetres
-from rigdesign.rexs_case.stage import SAME, SeatedGear, Stage, diameter_at, mean_diameter
+from rigdesign.rexs_case.entries import CaseTable, Entry, Origins, assumed, millimetres
+from rigdesign.rexs_case.stage import SAME, GearStage, SeatedGear, diameter_at, mean_diameter
 
 STUB = 2.5
 """Length from the rear bearing to the coupling, in diameters of the shaft, as by the defaults of a drivetrain."""
 
 
-def shaft_tables(origins: Origins, stage: Stage) -> Iterator[Table]:
+def shaft_tables(origins: Origins, stage: GearStage) -> Iterator[CaseTable]:
     """Both shafts of the stage in both gearboxes; none of them where the default, one diameter, will do."""
     for seated in stage.gears:
         entry = _sections(origins, seated)
         if entry is not None:
-            yield Table(f"drivetrain.shafts.test_{seated.name}", (entry,))
+            yield CaseTable(f"drivetrain.shafts.test_{seated.name}", (entry,))
             reason = f"as test_{seated.name}, which has its gear and bearings at the same places"
-            yield Table(f"drivetrain.shafts.slave_{seated.name}", (assumed("sections", entry.value, reason),))
+            yield CaseTable(
+                f"drivetrain.shafts.slave_{seated.name}", (assumed("sections", entry.value, reason),)
+            )
 
 
 def _sections(origins: Origins, seated: SeatedGear) -> Entry | None:

@@ -32,7 +32,7 @@ class SeatedGear:
 
 
 @dataclass(frozen=True)
-class Stage:
+class GearStage:
     """A pair of gears.
 
     number : among the stages of the file, from 1
@@ -49,7 +49,7 @@ class Stage:
         return self.pinion, self.wheel
 
 
-def chosen_stage(unit: GearUnit, number: int | None, source: str) -> Stage:
+def chosen_stage(unit: GearUnit, number: int | None, source: str) -> GearStage:
     """The stage of this number; without one the only stage.
 
     Raises
@@ -75,7 +75,7 @@ def chosen_stage(unit: GearUnit, number: int | None, source: str) -> Stage:
         )
     mesh = unit.meshes[number - 1]
     first = unit.gear(mesh.pinion)
-    return Stage(
+    return GearStage(
         number,
         mesh,
         _seated(unit, "pinion", first, first),

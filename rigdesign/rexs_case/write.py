@@ -14,10 +14,9 @@ from rigdesign.rexs.faults import printable
 from rigdesign.rexs.gear_unit_import import GearUnitImport, import_gear_unit
 from rigdesign.rexs.reader import read_rexs
 from rigdesign.rexs_case.case_tables import LIKE_THE_TEST, case_tables
-from rigdesign.rexs_case.entries import Entry, Table, toml_text
+from rigdesign.rexs_case.entries import CaseTable, Entry, toml_text
 from rigdesign.rexs_case.stage import chosen_stage
 
-FOREIGN_STAGES = ("bevel_stage", "worm_stage", "planetary_stage", "ring_gear")
 OTHER_PART = "of another stage, or a value that the case works out itself"
 REASONS = {
     "operating_cases": "of another load case, which the case names in a comment, or not needed at the pinion",
@@ -109,7 +108,7 @@ def _tried(text: str) -> Case | CaseError:
 
 
 def _account(
-    path: Path, imported: GearUnitImport, tables: tuple[Table, ...], tried: Case | CaseError
+    path: Path, imported: GearUnitImport, tables: tuple[CaseTable, ...], tried: Case | CaseError
 ) -> ImportedCase:
     placed = [(table.place(entry), entry) for table in tables for entry in table.entries]
     used = {target for _, entry in placed for target in entry.targets}
@@ -146,7 +145,7 @@ def _account(
             [item for item in defaults if not item.path.startswith(("gearboxes.test.", "gearboxes.slave."))]
         ),
         needed=tuple(needed),
-        left_out=tuple(item.place for item in imported.missing if item.place.startswith(FOREIGN_STAGES)),
+        left_out=imported.other_stages,
     )
 
 

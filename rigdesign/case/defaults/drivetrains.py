@@ -128,7 +128,7 @@ def _discs(tree: RawTree, shaft: str) -> Filling:
         shaft_diameter(tree, box, shaft),
         tree.length(f"drivetrain.shafts.{shaft}.sections.0.length"),
     )
-    if diameter is None or length is None or len(tree.at(f"drivetrain.shafts.{shaft}.sections")) != 1:
+    if diameter is None or length is None or tree.count(f"drivetrain.shafts.{shaft}.sections") != 1:
         return None
     outer, width = FLANGE[0] * diameter, FLANGE[1] * diameter
     inertia = math.pi * STEEL * width * outer**4 / 32.0

@@ -7,11 +7,11 @@ from typing import Any
 from rigdesign.case.defaults import drivetrains, gearboxes, housings, runs
 from rigdesign.case.defaults.limit_set import fill_limits
 from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Rule, fill
+from rigdesign.case.defaults.rule import DefaultRule, fill
 from rigdesign.case.paths import path_pattern
 
 
-def rules() -> tuple[Rule, ...]:
+def rules() -> tuple[DefaultRule, ...]:
     """Every rule in the order in which it is asked.
 
     Measures of a housing come before the places on its shafts, these before the bores of the gears and the shafts of

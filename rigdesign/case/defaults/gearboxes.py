@@ -237,7 +237,7 @@ def _volume_round_gears(tree: RawTree, box: str, level: float) -> Filling:
 
 @book.default("gearboxes.*.bearing_oil")
 def _bearing_oil(tree: RawTree, box: str) -> Filling:
-    """Plain bearings are fed with the oil of the gears; any other live on what the gears throw off."""
+    """Plain bearings are fed with the oil of the gears; all others by splash of the gears."""
     at = f"gearboxes.{box}.bearings"
     if not any(_plain(tree, box, bearing) for bearing in tree.names(at)):
         return None

@@ -170,7 +170,7 @@ def _overhang(tree: RawTree, box: str, shaft: str, side: str) -> Filling:
     middle = tree.length(f"gearboxes.{box}.bearings.{found[0]}.position")
     width = bearing_width(tree, box, found[0])
     at = f"drivetrain.shafts.{shaft}.sections"
-    lengths = [tree.length(f"{at}.{index}.length") for index in range(len(tree.at(at) or ()))]
+    lengths = [tree.length(f"{at}.{index}.length") for index in range(tree.count(at))]
     if middle is None or width is None or not lengths or None in lengths:
         return None
     beyond = middle if side == "front" else sum(length or 0.0 for length in lengths) - middle

@@ -95,7 +95,7 @@ def shaft_diameter(tree: RawTree, box: str, shaft: str) -> float | None:
 def section_diameter(tree: RawTree, shaft: str, position: float | None) -> float | None:
     """Outside diameter [m] of a stated shaft at a place; None where no section is stated there."""
     at, end = f"drivetrain.shafts.{shaft}.sections", 0.0
-    for index in range(len(tree.at(at) or ())):
+    for index in range(tree.count(at)):
         length = tree.length(f"{at}.{index}.length")
         if position is None or length is None:
             return None

@@ -1,5 +1,6 @@
-"""Values of a case file before it is validated: marks are looked through, what cannot be read is None."""
+"""Values of a case file before it is validated, without source, assumption and range; None where unreadable."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -40,15 +41,22 @@ class RawTree:
         node = self.at(path)
         return [key for key in node if isinstance(key, str)] if isinstance(node, Mapping) else []
 
+    def count(self, path: str) -> int:
+        """Entries of a list; none where there is no list."""
+        node = self.at(path)
+        return len(node) if isinstance(node, list | tuple) else 0
+
     def text(self, path: str) -> str | None:
         """A text."""
         node = self.at(path)
         return node if isinstance(node, str) else None
 
     def number(self, path: str) -> float | None:
-        """A bare number."""
+        """A bare number that is finite."""
         node = self.at(path)
-        return float(node) if isinstance(node, int | float) and not isinstance(node, bool) else None
+        if not isinstance(node, int | float) or isinstance(node, bool) or not abs(node) < math.inf:
+            return None
+        return float(node)
 
     def si(self, path: str, kind: str) -> float | None:
         """A quantity in SI units; None for one that is missing or cannot be read."""

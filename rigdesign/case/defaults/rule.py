@@ -46,12 +46,12 @@ Filling: TypeAlias = "Given | Mapping[str, Any] | list[Any] | None"
 
 
 @dataclass(frozen=True)
-class Rule:
+class DefaultRule:
     """One rule and the path it is for.
 
     within : start of the path down to a table that the case has to state; empty where the rule makes its tables
-    completes : of a table of named parts, parts are added to those that are stated; not where one of these is a
-        stranger, so that a misspelt name stays a fault
+    completes : of a table of named parts, parts are added to those that are stated; not where one of these has
+        an unknown name, so that a misspelt one stays a fault
     """
 
     path: str
@@ -66,7 +66,7 @@ def assumed(value: Any, reason: str, low: Any = None, high: Any = None) -> Given
 
 
 def follows(value: Any, reason: str) -> Given:
-    """A name or measure that the rest of the case settles."""
+    """A name or measure that follows from the rest of the case."""
     return Given(value=value, reason=reason, is_assumption=False)
 
 
@@ -88,7 +88,7 @@ class RuleBook:
     """
 
     def __init__(self, within: str = "") -> None:
-        self.rules: list[Rule] = []
+        self.rules: list[DefaultRule] = []
         self.within = within
 
     def default(
@@ -97,13 +97,13 @@ class RuleBook:
         """Enters a function as the rule of a path."""
 
         def enter(known: Callable[..., Filling]) -> Callable[..., Filling]:
-            self.rules.append(Rule(path, known, self.within, completes))
+            self.rules.append(DefaultRule(path, known, self.within, completes))
             return known
 
         return enter
 
 
-def fill(tree: RawTree, rule: Rule) -> None:
+def fill(tree: RawTree, rule: DefaultRule) -> None:
     """Fill the places of one rule that are missing, in place."""
     for names in list(_places(tree, rule.path.split("."), ())):
         keys = _with_names(rule.path, names)
@@ -116,7 +116,7 @@ def fill(tree: RawTree, rule: Rule) -> None:
             _insert(tree.root, keys, _written(found))
 
 
-def _known(rule: Rule, tree: RawTree, names: tuple[str, ...]) -> Filling:
+def _known(rule: DefaultRule, tree: RawTree, names: tuple[str, ...]) -> Filling:
     """What a rule knows: nothing where a stated value is so far beyond its limits that no number follows from it."""
     try:
         return rule.known(tree, *names)

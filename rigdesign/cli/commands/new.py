@@ -2,15 +2,10 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cyclopts import App
 
-from rigdesign.base.errors import UsageError
 from rigdesign.cli.application import OutFolder, app, loaded_case
-
-if TYPE_CHECKING:
-    from rigdesign.new_case.outline import Question
 
 new = App(name="new", help="Write a case from a few numbers, or the start of a measurement set.")
 app.command(new)
@@ -96,34 +91,21 @@ def new_case(
         "lubrication": lubrication, "box": box, "profile_shift": profile_shift, "name": name,
     }  # fmt: skip
     from rigdesign.new_case.outline import QUESTIONS, outline_from
-    from rigdesign.new_case.write import write_case
+    from rigdesign.new_case.write import free_paths, write_case
 
+    free_paths(out)
     answers = {key: value for key, value in given.items() if value is not None}
-    if (
-        any(question.required and question.key not in answers for question in QUESTIONS)
-        and sys.stdin.isatty()
-    ):
-        answers |= _asked([question for question in QUESTIONS if question.key not in answers])
-    for path in write_case(outline_from({"name": _name_of(out), **answers}), out):
+    default_name = {"name": _name_of(out)}
+    missing = any(question.required and question.key not in answers for question in QUESTIONS)
+    if missing and sys.stdin.isatty():
+        from rigdesign.cli.terminal.case_dialogue import ask_for_case
+
+        paths = ask_for_case(answers, lambda answered: write_case(outline_from(default_name | answered), out))
+    else:
+        paths = write_case(outline_from(default_name | answers), out)
+    for path in paths:
         print(path)
     return 0
-
-
-def _asked(questions: "list[Question]") -> dict[str, str]:
-    """Answers from the terminal; an empty line takes none where none is needed."""
-    found = {}
-    for question in questions:
-        rest = "" if question.required else ", empty to leave it out"
-        while True:
-            try:
-                answer = input(f"{question.asked} (e.g. {question.example}{rest}): ").strip()
-            except EOFError:
-                raise UsageError(f"no answer to {question.flag}; give it on the command line") from None
-            if answer or not question.required:
-                break
-        if answer:
-            found[question.key] = answer
-    return found
 
 
 def _name_of(out: Path) -> str:

@@ -50,13 +50,13 @@ def test_the_table_is_whole() -> None:
         assert re.search(r"p\. \d+$", bearing.source)
         assert bearing.outside_diameter > bearing.bore
         assert bearing.fatigue_load < bearing.static_rating
-        assert all(f"{name}" in columns for name in bearing.memory)
+        assert all(f"{name}" in columns for name in bearing.unconfirmed)
         assert bearing.locating == (not bearing.designation.startswith("NU"))
 
 
-def test_memory_is_told() -> None:
-    assert catalogue_bearing("NJ 406").memory == ("outer_raceway_mm",)
-    assert catalogue_bearing("6208").memory == ()
+def test_numbers_from_memory_are_named() -> None:
+    assert catalogue_bearing("NJ 406").unconfirmed == ("outer_raceway_mm",)
+    assert catalogue_bearing("6208").unconfirmed == ()
 
 
 @pytest.mark.parametrize("designation", tabled_designations())
@@ -123,6 +123,20 @@ def test_every_described_series_has_both_friction_laws() -> None:
 def test_impossible_numbers_are_refused(change: dict[str, object], message: str) -> None:
     with pytest.raises(BearingError, match=re.escape(message)):
         replace(catalogue_bearing("6208"), **change)
+
+
+@pytest.mark.parametrize("designation", ["6208", "7205 BEP", "30205 J2/Q", "NJ 406"])
+@pytest.mark.parametrize("factor", [1e-6, 1e-3, 0.1, 3.0, 1e3])
+def test_a_static_rating_that_does_not_belong_to_the_dimensions_is_refused(
+    designation: str, factor: float
+) -> None:
+    """N in place of kN: balls of 0.2 mm, or rollers of a metre, would give that rating."""
+    bearing = catalogue_bearing(designation)
+    wrong = replace(bearing, static_rating=factor * bearing.static_rating)
+    with pytest.raises(
+        BearingError, match=r"static_rating = .* N: (would need|no number of balls).*; (give|correct) C_0"
+    ):
+        _ = wrong.elements
 
 
 def test_bearing_by_its_numbers_with_known_elements() -> None:

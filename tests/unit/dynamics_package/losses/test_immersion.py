@@ -133,3 +133,11 @@ def test_impossible_gears() -> None:
     with pytest.raises(LossError, match="must fall in this order"):
         replace(WHEEL, shaft_radius=WHEEL.root_radius)
     assert isinstance(bath(), OilBath)
+
+
+@pytest.mark.parametrize("name", ["axis_height", "face_width", "pressure_angle", "helix_angle"])
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_gear_of_no_finite_size_is_refused(name: str, value: float) -> None:
+    """An axis at no height would be a dry gear without a loss."""
+    with pytest.raises(LossError, match=f"dipped gear: {name} = "):
+        replace(PINION, **{name: value})

@@ -57,6 +57,7 @@ def test_an_unknown_designation_names_the_nearest(tmp_path: Path) -> None:
         ('designation = "NU 406"\n', "", "either its designation or the numbers"),
         ('designation = "NU 406"', f'designation = "NU 406"\n{NUMBERS}', "either its designation or the numbers"),
         ('designation = "NU 406"', NUMBERS.replace('series = "4"', 'series = "9"'), "no friction coefficients"),
+        ('designation = "NU 406"', NUMBERS.replace('"53 kN"', '"53 N"'), "static_rating = 53 N: would need 10"),
         ('"NU 406"', '"NU 206"', "differ in bore in the housing"),
         ('"NU 406"', '"NU 207"', "the shaft test_pinion has 30 mm there, the bore of the bearing is 35 mm"),
         ('"NJ 406"', '"NU 406"', "carries no axial load"),

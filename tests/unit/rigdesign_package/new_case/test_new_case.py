@@ -73,13 +73,20 @@ def test_every_key_says_what_it_is_and_which_checks_depend_on_it(tmp_path: Path)
         ({"module": "4.5"}, '--module "4.5"'),
         ({"speed": "0 rpm"}, "is not above 0"),
         ({"box": "176 x 190 x 220 mm"}, "does not hold both gears"),
-        ({"box": "60 x 280 x 220 mm"}, "--box: gearboxes.test.housing"),
+        ({"box": "60 x 280 x 220 mm"}, "--box: a length of 60 mm does not hold gears, bearings and seals"),
+        ({"box": "176 x 280 x 60 mm"}, "--box: gearboxes.test.housing"),
+        ({"box": "0 x 280 x 220 mm"}, "a side that is not above 0"),
+        ({"box": "176 x -280 x 220 mm"}, "a side that is not above 0"),
         ({"box": "280 mm"}, "no three sides"),
         ({"bearings": "70 mm"}, "--bearings"),
-        ({"oil": "FVA 99"}, "--oil: gearboxes.test.oil.oil"),
+        ({"oil": "FVA 99"}, '--oil "FVA 99": no built-in oil; write one of FVA 3'),
+        ({"bearings": "NU 999"}, "nearest: NU"),
         ({"lubrication": "spray"}, "write jet or dip"),
         ({"name": "My Rig"}, '--name "My Rig"'),
         ({"profile_shift": "much"}, '--profile-shift "much"'),
+        ({"profile_shift": "nan"}, "must lie within -1.5 to 1.5 modules"),
+        ({"profile_shift": "-inf"}, "must lie within -1.5 to 1.5 modules"),
+        ({"bearings": "-30 mm"}, "a diameter that is not above 0"),
     ],
 )
 def test_contradicting_answers_are_named_and_nothing_is_written(
@@ -106,30 +113,94 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
     assert (tmp_path / "case.toml").read_bytes() == before
 
 
-def test_answers_that_are_left_out_are_asked_for_in_a_terminal(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """An empty answer is asked again where something is needed, and leaves out what is not."""
-    given = iter(["", "16,24", "372.6 N m", "", "", "", ""])
-    asked: list[str] = []
+FLAGS = {key: f"--{key.replace('_', '-')}" for key in ANSWERS}
+
+
+def _command(out: Path, *left_out: str) -> list[str]:
+    """`new case` with all answers but some."""
+    given = [text for key, flag in FLAGS.items() if key not in left_out for text in (flag, ANSWERS[key])]
+    return ["new", "case", "--out", str(out), *given]
+
+
+def _terminal(monkeypatch: pytest.MonkeyPatch, answers: list[str]) -> list[str]:
+    """A terminal that gives these answers and then ends; the questions that were asked."""
+    left, asked = iter(answers), list[str]()
 
     def answer(prompt: str) -> str:
         asked.append(prompt)
-        return next(given)
+        try:
+            return next(left)
+        except StopIteration:
+            raise EOFError from None
 
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)
     monkeypatch.setattr("builtins.input", answer)
-    left_out = ("name", "box", "teeth", "torque")
-    flags = [
-        text
-        for key, value in ANSWERS.items()
-        if key not in left_out
-        for text in (f"--{key.replace('_', '-')}", value)
+    return asked
+
+
+def test_answers_that_are_left_out_are_asked_for_in_a_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What cannot be is said with its limit and asked again at once; an empty answer leaves out what is not needed."""
+    asked = _terminal(
+        monkeypatch, ["", "sixteen", "16,24", "372.6 Nmm/s", "0 N m", "372.6 N m", "", "", "", ""]
+    )
+    assert run(_command(tmp_path / "my rig", "name", "box", "teeth", "torque")) == 0
+    assert [prompt.startswith("teeth of pinion and wheel") for prompt in asked[:4]] == [
+        True,
+        True,
+        True,
+        False,
     ]
-    assert run(["new", "case", "--out", str(tmp_path / "my rig"), *flags]) == 0
-    assert asked[0] == asked[1] and asked[0].startswith("teeth of pinion and wheel")
+    said = capsys.readouterr().out
+    assert "is empty; write e.g. 16,24" in said and "no two tooth numbers" in said
+    assert "units: N m" in said and "is not above 0" in said
     case = load_case(tmp_path / "my rig")
     assert case.name == "my_rig" and case.gearboxes["test"].housing is None
+
+
+def test_answers_that_contradict_each_other_are_asked_for_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Only those that have to change, with the former answer kept by an empty line; faults of the case as well."""
+    again = ["", "", "91.5 mm"]
+    asked = _terminal(monkeypatch, ["120 mm", "", "176 x 280 x 60 mm", "", "", *again, "176 x 280 x 220 mm"])
+    assert run(_command(tmp_path / "rig", "centre_distance", "box", "name")) == 0
+    assert [prompt.split(" (e.g.")[0] for prompt in asked[-4:]] == [
+        "teeth of pinion and wheel", "normal module", "centre distance",
+        "outer length x width x height of the test gearbox",
+    ]  # fmt: skip
+    assert asked[-4].endswith("[16,24]: ")
+    assert "their reference centre distance is 90 mm" in capsys.readouterr().out
+    assert load_case(tmp_path / "rig").gearboxes["test"].meshes["main"].centre_distance == pytest.approx(
+        0.0915
+    )
+
+
+def test_an_input_that_ends_or_is_interrupted_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _terminal(monkeypatch, ["16,24"])
+    with pytest.raises(UsageError, match="no answer to --torque: the input has ended"):
+        run(_command(tmp_path / "rig", "teeth", "torque"))
+
+    def interrupt(prompt: str) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("builtins.input", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        run(_command(tmp_path / "rig", "teeth"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_with_a_case_is_refused_before_anything_is_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_case(outline_from(ANSWERS), tmp_path)
+    asked = _terminal(monkeypatch, [])
+    with pytest.raises(OutputError, match="is there already"):
+        run(_command(tmp_path, "teeth"))
+    assert asked == []
 
 
 def test_shipped_cases_name_their_schema() -> None:

@@ -15,11 +15,6 @@ def reasons(result: GearUnitImport, component: int) -> dict[str, str]:
     return {item.attribute: item.reason for item in result.listed if item.component == component}
 
 
-def missing(result: GearUnitImport) -> dict[str, bool]:
-    """Place -> whether it is needed."""
-    return {item.place: item.needed for item in result.missing}
-
-
 def test_gears_and_mesh() -> None:
     unit = imported().unit
     assert unit.gear(11) == UnitGear(
@@ -68,7 +63,7 @@ def test_without_a_spectrum_the_components_are_the_case() -> None:
     result = imported((spectrum, ""))
     (case,) = result.unit.operating_cases
     assert (case.id, case.speeds[3], case.lubricant_temperature) == (None, pytest.approx(235.6194), 363.15)
-    assert missing(result)["operating_cases.torque"] is True
+    assert [load.torque for load in case.loads] == [None]
 
 
 def test_two_spectra_are_told_apart() -> None:
@@ -94,55 +89,6 @@ def test_every_attribute_is_mapped_or_listed() -> None:
     assert (width.written, width.target, width.value) == ("14.0 mm", "gears[11].face_width", 0.014)
     life = next(item for item in result.listed if item.load_case == "accumulation")
     assert (life.component, life.reason) == (20, "a value over all load cases")
-
-
-def test_what_a_case_needs_beyond_it() -> None:
-    assert missing(imported()) == {
-        "shafts[25].bearings": False, "lubrication": False, "housing": False, "surroundings": False,
-    }  # fmt: skip
-    old = missing(imported(version="1.0"))
-    assert old["gears[11].quality_grade"] is False
-    assert all(not needed for needed in old.values())
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "place"),
-    [
-        ('id="number_of_teeth"', 'id="x"', "gears[11].teeth"),
-        ('id="face_width" unit="mm">14.0', 'id="face_width" unit="mm">0', "gears[11].face_width"),
-        ('id="normal_module" unit="mm"', 'id="normal_module" unit="deg"', "gears[11].normal_module"),
-        ('type="cylindrical_stage"', 'type="bevel_stage"', "meshes"),
-        ('type="cylindrical_stage"', 'type="bevel_stage"', "bevel_stage 13"),
-        ('type="lubricant"', 'type="grease"', "lubricant"),
-        ('id="viscosity_at_40', 'id="viscosity_at_50', "lubricant.viscosity_40"),
-        ('"outer_part"', '"other"', ""),
-        ('"inner_part"', '"other"', "shafts[3].bearings"),
-        ('id="torque_around_u_axis"', 'id="torque"', "operating_cases[1].torque"),
-        (
-            'type="rolling_bearing_with_catalog_geometry"',
-            'type="concept_bearing"',
-            "bearings[20].catalogue.designation",
-        ),
-    ],
-)
-def test_needed_inputs(old: str, new: str, place: str) -> None:
-    found = imported((old, new))
-    needed = [item.place for item in found.missing if item.needed]
-    assert (place in needed) if place else needed == []
-    assert found.missing[: len(needed)] == tuple(item for item in found.missing if item.needed)
-
-
-def test_a_centre_distance_is_needed_unless_both_profile_shifts_are_there() -> None:
-    without = ('id="center_distance"', 'id="x"')
-    assert missing(imported(without))["meshes[13].centre_distance"] is False
-    shift = ('id="addendum_modification_coefficient" unit="none">0.182', 'id="y" unit="none">0.182')
-    assert missing(imported(without, shift))["meshes[13].centre_distance"] is True
-
-
-def test_a_bearing_without_designation_by_its_dimensions() -> None:
-    assert imported(('id="catalogue_designation"', 'id="x"')).missing[0].needed is False
-    both = imported(('id="catalogue_designation"', 'id="x"'), ('id="width"', 'id="y"'))
-    assert both.missing[0].place == "bearings[20].catalogue.designation"
 
 
 @pytest.mark.parametrize(
@@ -211,8 +157,7 @@ def test_the_only_section_of_a_shaft_starts_at_zero() -> None:
     section = text[text.index('<component id="26"') : text.index('<component id="27"')]
     result = imported((section, section.replace("u_coordinate_on_shaft", "x")))
     (found,) = result.unit.shaft(25).sections
-    assert (found.start, found.start_stated) == (0.0, False)
-    assert missing(result)["shafts[25].sections[26].start"] is False
+    assert found.start == 0.0
 
 
 def test_the_wheel_may_be_named_first() -> None:
@@ -225,9 +170,35 @@ def test_ring_gears_are_named_and_left_out() -> None:
     wheel = text[text.index('<component id="12"') : text.index('<component id="13"')]
     result = imported((wheel, wheel.replace('"cylindrical_gear"', '"ring_gear"')))
     assert result.unit.meshes == ()
-    assert missing(result)["ring_gear 12"] is True
+    assert result.other_stages == ("ring_gear 12",)
+    assert result.epicyclic
+    assert not imported().epicyclic
     assert reasons(result, 12)["number_of_teeth"] == "a ring_gear has no counterpart in a case"
     assert "not of two cylindrical gears" in reasons(result, 13)["center_distance"]
+
+
+def test_the_clearance_as_delivered_counts_before_that_in_operation() -> None:
+    stated = '<attribute id="operating_radial_bearing_clearance" unit="mum">25.0</attribute>'
+    delivered = stated.replace("operating_", "").replace("25.0", "45.0")
+    for both in (stated + delivered, delivered + stated):
+        result = imported((stated, both))
+        assert {bearing.radial_clearance for bearing in result.unit.bearings} == {45e-6}
+        reason = reasons(result, 20)["operating_radial_bearing_clearance"]
+        assert reason == "the clearance as delivered counts"
+
+
+def test_the_power_of_a_load_case_replaces_the_torque_of_its_component() -> None:
+    """The component states 372.6 N m; a load case with 50 kW has no torque of its own, and the other way round."""
+    text = changed().decode()
+    start = text.index("<load_spectrum")
+    torque = '<attribute id="torque_around_u_axis" unit="N m">302.0</attribute>'
+    power = '<attribute id="power" unit="kW">50.0</attribute>'
+    named = '<component id="27" type="external_load" name="pinion torque">'
+    of_component = torque.replace("302.0", "372.6")
+    unit = imported((text[start:], text[start:].replace(torque, power)), (named, named + of_component)).unit
+    assert [(load.torque, load.power) for case in unit.operating_cases for load in case.loads] == [
+        (372.6, None), (None, 50e3),
+    ]  # fmt: skip
 
 
 def test_a_hydrodynamic_bearing() -> None:

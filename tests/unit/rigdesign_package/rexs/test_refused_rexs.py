@@ -115,3 +115,9 @@ def test_load_cases_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "2 load cases of 4 shafts and loads, above the limit of 7 states; export a cl" in refusal(
         changed()
     )
+
+
+@pytest.mark.parametrize("text", [b"<model>a & b</model>", b"<\x8f\x01", b'<model a="<"/>'])
+def test_text_that_is_no_xml_is_not_called_truncated(text: bytes) -> None:
+    said = refusal(text)
+    assert "no well-formed XML" in said and "too early" not in said

@@ -1,4 +1,4 @@
-"""A wheel shaft that stands in a file beside the model."""
+"""A wheel shaft that stands in another file of the folder of the model."""
 
 from pathlib import Path
 
@@ -62,7 +62,10 @@ def test_the_shaft_and_what_belongs_to_it(tmp_path: Path) -> None:
 def test_a_file_that_is_not_there_is_listed(tmp_path: Path, source: str) -> None:
     result = import_gear_unit(read_rexs(write(tmp_path, source=source)))
     listed = {item.attribute: item.reason for item in result.listed if item.component == 4}
-    assert listed["data_source"] == "the component stands in another file, which is not beside the model"
+    assert (
+        listed["data_source"]
+        == "the component stands in another file, which is not in the folder of the model"
+    )
     assert len(result.unit.shaft(4).sections) == 3
 
 

@@ -128,12 +128,30 @@ def test_a_bearing_that_is_not_tabled_keeps_its_own_numbers(tmp_path: Path) -> N
     assert len(speeds) == 1
 
 
+@pytest.mark.parametrize(
+    ("kind", "stated"), [("radial_tapered_roller_bearing", True), ("angular_contact_ball_bearing", False)]
+)
+def test_only_of_a_tapered_roller_bearing_e_gives_the_contact_angle(
+    tmp_path: Path, kind: str, stated: bool
+) -> None:
+    """e = 1.5 tan(alpha) holds for rollers; 1.14 of a ball bearing of 40 deg would give 37 deg."""
+    limit = '<attribute id="catalogue_value_e" unit="none">0.37</attribute>'
+    result = of_changed(
+        tmp_path, (">NJ 406<", ">XY<"), (">radial_roller_bearing</attribute>", f">{kind}</attribute>{limit}")
+    )
+    place = "gearboxes.test.bearings.pinion_front.catalogue.contact_angle"
+    assert (place in dict(result.stated)) == stated
+    assert (place in {item.path for item in result.assumed}) == (not stated)
+    if stated:
+        assert dict(result.stated)[place].value == '"13.8563515 deg"'
+
+
 def test_a_bearing_without_numbers_gets_a_tabled_one_of_its_bore(tmp_path: Path) -> None:
     loads = '<attribute id="radial_dynamic_load_rating" unit="kN">60.5</attribute>'
     result = of_changed(tmp_path, (">NJ 406<", ">XY<"), (loads, ""))
     assert result.needed == ()
     said = {item.path: item for item in result.assumed}["gearboxes.test.bearings.pinion_front.designation"]
-    assert "stands for XY" in said.reason
+    assert "in place of XY" in said.reason
     assert load_case(tmp_path / "case").gearboxes["test"].bearings["pinion_front"].shaft_diameter == 0.03
 
 
