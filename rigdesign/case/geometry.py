@@ -7,7 +7,8 @@ from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
-from thermal.housing.geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.shaft_geometry import GearDisc, ShaftGeometry
 
 
 def pitch_diameters(gearbox: Gearbox) -> dict[str, float]:

@@ -1,8 +1,11 @@
 """Where an engineer reads the clearances of a parametric gearbox: its stations, from the geometry alone."""
 
-from thermal.housing.geometry import SIDES, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import HousingGeometry
+from thermal.housing.housing_surfaces import FOOT, SEAT
+from thermal.housing.measures import SIDES
+from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_zones
 from thermal.housing.stations import BearingStation, FootJoint, GearStation, Point, SealStation, ShaftStation
-from thermal.housing.surfaces import FOOT, SEAT, shaft_zones
 
 
 def shaft_stations(geometry: HousingGeometry) -> tuple[ShaftStation, ...]:

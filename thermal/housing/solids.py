@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from thermal.housing.curving import BendAxis
-from thermal.housing.geometry import SIDES, ClampingField, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.measures import SIDES, GeometryError
 from thermal.housing.meshing import SizeLaw
-from thermal.housing.surfaces import shaft_zones
+from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_zones
 
 SAME = 1e-6
 """Two lengths are one if they differ by less [m]."""

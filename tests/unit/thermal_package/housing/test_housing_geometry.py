@@ -10,8 +10,11 @@ from typing import Any
 
 import pytest
 
-from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
-from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, shaft_zones, surface_names
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.measures import GeometryError
+from thermal.housing.shaft_geometry import GearDisc, ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_zones
+from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, surface_names
 
 
 def shaft(**changes: Any) -> ShaftGeometry:
