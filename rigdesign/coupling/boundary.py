@@ -140,7 +140,7 @@ class _Context:
         if surface.endswith("_warm"):
             return shaft.seat_diameter
         if "_journal_" in surface:
-            return shaft.journal_diameter
+            return shaft.bearing("front" if surface.endswith("_front") else "rear").journal_diameter
         return shaft.overhang_diameter
 
 

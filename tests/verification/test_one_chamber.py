@@ -130,7 +130,7 @@ def test_gear_and_shaft_as_two_nodes_by_hand(settled: tuple[Rig, PointResult]) -
             matrix[node, node] += conductance
             heat[node] += conductance * fluid
         steel = rig.materials[rig.case.gearboxes["test"].housing.shafts[shaft.name].material]
-        reach = 0.5 * (geometry.length - 2.0 * geometry.end_wall_thickness + shaft.bearing_width)
+        reach = 0.5 * (geometry.length - 2.0 * geometry.end_wall_thickness + shaft.front.width)
         along = 2.0 * steel.conductivity * math.pi * shaft.seat_diameter**2 / 4.0 / (0.5 * reach)
         matrix += along * np.array([[1.0, -1.0], [-1.0, 1.0]])
         gear, _ = np.linalg.solve(matrix, heat)

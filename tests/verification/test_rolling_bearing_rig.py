@@ -1,7 +1,7 @@
 """A rig that mixes plain and rolling bearings, and the FZG bearings beside hand values.
 
-One run at quick fidelity: test gearbox fed with oil, pinion on NU 406 and NJ 406, wheel on plain bearings with given
-losses; slave gearbox on rolling bearings that live on splash; both dip.
+One run at quick fidelity: test gearbox fed with oil, its pinion on a small NU 206 and an NJ 406, its wheel on a plain
+bearing with given losses and a locating 6306; slave gearbox on NU 406 and NJ 406 that live on splash; both dip.
 """
 
 import json
@@ -18,13 +18,18 @@ from rigdesign.results.result import RunResult
 from tests.builders.fzg_case import BEARINGS
 from tests.builders.rolling_rig import FED, SPLASH, rolling_case
 
+OTHERS = {"test.pinion_front": "NU 206", "test.wheel_rear": "6306"}
+"""Ends of the shafts of the test gearbox that differ from the other end."""
+
 pytestmark = pytest.mark.whole_run
 
 
 @cache
 def mixed() -> RunResult:
     with TemporaryDirectory() as folder:
-        path = rolling_case(Path(folder), test_oil=FED, slave_oil=SPLASH, plain=("test_wheel",))
+        path = rolling_case(
+            Path(folder), test_oil=FED, slave_oil=SPLASH, plain=("test.wheel_front",), others=OTHERS
+        )
         return run_case(load_case(path), fidelity="quick")
 
 
@@ -35,7 +40,7 @@ def test_a_mixed_rig_closes_its_heat() -> None:
     rows = {row["bearing"]: row for row in mixed().rolling_bearings}
     assert sorted(rows) == [
         "slave.pinion_front", "slave.pinion_rear", "slave.wheel_front", "slave.wheel_rear",
-        "test.pinion_front", "test.pinion_rear",
+        "test.pinion_front", "test.pinion_rear", "test.wheel_rear",
     ]  # fmt: skip
     assert all(
         row["heat_to_shaft_W"] == row["heat_to_housing_W"] == 0.0

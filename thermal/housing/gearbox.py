@@ -50,7 +50,7 @@ from thermal.housing.parametric_stations import (
     seal_stations,
     shaft_stations,
 )
-from thermal.housing.shaft_geometry import GearDisc, ShaftGeometry
+from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import (
     MeshSizes,
@@ -66,6 +66,7 @@ from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, sur
 
 __all__ = [
     "ClampingField",
+    "EndBearing",
     "Fidelity",
     "GearDisc",
     "GeometryError",

@@ -26,7 +26,7 @@ from itertools import combinations
 
 from thermal.errors import ThermalInputError
 from thermal.housing.measures import MINIMUM_LAND, SIDES, GeometryError, Side, require_positive
-from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_geometry import EndBearing, ShaftGeometry
 
 PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
 """Measures that a housing has all of, or none of."""
@@ -153,24 +153,26 @@ class HousingGeometry:
         """x of a plane ``depth`` metres inside the outer end face of one side."""
         return depth if side == "front" else self.length - depth
 
-    def bearing_depths(self, shaft: ShaftGeometry) -> tuple[float, float]:
+    def bearing_depths(self, bearing: EndBearing) -> tuple[float, float]:
         """Outer and inner edge of a bearing, measured inwards from the outer end face [m]."""
-        needed = self.end_seal_width + shaft.bearing_width
+        needed = self.end_seal_width + bearing.width
         flush = needed <= self.end_wall_thickness + SMALLEST_STEP
         inner = self.end_wall_thickness if flush else needed
-        return inner - shaft.bearing_width, inner
+        return inner - bearing.width, inner
 
-    def protrusion(self, shaft: ShaftGeometry) -> float:
+    def protrusion(self, bearing: EndBearing) -> float:
         """Length of the boss that carries the bearing into the housing [m]; 0 without a boss."""
-        return self.bearing_depths(shaft)[1] - self.end_wall_thickness
+        return self.bearing_depths(bearing)[1] - self.end_wall_thickness
 
     @property
     def gear_room(self) -> tuple[float, float]:
         """x between which gears have room [m]: partitions, or the bosses of the bearings and the end walls."""
         if not self.one_chamber:
             return self.partition_front[1], self.partition_rear[0]
-        deepest = max(self.bearing_depths(shaft)[1] for shaft in self.shafts)
-        return deepest, self.length - deepest
+        front, rear = (
+            max(self.bearing_depths(shaft.bearing(side))[1] for shaft in self.shafts) for side in SIDES
+        )
+        return front, self.length - rear
 
     def gear_limits(self, shaft: ShaftGeometry) -> tuple[float, float]:
         """x of the two sides of the gear of ``shaft`` [m]; ValueError for a shaft without a gear."""
@@ -179,13 +181,9 @@ class HousingGeometry:
         middle = (self.partition_front[1] + self.partition_rear[0]) / 2.0 + shaft.gear.offset
         return middle - shaft.gear.width / 2.0, middle + shaft.gear.width / 2.0
 
-    def bearing_radius(self, shaft: ShaftGeometry) -> float:
-        """Radius of the bearing bore [m]."""
-        return shaft.journal_diameter / 2.0 + shaft.bearing_clearance
-
-    def boss_radius(self, shaft: ShaftGeometry) -> float:
-        """Outer radius of the bearing boss [m]."""
-        return self.bearing_radius(shaft) + self.boss_wall
+    def boss_radius(self, bearing: EndBearing) -> float:
+        """Outer radius of the boss of a bearing [m]."""
+        return bearing.bore_radius + self.boss_wall
 
     def seal_radius(self, shaft: ShaftGeometry) -> float:
         """Radius of the seal bores in the partitions [m]."""
@@ -224,7 +222,8 @@ class HousingGeometry:
             "floor": self.shaft_height - self.floor_thickness,
             "top": self.height - self.top_thickness - self.shaft_height,
         }
-        for what, radius in self._radii(shaft).items():
+        radii = {what: radius for side in SIDES for what, radius in self._radii(shaft, side).items()}
+        for what, radius in radii.items():
             for wall, distance in room.items():
                 if radius + MINIMUM_LAND > distance:
                     raise GeometryError(
@@ -237,17 +236,18 @@ class HousingGeometry:
                 f"shaft {shaft.name}: seal_diameter = {shaft.seal_diameter:g} m must be {wanted}; it is the diameter "
                 "in the seals of the partitions"
             )
-        if self.one_chamber and 2.0 * self.protrusion(shaft) + MINIMUM_LAND > self.chamber_length:
+        bosses = [self.protrusion(shaft.bearing(side)) for side in SIDES]
+        if self.one_chamber and sum(bosses) + MINIMUM_LAND > self.chamber_length:
             raise GeometryError(
-                f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes {self.protrusion(shaft):g} m "
-                f"from each end wall, chamber_length = {self.chamber_length:g} m leaves no room between; narrow the "
-                "bearing or thicken the end wall"
+                f"shaft {shaft.name}: bearings of width {shaft.front.width:g} m and {shaft.rear.width:g} m protrude "
+                f"{bosses[0]:g} m and {bosses[1]:g} m from their end walls, chamber_length = {self.chamber_length:g} m "
+                "leaves no room between; narrow the bearings or thicken the end wall"
             )
-        for side in SIDES:
-            if not self.one_chamber and self.protrusion(shaft) + MINIMUM_LAND > self.cold_length(side):
+        for side, boss in zip(SIDES, bosses, strict=True):
+            if not self.one_chamber and boss + MINIMUM_LAND > self.cold_length(side):
                 raise GeometryError(
-                    f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes "
-                    f"{self.protrusion(shaft):g} m from the end wall, more than cold_length_{side} = "
+                    f"shaft {shaft.name}: {side} bearing of width {shaft.bearing(side).width:g} m protrudes "
+                    f"{boss:g} m from the end wall, more than cold_length_{side} = "
                     f"{self.cold_length(side):g} m allows; narrow the bearing or thicken the end wall"
                 )
             if 0.0 < shaft.overhang(side) < MINIMUM_LAND:
@@ -265,13 +265,13 @@ class HousingGeometry:
                     f"{high - low:g} m are free; lengthen the chamber"
                 )
 
-    def _radii(self, shaft: ShaftGeometry) -> dict[str, float]:
-        """Radius of everything that turns in, or is cut into, the housing around one axis."""
+    def _radii(self, shaft: ShaftGeometry, side: Side) -> dict[str, float]:
+        """Radius of everything that turns in, or is cut into, the half of the housing on one side around one axis."""
+        bearing = shaft.bearing(side)
+        boss = self.protrusion(bearing) > 0.0
         radii = {
             "seat": shaft.seat_diameter / 2.0,
-            "bearing": self.boss_radius(shaft)
-            if self.protrusion(shaft) > 0.0
-            else self.bearing_radius(shaft),
+            f"{side} bearing": self.boss_radius(bearing) if boss else bearing.bore_radius,
         }
         if not self.one_chamber:
             radii["partition seal bore"] = self.seal_radius(shaft)
@@ -283,13 +283,16 @@ class HousingGeometry:
 
     def _check_neighbours(self, first: ShaftGeometry, second: ShaftGeometry) -> None:
         distance = abs(first.y - second.y)
-        radii = [
-            max(radius for what, radius in self._radii(shaft).items() if what != "gear")
-            for shaft in (first, second)
-        ]
-        if sum(radii) + MINIMUM_LAND > distance:
+        needed = max(
+            sum(
+                max(radius for what, radius in self._radii(shaft, side).items() if what != "gear")
+                for shaft in (first, second)
+            )
+            for side in SIDES
+        )
+        if needed + MINIMUM_LAND > distance:
             raise GeometryError(
                 f"shafts {first.name} and {second.name}: distance {distance:g} m is less than the "
-                f"{sum(radii):g} m their bores, bosses and seats need; move the axes apart or "
+                f"{needed:g} m their bores, bosses and seats need; move the axes apart or "
                 "reduce diameters or boss_wall"
             )

@@ -130,16 +130,17 @@ def _cold_faces(g: HousingGeometry, side: Side) -> list[NamedFace]:
 def _bearing_surroundings(g: HousingGeometry, shaft: ShaftGeometry, side: Side) -> tuple[list[Patch], float]:
     """Boss, shoulder or cover beside one bearing, and what they add to the area of the flat cold wall."""
     axis = (shaft.y, g.shaft_height)
-    outer, inner = (g.mirrored(side, depth) for depth in g.bearing_depths(shaft))
-    bore, seal = g.bearing_radius(shaft), g.end_seal_radius(shaft)
+    bearing = shaft.bearing(side)
+    outer, inner = (g.mirrored(side, depth) for depth in g.bearing_depths(bearing))
+    bore, seal = bearing.bore_radius, g.end_seal_radius(shaft)
     patches: list[Patch] = []
     area = -ring_area(0.0, bore)
-    if g.protrusion(shaft) > 0.0:
-        boss = g.boss_radius(shaft)
+    if g.protrusion(bearing) > 0.0:
+        boss = g.boss_radius(bearing)
         wall = g.mirrored(side, g.end_wall_thickness)
         patches.append(AxialPatch(axis, (boss, boss), (min(wall, inner), max(wall, inner))))
         patches.append(AxialPatch(axis, (bore, boss), (inner, inner)))
-        area += 2.0 * math.pi * boss * g.protrusion(shaft)
+        area += 2.0 * math.pi * boss * g.protrusion(bearing)
     if shaft.overhang(side) > 0.0:
         low, high = sorted((bore, seal))
         if high > low:
@@ -152,11 +153,11 @@ def _bearing_surroundings(g: HousingGeometry, shaft: ShaftGeometry, side: Side) 
 
 
 def _bore_faces(g: HousingGeometry, shaft: ShaftGeometry, side: Side) -> list[NamedFace]:
-    axis = (shaft.y, g.shaft_height)
+    axis, bearing = (shaft.y, g.shaft_height), shaft.bearing(side)
     partition = g.partition_front if side == "front" else g.partition_rear
-    face, outer, inner = (g.mirrored(side, depth) for depth in (0.0, *g.bearing_depths(shaft)))
+    face, outer, inner = (g.mirrored(side, depth) for depth in (0.0, *g.bearing_depths(bearing)))
     bores = [
-        (f"bearing_bore_{shaft.name}_{side}", g.bearing_radius(shaft), outer, inner),
+        (f"bearing_bore_{shaft.name}_{side}", bearing.bore_radius, outer, inner),
     ]
     if not g.one_chamber:
         bores.append((f"seal_bore_{shaft.name}_{side}", g.seal_radius(shaft), *partition))
@@ -201,12 +202,13 @@ def housing_volume(g: HousingGeometry) -> float:
     clear = (g.chamber_length + g.cold_length_front + g.cold_length_rear) * 2.0 * g.inner_half_width
     volume = g.length * g.width * g.height - clear * g.inner_height
     for shaft in g.shafts:
-        outer, inner = g.bearing_depths(shaft)
         for side in SIDES:
+            bearing = shaft.bearing(side)
+            outer, inner = g.bearing_depths(bearing)
             if not g.one_chamber:
                 volume -= ring_area(0.0, g.seal_radius(shaft)) * g.partition_thickness
-            volume -= ring_area(0.0, g.bearing_radius(shaft)) * (inner - outer)
-            volume += ring_area(0.0, g.boss_radius(shaft)) * g.protrusion(shaft)
+            volume -= ring_area(0.0, bearing.bore_radius) * (inner - outer)
+            volume += ring_area(0.0, g.boss_radius(bearing)) * g.protrusion(bearing)
             if shaft.overhang(side) > 0.0:
                 volume -= ring_area(0.0, g.end_seal_radius(shaft)) * outer
     return volume

@@ -37,6 +37,7 @@ def _label(record: object) -> str:
     """Who owns the quantity: the shaft by name, the field, the gear; nothing for the housing itself."""
     labels = {
         "ShaftGeometry": f"shaft {getattr(record, 'name', '')}: ",
+        "EndBearing": "bearing: ",
         "GearDisc": "gear: ",
         "ClampingField": "field: ",
     }

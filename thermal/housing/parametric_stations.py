@@ -35,9 +35,10 @@ def bearing_stations(geometry: HousingGeometry) -> tuple[BearingStation, ...]:
             name=f"{shaft.name}_{side}", shaft=shaft.name, bore_surface=f"bearing_bore_{shaft.name}_{side}",
             journal_surface=f"shaft_{shaft.name}_journal_{side}",
             centre=_on_axis(
-                geometry, shaft, geometry.mirrored(side, sum(geometry.bearing_depths(shaft)) / 2.0)
+                geometry, shaft, geometry.mirrored(side, sum(geometry.bearing_depths(shaft.bearing(side))) / 2.0)
             ),
-            diameter=shaft.journal_diameter, width=shaft.bearing_width, locating=shaft.locating == side,
+            diameter=shaft.bearing(side).journal_diameter, width=shaft.bearing(side).width,
+            locating=shaft.locating == side,
         )
         for shaft in geometry.shafts
         for side in SIDES
@@ -54,9 +55,12 @@ def seal_stations(geometry: HousingGeometry) -> tuple[SealStation, ...]:
                 ("front", sum(geometry.partition_front) / 2.0, shaft.seal_diameter),
                 ("rear", sum(geometry.partition_rear) / 2.0, shaft.seal_diameter),
             ]
-        land = geometry.bearing_depths(shaft)[0]
         places += [
-            (f"{side}_end", geometry.mirrored(side, land / 2.0), shaft.overhang_diameter)
+            (
+                f"{side}_end",
+                geometry.mirrored(side, geometry.bearing_depths(shaft.bearing(side))[0] / 2.0),
+                shaft.overhang_diameter,
+            )
             for side in SIDES
             if shaft.overhang(side) > 0.0
         ]

@@ -34,11 +34,12 @@ def shaft_zones(geometry: HousingGeometry, shaft: ShaftGeometry) -> tuple[ShaftZ
     prefix = f"shaft_{shaft.name}"
     zones: list[ShaftZone] = []
     for side in SIDES:
-        outer, inner = geometry.bearing_depths(shaft)
+        bearing = shaft.bearing(side)
+        outer, inner = geometry.bearing_depths(bearing)
         half = [
             (f"{prefix}_outside_{side}", shaft.overhang_diameter, -shaft.overhang(side), 0.0),
             (f"{prefix}_seal_{side}_end", shaft.overhang_diameter, 0.0, outer),
-            (f"{prefix}_journal_{side}", shaft.journal_diameter, outer, inner),
+            (f"{prefix}_journal_{side}", bearing.journal_diameter, outer, inner),
         ]
         if not geometry.one_chamber:
             face = (
@@ -53,10 +54,9 @@ def shaft_zones(geometry: HousingGeometry, shaft: ShaftGeometry) -> tuple[ShaftZ
         for name, diameter, start, end in half if shaft.overhang(side) > 0.0 else half[2:]:
             low, high = sorted((geometry.mirrored(side, start), geometry.mirrored(side, end)))
             zones.append(ShaftZone(name, diameter / 2.0, low, high))
-    inner = geometry.bearing_depths(shaft)[1]
     cuts = [geometry.partition_front[1], geometry.partition_rear[0]]
     if geometry.one_chamber:
-        cuts = [inner, geometry.length - inner]
+        cuts = [geometry.mirrored(side, geometry.bearing_depths(shaft.bearing(side))[1]) for side in SIDES]
     if shaft.gear is not None:
         cuts[1:1] = geometry.gear_limits(shaft)
     zones += [ShaftZone(f"{prefix}_warm", shaft.seat_diameter / 2.0, *cut) for cut in pairwise(cuts)]
