@@ -110,6 +110,18 @@ def test_helical_gears_need_a_bearing_that_locates(tmp_path: Path) -> None:
     assert any("push shaft slave_pinion axially and no bearing locates it" in said for said in _said(path))
 
 
+def test_a_bearing_that_pushes_its_shaft_needs_one_that_holds_it(tmp_path: Path) -> None:
+    pushing = {"test.pinion_front": "7206 B"}
+    load_case(rolling_case(tmp_path, others=pushing))  # beside NJ 406, which locates
+    load_case(rolling_case(tmp_path, others=pushing | {"test.pinion_rear": "30206"}))
+    alone = rolling_case(tmp_path, others={"test.pinion_rear": "30206"})
+    (sentence,) = _said(alone)  # beside NU 406
+    assert sentence.startswith(
+        "gearboxes.test.bearings.pinion_rear = 30206 J2/Q: its contact angle pushes shaft"
+    )
+    assert "pinion_front at the other end does not hold it axially" in sentence
+
+
 def test_a_plain_bearing_on_splash_is_refused_beside_rolling_ones(tmp_path: Path) -> None:
     (sentence,) = _said(
         rolling_case(tmp_path, test_oil=SPLASH, plain=("test.wheel_front", "test.wheel_rear"))
