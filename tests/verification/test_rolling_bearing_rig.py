@@ -62,7 +62,7 @@ def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
     into_seats = ball["heat_to_shaft_W"] + ball["heat_to_housing_W"]
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
     assert 0.0 < into_seats < losses["test.wheel_rear"].power_W
-    assert all(row["tilting_stiffness_Nm_mrad"] > 0.0 for row in rows.values())
+    assert all(row["tilting_stiffness_kNm_rad"] > 0.0 for row in rows.values())
 
 
 def test_rows_stand_in_the_document_and_add_up() -> None:
