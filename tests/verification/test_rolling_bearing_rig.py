@@ -56,8 +56,14 @@ def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
     """The friction of the 6306 enters its own seats; the plain bearing at the other end of its shaft has none."""
     rows = {row["bearing"]: row for row in mixed().rolling_bearings}
     front, rear, ball = (rows[f"test.{name}"] for name in ("pinion_front", "pinion_rear", "wheel_rear"))
-    assert (front["designation"], rear["designation"], ball["designation"]) == ("NU 206 ECP", "NJ 406", "6306")
-    assert front["radial_load_N"] == pytest.approx(rear["radial_load_N"], rel=1e-9)  # the gear stands in the middle
+    assert (front["designation"], rear["designation"], ball["designation"]) == (
+        "NU 206 ECP",
+        "NJ 406",
+        "6306",
+    )
+    assert front["radial_load_N"] == pytest.approx(
+        rear["radial_load_N"], rel=1e-9
+    )  # the gear stands in the middle
     assert front["basic_life_h"] / rear["basic_life_h"] == pytest.approx((44.0 / 60.5) ** (10 / 3), rel=1e-6)
     into_seats = ball["heat_to_shaft_W"] + ball["heat_to_housing_W"]
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
