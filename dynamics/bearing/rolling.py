@@ -37,8 +37,9 @@ from dynamics.bearing.rolling_friction import (
 )
 from dynamics.bearing.rolling_heat import HeatPath, SeatConductances, housing_path, shaft_path
 from dynamics.bearing.rolling_life import LifeConditions, check_axial, minimum_load, rating_life
+from dynamics.bearing.rolling_row import RowOfElements
 from dynamics.bearing.rolling_state import RollingState, limit_warnings
-from dynamics.bearing.rolling_stiffness import RowOfElements, bearing_stiffness
+from dynamics.bearing.rolling_stiffness import bearing_stiffness
 from dynamics.standards import iso281_2007
 
 MAXIMUM_RISE = 400.0

@@ -32,11 +32,13 @@ class ContactLaw:
     stiffness : [N/m^exponent]
     exponent : 3/2 point, 10/9 line
     groove_distance : distance of the groove centres of a ball bearing, r_i + r_o - D_w [m]; 0 for rollers
+    inner_groove_offset : of the groove centre of the inner ring from the ball centre, r_i - D_w / 2 [m]; 0 for rollers
     """
 
     stiffness: float
     exponent: float
     groove_distance: float = 0.0
+    inner_groove_offset: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +71,10 @@ def contact_law(elements: RollingElements, groove: BallGroove = COMMON_GROOVE) -
     outer = _point_stiffness(ball, -2.0 * gamma / (1.0 + gamma), groove.outer, groove)
     both = (inner ** (-2.0 / 3.0) + outer ** (-2.0 / 3.0)) ** -1.5
     return ContactLaw(
-        stiffness=both, exponent=POINT_EXPONENT, groove_distance=(groove.inner + groove.outer - 1.0) * ball
+        stiffness=both,
+        exponent=POINT_EXPONENT,
+        groove_distance=(groove.inner + groove.outer - 1.0) * ball,
+        inner_groove_offset=(groove.inner - 0.5) * ball,
     )
 
 

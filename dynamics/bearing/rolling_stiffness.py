@@ -3,43 +3,23 @@
 Rings stay round; they move against each other by a radial and an axial displacement. Every rolling element is pressed
 by what the displacement takes off its space and gives its force back along its contact angle; the sum over the
 elements (the sum that Sjoevall's integral stands for) balances the load. The elastic energy is a convex function of
-the displacement, so a damped Newton iteration finds it from anywhere; its second derivative is the stiffness.
-Balls change their contact angle with the load, rollers keep theirs. Source: T. A. Harris, Rolling Bearing Analysis,
-chapters 6 and 7; ISO/TS 16281 without tilting.
+the displacement, so a damped Newton iteration finds it from anywhere; its second derivative is the stiffness, also
+against tilting. The bearing is found without tilting; a program whose shaft bends asks `ring_load`.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from dynamics.bearing.protocol import BearingError, BearingNotConvergedError
-from dynamics.bearing.rolling_contact import ContactLaw
-from dynamics.bearing.rolling_elements import RollingElements
-
-FloatArray = NDArray[np.float64]
+from dynamics.bearing.rolling_row import FloatArray, RowOfElements, contacts, ring_load
 
 MOST_ITERATIONS = 100
 ACCURACY = 1e-9
 """Residual force over the load at which the iteration ends."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class RowOfElements:
-    """One row of rolling elements with its contact law.
-
-    clearance : radial internal clearance as it runs, negative as radial preload [m]
-    axial_offset : axial approach of the rings before any load, the preload of a pair [m]
-    direction : +1 takes positive axial displacement up, -1 the other
-    """
-
-    elements: RollingElements
-    law: ContactLaw
-    clearance: float = 0.0
-    axial_offset: float = 0.0
-    direction: int = 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +30,8 @@ class BearingStiffness:
     radial, axial : d(force) / d(displacement), the other displacement held [N/m]
     lateral : across the load in the radial plane [N/m]
     coupling : d(radial force) / d(axial displacement) [N/m]
+    tilting, tilting_lateral : d(moment) / d(tilt) in the plane of load and axis, and across it, the other
+        displacements held [N m/rad]
     radial_load, axial_load : carried [N]; the axial one is above what was asked where the bearing is held axially
     largest_element_load : [N]
     loaded_elements : number that carry load
@@ -63,6 +45,8 @@ class BearingStiffness:
     axial: float
     lateral: float
     coupling: float
+    tilting: float
+    tilting_lateral: float
     radial_load: float
     axial_load: float
     largest_element_load: float
@@ -92,6 +76,27 @@ def bearing_stiffness(row: RowOfElements, radial: float, axial: float) -> Bearin
     return _solve((row,), radial, axial, free_axially=free and not (row.elements.roller and not angled))
 
 
+def stiffness_matrix(row: RowOfElements, radial: float, axial: float, azimuth: float = 0.0) -> FloatArray:
+    """Tangent stiffness of a single bearing at a load, untilted; (5, 5) in the order x, y, z, rx, ry.
+
+    z is the axis, rx and ry are rotations about x and y; forces in N, moments in N m, displacements in m and rad, of
+    the inner ring against the outer one at the middle of the bearing. Symmetric and positive semidefinite: rows of a
+    direction without stiffness (z of cylindrical rollers, whose flanges are not counted) are 0.
+
+    radial, axial : load, not negative [N]; the axial one presses the row, in its ``direction``
+    azimuth : of the radial load from x towards y [rad]; the most loaded element stands there
+
+    Raises as `bearing_stiffness`.
+    """
+    found = bearing_stiffness(replace(row, direction=1), radial, axial)
+    along = row.direction * found.axial_displacement
+    matrix = ring_load((row,), np.array([found.radial_displacement, 0.0, along, 0.0, 0.0])).stiffness
+    cosine, sine = math.cos(azimuth), math.sin(azimuth)
+    turn = np.eye(5)
+    turn[:2, :2] = turn[3:, 3:] = [[cosine, -sine], [sine, cosine]]
+    return np.asarray(turn @ matrix @ turn.T)
+
+
 def preload_offset(row: RowOfElements, preload: float) -> float:
     """Axial approach [m] at which ``preload`` [N] presses the rings of one bearing of a pair together.
 
@@ -115,7 +120,8 @@ def preload_offset(row: RowOfElements, preload: float) -> float:
 def preloaded_pair(row: RowOfElements, preload: float, radial: float, axial: float) -> BearingStiffness:
     """Stiffness of two equal bearings set against each other with an axial preload [N] under a load of the pair [N].
 
-    The rings are rigid against tilting: face to face and back to back are the same.
+    The rings do not tilt: face to face and back to back are the same. Their distance counts by the ``position`` of the
+    rows of `ring_load`.
 
     Raises BearingError for a row without contact angle, BearingNotConvergedError where no displacement carries the load
     """
@@ -152,42 +158,16 @@ def _balance(rows: tuple[RowOfElements, ...], radial: float, axial: float) -> _B
         count = row.elements.count
         azimuth = 2.0 * math.pi / count * np.arange(count)
         cosine = np.cos(azimuth)
-        shift = row.direction * axial + row.axial_offset
-        approach, radial_share, axial_share, length = _approach(row, radial * cosine, shift)
-        pressed = np.maximum(approach, 0.0)
-        exponent = row.law.exponent
-        load = row.law.stiffness * pressed**exponent
-        slope = exponent * row.law.stiffness * pressed ** (exponent - 1.0)
-        geometric = load / length
-        energy += float(np.sum(load * pressed)) / (exponent + 1.0)
-        along = load * radial_share
-        force += (float(along @ cosine), row.direction * float(np.sum(load * axial_share)))
-        k_rr = slope * radial_share**2 + geometric * axial_share**2
-        k_ra = (slope - geometric) * radial_share * axial_share
-        k_aa = slope * axial_share**2 + geometric * radial_share**2
-        tangent[0, 0] += float(k_rr @ cosine**2)
-        tangent[0, 1] += row.direction * float(k_ra @ cosine)
-        tangent[1, 1] += float(np.sum(k_aa))
-        lateral += float(k_rr @ np.sin(azimuth) ** 2)
-        loads.append(load)
+        pressed = contacts(row, radial * cosine, row.direction * axial)
+        energy += pressed.energy
+        force += (float(pressed.radial @ cosine), row.direction * float(np.sum(pressed.axial)))
+        tangent[0, 0] += float(pressed.k_rr @ cosine**2)
+        tangent[0, 1] += row.direction * float(pressed.k_ra @ cosine)
+        tangent[1, 1] += float(np.sum(pressed.k_aa))
+        lateral += float(pressed.k_rr @ np.sin(azimuth) ** 2)
+        loads.append(pressed.load)
     tangent[1, 0] = tangent[0, 1]
     return _Balance(energy, force, tangent, lateral, np.concatenate(loads))
-
-
-def _approach(
-    row: RowOfElements, radial: FloatArray, axial: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Approach of the raceways at each element [m], its direction (radial, axial) and the length that turns it [m]."""
-    angle = row.elements.contact_angle
-    if row.elements.roller:
-        ones = np.ones_like(radial)
-        approach = (radial - 0.5 * row.clearance) * math.cos(angle) + axial * math.sin(angle)
-        return approach, ones * math.cos(angle), ones * math.sin(angle), ones * math.inf
-    distance = row.law.groove_distance
-    across = distance * math.cos(angle) - 0.5 * row.clearance + radial
-    along = distance * math.sin(angle) + axial
-    length = np.hypot(across, along)
-    return length - distance, across / length, along / length, length
 
 
 def _solve(
@@ -202,7 +182,7 @@ def _solve(
     for _ in range(MOST_ITERATIONS):
         residual = np.where(active, target - state.force, 0.0)
         if float(np.linalg.norm(residual)) <= ACCURACY * max(scale, 1e-3):
-            return _result(state, place, held=not free_axially and _angled(rows))
+            return _result(rows, state, place, held=not free_axially and _angled(rows))
         place, state = _step(rows, place, state, residual, target, active)
     raise BearingNotConvergedError(
         f"bearing stiffness: no displacement carries {radial:.6g} N radial and {axial:.6g} N axial, residual "
@@ -256,7 +236,10 @@ def _angled(rows: tuple[RowOfElements, ...]) -> bool:
     return len(rows) == 1 and rows[0].elements.contact_angle > 0.0
 
 
-def _result(state: _Balance, place: FloatArray, *, held: bool) -> BearingStiffness:
+def _result(
+    rows: tuple[RowOfElements, ...], state: _Balance, place: FloatArray, *, held: bool
+) -> BearingStiffness:
+    tilted = ring_load(rows, np.array([place[0], 0.0, place[1], 0.0, 0.0])).stiffness
     return BearingStiffness(
         radial_displacement=float(place[0]),
         axial_displacement=float(place[1]),
@@ -264,6 +247,8 @@ def _result(state: _Balance, place: FloatArray, *, held: bool) -> BearingStiffne
         axial=float(state.tangent[1, 1]),
         lateral=state.lateral,
         coupling=float(state.tangent[0, 1]),
+        tilting=float(tilted[4, 4]),
+        tilting_lateral=float(tilted[3, 3]),
         radial_load=float(state.force[0]),
         axial_load=max(float(state.force[1]), 0.0),
         largest_element_load=float(np.max(state.element_loads)),

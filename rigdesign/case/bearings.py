@@ -2,8 +2,9 @@
 
 A kind is a class whose key ``type`` has one choice, joined in `BearingInput`; all kinds answer alike:
 ``label``, ``shaft_diameter``, ``housing_bore``, ``width``, ``drawn_clearance`` (measures as drawn), ``has_film``,
-``needs_fed_oil``, ``shell_conductance`` (what others have to know of it), ``as_it_runs`` (bearing of the solver),
-``running_clearance`` (clearance of the warm rig), ``induced_axial_load``, ``assumptions`` and ``own_faults``.
+``needs_fed_oil``, ``holds_axially``, ``shell_conductance`` (what others have to know of it), ``as_it_runs`` (bearing
+of the solver), ``running_clearance`` (clearance of the warm rig), ``induced_axial_load``, ``assumptions`` and
+``own_faults``.
 """
 
 from collections.abc import Iterator
@@ -101,6 +102,11 @@ class JournalBearingInput(Part):
     def needs_fed_oil(self) -> bool:
         """Splash or grease do not carry a plain bearing."""
         return True
+
+    @property
+    def holds_axially(self) -> bool:
+        """Its thrust face takes up what its partner induces, where it locates the shaft."""
+        return self.locating
 
     def induced_axial_load(self, radial: float) -> float:
         """None: a film pushes radially [N]."""

@@ -7,7 +7,8 @@ from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
-from thermal.housing.geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
 
 
 def pitch_diameters(gearbox: Gearbox) -> dict[str, float]:
@@ -95,6 +96,14 @@ def conditions_of(housing: Housing, names: Iterable[str]) -> list[tuple[str, str
     ]
 
 
+def _end_bearing(bearing: BearingInput) -> EndBearing:
+    return EndBearing(
+        journal_diameter=bearing.shaft_diameter,
+        width=bearing.width,
+        clearance=0.5 * (bearing.housing_bore - bearing.shaft_diameter),
+    )
+
+
 def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[str, float]) -> ShaftGeometry:
     front, rear = (bearing_on(gearbox, name, side) for side in ("front", "rear"))
     seals = next(seals for seals in gearbox.seals.values() if seals.shaft == name)
@@ -103,12 +112,11 @@ def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[
     return ShaftGeometry(
         name=name,
         y=shaft.lateral_position,
-        journal_diameter=front.shaft_diameter,
+        front=_end_bearing(front),
+        rear=_end_bearing(rear),
         seal_diameter=seal_diameter,
         seat_diameter=on_shaft[1].bore_diameter if on_shaft else seal_diameter or shaft.outside_diameter,
         overhang_diameter=shaft.outside_diameter,
-        bearing_width=front.width,
-        bearing_clearance=0.5 * (front.housing_bore - front.shaft_diameter),
         seal_gap=seals.radial_gap,
         locating="rear" if rear.locating else "front",
         bore_diameter=shaft.bore_diameter,

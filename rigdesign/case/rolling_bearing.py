@@ -241,6 +241,11 @@ class RollingBearingInput(Part):
             HOUSING_INTERFERENCE[0] * data.outside_diameter if in_housing is None else in_housing,
         )
 
+    @property
+    def holds_axially(self) -> bool:
+        """It takes up what its partner induces: by its contact angle, or where it locates the shaft."""
+        return self.data.locating and (self.locating or self.data.contact_angle > 0.0)
+
     def induced_axial_load(self, radial: float) -> float:
         """Axial force that a radial load produces inside the bearing [N]; 0 without a contact angle."""
         from dynamics.bearing.rolling_life import induced_axial_load

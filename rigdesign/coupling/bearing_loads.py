@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from dynamics.bearing.rolling_pair import pair_axial_loads
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import GearMesh
@@ -32,9 +33,8 @@ def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, BearingL
     force on either of them, which is on the safe side; it is left out where the case does not state both positions
     (`tilt_counted`).
 
-    Two bearings of a shaft with induced axial loads F_iA, F_iB (face to face or back to back) press each other, A the
-    locating one with the external force K_a: F_aA = max(F_iA, F_iB + K_a), F_aB = max(F_iB, F_iA - K_a) (SKF General
-    Catalogue 6000, table 3 p. 613).
+    Where the radial load of a bearing induces an axial force, its partner takes that up as well (`pair_axial_loads`);
+    the locating bearing is the one that the gears press, whether the pair stands face to face or back to back.
     """
     loads = {
         name: BearingLoad(
@@ -73,17 +73,18 @@ def _axial_loads(
     own = [f"{name}.{part}" for part, entry in box.bearings.items() if entry.shaft == shaft]
     entries = {full: box.bearings[full.split(".")[1]] for full in own}
     first = next((full for full in own if entries[full].locating), own[0])
-    if entries[first].has_film:
-        return {}  # its thrust face carries the axial force
     external = axial_force(rig, name, shaft, coupling_state)
     induced = {full: entries[full].induced_axial_load(loads[full].radial) for full in own}
-    if len(own) != 2 or min(induced.values()) == 0.0:
-        return {first: replace(loads[first], axial=external)} if external else {}
-    other = own[1] if first == own[0] else own[0]
-    pressed = max(induced[first], induced[other] + external)
+    axial = {first: external}
+    if len(own) == 2 and max(induced.values()) > 0.0:
+        other = own[1] if first == own[0] else own[0]
+        axial = dict(
+            zip((first, other), pair_axial_loads((induced[first], induced[other]), external), strict=True)
+        )
     return {
-        first: replace(loads[first], axial=pressed),
-        other: replace(loads[other], axial=max(induced[other], induced[first] - external)),
+        full: replace(loads[full], axial=force)
+        for full, force in axial.items()
+        if force > 0.0 and not entries[full].has_film  # a thrust face carries it beside the film
     }
 
 

@@ -41,7 +41,9 @@ from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
-from thermal.housing.geometry import SIDES, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import HousingGeometry
+from thermal.housing.measures import SIDES
+from thermal.housing.shaft_geometry import ShaftGeometry
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
 """Kinds of films: what takes the heat up, as the heat balance names it."""
@@ -138,7 +140,7 @@ class _Context:
         if surface.endswith("_warm"):
             return shaft.seat_diameter
         if "_journal_" in surface:
-            return shaft.journal_diameter
+            return shaft.bearing("front" if surface.endswith("_front") else "rear").journal_diameter
         return shaft.overhang_diameter
 
 

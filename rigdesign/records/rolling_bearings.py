@@ -39,4 +39,5 @@ def rolling_bearings(rig: Rig, points: Iterable[PointResult]) -> Iterator[Rollin
                 minimum_load=state.minimum_load,
                 radial_stiffness=state.stiffness.radial,
                 axial_stiffness=state.stiffness.axial,
+                tilting_stiffness=state.stiffness.tilting,
             )

@@ -47,3 +47,5 @@ class RollingBearingRecord:
     """[N/m]"""
     axial_stiffness: float
     """[N/m]"""
+    tilting_stiffness: float
+    """In the plane of the radial load [N m/rad]."""

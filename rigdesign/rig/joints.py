@@ -13,7 +13,7 @@ from thermal.films import convection
 from thermal.films.air import air
 from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
 from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw
-from thermal.housing.surfaces import FOOT, SEAT
+from thermal.housing.housing_surfaces import FOOT, SEAT
 
 FOOT_CONTACT = "foot_contact"
 """Kind of the rows of the foot joint in the heat balance."""

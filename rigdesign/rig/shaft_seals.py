@@ -7,6 +7,7 @@ from rigdesign.case.drivetrain import DrivetrainInput, ShaftInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.rig.model import Rig
+from thermal.housing.measures import SIDES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,14 +38,17 @@ def shaft_seals(rig: Rig, box_name: str, shaft_name: str) -> list[ShaftSeal]:
     shaft = next((shaft for shaft in geometry.shafts if shaft.name == shaft_name), None)
     if shaft is None:
         return []
-    land = geometry.bearing_depths(shaft)[0]
     partitions = 0 if geometry.one_chamber else 2
     walls = [ShaftSeal(diameter=shaft.seal_diameter, length=geometry.partition_thickness, leaves=False)]
     walls *= partitions
     exits = [
-        ShaftSeal(diameter=shaft.overhang_diameter, length=land, leaves=True)
-        for overhang in (shaft.overhang_front, shaft.overhang_rear)
-        if overhang > 0.0
+        ShaftSeal(
+            diameter=shaft.overhang_diameter,
+            length=geometry.bearing_depths(shaft.bearing(side))[0],
+            leaves=True,
+        )
+        for side in SIDES
+        if shaft.overhang(side) > 0.0
     ]
     return [*walls, *exits]
 

@@ -1,6 +1,6 @@
 """A gearbox of two materials for thermal expansion."""
 
-from thermal.housing.gearbox import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
+from thermal.housing.gearbox import ClampingField, EndBearing, GearDisc, HousingGeometry, ShaftGeometry
 
 COLD = 293.15
 STEEL, IRON = (210e9, 0.3, 11.5e-6), (120e9, 0.26, 10.5e-6)
@@ -10,11 +10,13 @@ GAP = 0.5e-3
 
 
 def geometry() -> HousingGeometry:
+    bearing = EndBearing(journal_diameter=0.04, width=0.03, clearance=20e-6)
+
     def shaft(name: str, y: float, width: float) -> ShaftGeometry:
         return ShaftGeometry(
-            name=name, y=y, journal_diameter=0.04, seal_diameter=0.042, seat_diameter=0.044,
-            overhang_diameter=0.038, bearing_width=0.03, seal_gap=GAP, locating="rear",
-            bearing_clearance=20e-6, overhang_rear=0.04, gear=GearDisc(outer_diameter=0.099, width=width),
+            name=name, y=y, front=bearing, rear=bearing, seal_diameter=0.042, seat_diameter=0.044,
+            overhang_diameter=0.038, seal_gap=GAP, locating="rear",
+            overhang_rear=0.04, gear=GearDisc(outer_diameter=0.099, width=width),
         )  # fmt: skip
 
     return HousingGeometry(

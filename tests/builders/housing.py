@@ -7,14 +7,17 @@ import numpy as np
 from thermal.fe.mesh import NamedMesh
 from thermal.housing.gearbox import (
     ClampingField,
+    EndBearing,
     GearDisc,
     HousingGeometry,
     ShaftGeometry,
 )
 
+BEARING = EndBearing(journal_diameter=0.040, width=0.024)
+
 PINION = ShaftGeometry(
-    name="pinion", y=-0.04975, journal_diameter=0.040, seal_diameter=0.045, seat_diameter=0.050,
-    overhang_diameter=0.036, bearing_width=0.024, seal_gap=0.6e-3, locating="front", overhang_rear=0.06,
+    name="pinion", y=-0.04975, front=BEARING, rear=BEARING, seal_diameter=0.045, seat_diameter=0.050,
+    overhang_diameter=0.036, seal_gap=0.6e-3, locating="front", overhang_rear=0.06,
     gear=GearDisc(outer_diameter=0.101, width=0.007),
 )  # fmt: skip
 
@@ -30,12 +33,14 @@ PROTOTYPE = HousingGeometry(
     field=ClampingField(length=0.8, width=1.2, thickness=0.15),
 )  # fmt: skip
 
+WIDE, LOOSE = replace(BEARING, width=0.04), replace(BEARING, clearance=5e-5)
+
 ONE_CHAMBER = replace(
     PROTOTYPE,
     cold_length_front=0.0, cold_length_rear=0.0, partition_thickness=0.0,
     shafts=(
-        replace(PINION, seal_diameter=0.0, bearing_width=0.04),
-        replace(WHEEL, seal_diameter=0.0, bearing_clearance=5e-5, overhang_diameter=0.044),
+        replace(PINION, seal_diameter=0.0, front=WIDE, rear=WIDE),
+        replace(WHEEL, seal_diameter=0.0, front=BEARING, rear=LOOSE, overhang_diameter=0.044),
     ),
 )  # fmt: skip
 """The same without partitions: bosses that stand in the chamber, a blind end, an overhang thicker than its journal."""

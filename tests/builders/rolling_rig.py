@@ -1,8 +1,9 @@
-"""FZG rigs on NU 406 and NJ 406: dip, splash, grease or fed oil, some shafts on plain bearings."""
+"""FZG rigs on NU 406 and NJ 406: dip, splash, grease or fed oil, some bearings plain or of another size."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from tests.builders.fzg_case import fzg_case
 
@@ -20,11 +21,16 @@ def rolling_case(
     slave_oil: str = SPLASH,
     dip: bool = True,
     plain: Sequence[str] = (),
+    others: Mapping[str, str] = MappingProxyType({}),
     law: str = "iso_tr_14179_2",
 ) -> Path:
-    """Write the case; plain : shafts that stay on plain bearings with their given losses."""
+    """Write the case.
+
+    plain : bearings ``gearbox.bearing`` that stay plain ones with their given losses
+    others : designation of the bearings that are neither NU 406 nor NJ 406
+    """
     parts = re.split(r"(?=^\[)", fzg_case(folder).read_text(), flags=re.MULTILINE)
-    kept = (_part(part, plain, law) for part in parts if not _given_bearing(part, plain))
+    kept = (_part(part, plain, others, law) for part in parts if not _given_bearing(part, plain))
     text = "".join(
         part for part in kept if not (dip and part.startswith("[losses.given") and "windage" in part)
     )
@@ -40,13 +46,15 @@ def rolling_case(
 def _given_bearing(part: str, plain: Sequence[str]) -> bool:
     """A given loss of a bearing that is a rolling bearing here."""
     return 'kind = "bearing"' in part and not any(
-        f'"{box}"' in part and f'part = "{gear}_' in part
-        for box, _, gear in (shaft.partition("_") for shaft in plain)
+        f'"{box}"' in part and f'part = "{own}"' in part
+        for box, _, own in (bearing.partition(".") for bearing in plain)
     )
 
 
-def _part(part: str, plain: Sequence[str], law: str) -> str:
-    if ".bearings." not in part.split("]")[0] or any(f'shaft = "{shaft}"' in part for shaft in plain):
+def _part(part: str, plain: Sequence[str], others: Mapping[str, str], law: str) -> str:
+    table = part.split("]")[0].removeprefix("[gearboxes.")
+    name = table.replace(".bearings.", ".")
+    if ".bearings." not in table or name in plain:
         return part
-    designation = "NJ 406" if "locating = true" in part else "NU 406"
+    designation = others.get(name, "NJ 406" if "locating = true" in part else "NU 406")
     return part.replace(JOURNAL, f'type = "rolling"\ndesignation = "{designation}"\nfriction_law = "{law}"\n')

@@ -34,6 +34,7 @@ from thermal.fe.mesh import NamedMesh, box_mesh, facet_table
 from thermal.fe.numbering import inverse
 from thermal.housing.gearbox import (
     ClampingField,
+    EndBearing,
     GearDisc,
     HousingGeometry,
     MeshSizes,
@@ -54,10 +55,11 @@ THREADS = int(os.environ.get("NUMBA_NUM_THREADS", os.cpu_count() or 1))
 
 def gearbox(factor: float) -> NamedMesh:
     """Housing with field, two shafts and gears; cells ``factor`` times those of `reference`."""
+    bearing = EndBearing(journal_diameter=0.04, width=0.03)
     shafts = tuple(
         ShaftGeometry(
-            name=name, y=y, journal_diameter=0.04, seal_diameter=0.042, seat_diameter=0.044,
-            overhang_diameter=0.038, bearing_width=0.03, seal_gap=0.5e-3, locating="rear",
+            name=name, y=y, front=bearing, rear=bearing, seal_diameter=0.042, seat_diameter=0.044,
+            overhang_diameter=0.038, seal_gap=0.5e-3, locating="rear",
             overhang_rear=0.04, gear=GearDisc(outer_diameter=0.099, width=0.015),
         )
         for name, y in (("pinion", -0.05), ("wheel", 0.05))

@@ -1,7 +1,7 @@
 """A rig that mixes plain and rolling bearings, and the FZG bearings beside hand values.
 
-One run at quick fidelity: test gearbox fed with oil, pinion on NU 406 and NJ 406, wheel on plain bearings with given
-losses; slave gearbox on rolling bearings that live on splash; both dip.
+One run at quick fidelity: test gearbox fed with oil, its pinion on a small NU 206 and an NJ 406, its wheel on a plain
+bearing with given losses and a locating 6306; slave gearbox on NU 406 and NJ 406 that live on splash; both dip.
 """
 
 import json
@@ -18,13 +18,18 @@ from rigdesign.results.result import RunResult
 from tests.builders.fzg_case import BEARINGS
 from tests.builders.rolling_rig import FED, SPLASH, rolling_case
 
+OTHERS = {"test.pinion_front": "NU 206", "test.wheel_rear": "6306"}
+"""Ends of the shafts of the test gearbox that differ from the other end."""
+
 pytestmark = pytest.mark.whole_run
 
 
 @cache
 def mixed() -> RunResult:
     with TemporaryDirectory() as folder:
-        path = rolling_case(Path(folder), test_oil=FED, slave_oil=SPLASH, plain=("test_wheel",))
+        path = rolling_case(
+            Path(folder), test_oil=FED, slave_oil=SPLASH, plain=("test.wheel_front",), others=OTHERS
+        )
         return run_case(load_case(path), fidelity="quick")
 
 
@@ -35,7 +40,7 @@ def test_a_mixed_rig_closes_its_heat() -> None:
     rows = {row["bearing"]: row for row in mixed().rolling_bearings}
     assert sorted(rows) == [
         "slave.pinion_front", "slave.pinion_rear", "slave.wheel_front", "slave.wheel_rear",
-        "test.pinion_front", "test.pinion_rear",
+        "test.pinion_front", "test.pinion_rear", "test.wheel_rear",
     ]  # fmt: skip
     assert all(
         row["heat_to_shaft_W"] == row["heat_to_housing_W"] == 0.0
@@ -45,6 +50,25 @@ def test_a_mixed_rig_closes_its_heat() -> None:
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
     assert losses["test.wheel_front"].basis == "input" and losses["test.wheel_front"].into_body_W == 0.0
     assert 0.0 < losses["test.pinion_front"].into_body_W < losses["test.pinion_front"].power_W
+
+
+def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
+    """The friction of the 6306 enters its own seats; the plain bearing at the other end of its shaft has none."""
+    rows = {row["bearing"]: row for row in mixed().rolling_bearings}
+    front, rear, ball = (rows[f"test.{name}"] for name in ("pinion_front", "pinion_rear", "wheel_rear"))
+    assert (front["designation"], rear["designation"], ball["designation"]) == (
+        "NU 206 ECP",
+        "NJ 406",
+        "6306",
+    )
+    assert front["radial_load_N"] == pytest.approx(
+        rear["radial_load_N"], rel=1e-9
+    )  # the gear stands in the middle
+    assert front["basic_life_h"] / rear["basic_life_h"] == pytest.approx((44.0 / 60.5) ** (10 / 3), rel=1e-6)
+    into_seats = ball["heat_to_shaft_W"] + ball["heat_to_housing_W"]
+    losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
+    assert 0.0 < into_seats < losses["test.wheel_rear"].power_W
+    assert all(row["tilting_stiffness_kNm_rad"] > 0.0 for row in rows.values())
 
 
 def test_rows_stand_in_the_document_and_add_up() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from thermal.fe.mesh import FloatArray, NamedMesh
 from thermal.housing.geometry import HousingGeometry
+from thermal.housing.housing_surfaces import FOOT
 from thermal.housing.parametric_stations import (
     bearing_stations,
     foot_joint,
@@ -19,7 +20,7 @@ from thermal.housing.parametric_stations import (
     shaft_stations,
 )
 from thermal.housing.stations import GearboxModel, Point
-from thermal.housing.surfaces import FOOT, joined_surfaces
+from thermal.housing.surfaces import joined_surfaces
 
 ROUND = 0.02
 """Largest distance of a corner from the fitted circle, relative to its radius, of what is taken for a cylinder."""

@@ -39,7 +39,9 @@ from types import MappingProxyType
 from typing import Literal
 
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
-from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.housing_surfaces import FOOT, field_faces, housing_faces
+from thermal.housing.measures import GeometryError
 from thermal.housing.meshing import Component, gmsh_session, mesh_component
 from thermal.housing.parametric_stations import (
     bearing_stations,
@@ -48,6 +50,8 @@ from thermal.housing.parametric_stations import (
     seal_stations,
     shaft_stations,
 )
+from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import (
     MeshSizes,
     bend_axes,
@@ -58,19 +62,11 @@ from thermal.housing.solids import (
     shaft_size,
 )
 from thermal.housing.stations import GearboxModel
-from thermal.housing.surfaces import (
-    FOOT,
-    body_names,
-    exact_areas,
-    exact_volumes,
-    field_faces,
-    housing_faces,
-    shaft_faces,
-    surface_names,
-)
+from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, surface_names
 
 __all__ = [
     "ClampingField",
+    "EndBearing",
     "Fidelity",
     "GearDisc",
     "GeometryError",

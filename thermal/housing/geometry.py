@@ -21,122 +21,17 @@ metres, as drawn. A bearing sits at the inner side of its end wall, the end seal
 cover) outside of it; a bearing wider than the wall leaves room for protrudes into the housing on a boss.
 """
 
-import math
-import re
 from dataclasses import dataclass, fields
 from itertools import combinations
-from typing import Literal
 
 from thermal.errors import ThermalInputError
+from thermal.housing.measures import MINIMUM_LAND, SIDES, GeometryError, Side, require_positive
+from thermal.housing.shaft_geometry import EndBearing, ShaftGeometry
 
-Side = Literal["front", "rear"]
-SIDES: tuple[Side, Side] = ("front", "rear")
-MINIMUM_LAND = 1e-3
-"""Least length or thickness [m] that geometry may leave between two features."""
 PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
 """Measures that a housing has all of, or none of."""
 SMALLEST_STEP = 1e-6
 """Protrusion [m] below which a bearing counts as flush with its wall."""
-
-
-class GeometryError(ThermalInputError):
-    """A gearbox that cannot be built; the message names the quantity, its value, the limit and the remedy."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class GearDisc:
-    """A gear body as a solid disc on the gear seat of its shaft; the teeth are not drawn.
-
-    Discs of a meshing pair may overlap (tip diameters do): they are separate bodies that share no nodes.
-    """
-
-    outer_diameter: float
-    """Diameter of the disc [m]; tip diameter, or the mean of tip and root to keep the mass."""
-    width: float
-    """Face width [m]."""
-    offset: float = 0.0
-    """x of the disc's mid-plane relative to the middle of the chamber [m]."""
-
-    def __post_init__(self) -> None:
-        _require_positive(self, "outer_diameter", "width")
-
-
-@dataclass(frozen=True, kw_only=True)
-class ShaftGeometry:
-    """A stepped shaft on two journal bearings, with its seals and at most one gear. Lengths in metres."""
-
-    name: str
-    """Lower-case letters, digits and underscores; part of the names of its bodies and surfaces."""
-    y: float
-    """Position of the axis as drawn across the housing."""
-    journal_diameter: float
-    seal_diameter: float = 0.0
-    """Diameter in the partition seals and in the cold sections between partition and bearing; 0 without partitions."""
-    seat_diameter: float
-    """Diameter in the chamber: gear seat, and bore of the gear."""
-    overhang_diameter: float
-    """Diameter in the end seals and outside the housing."""
-    bearing_width: float
-    seal_gap: float
-    """Radial gap of every seal of this shaft."""
-    locating: Side
-    """The end whose bearing fixes the shaft axially."""
-    bearing_clearance: float = 0.0
-    """Radial bearing clearance."""
-    bore_diameter: float = 0.0
-    """Central bore right through the shaft; 0 for a solid one."""
-    overhang_front: float = 0.0
-    """Length that leaves the front end wall; 0: the shaft ends at its bearing behind a closed cover."""
-    overhang_rear: float = 0.0
-    gear: GearDisc | None = None
-
-    def __post_init__(self) -> None:
-        if not re.fullmatch(r"[a-z][a-z0-9_]*", self.name):
-            raise GeometryError(
-                f"shaft name {self.name!r} is not allowed: use lower-case letters, digits and underscores, "
-                "starting with a letter"
-            )
-        _require_positive(
-            self, "journal_diameter", "seat_diameter", "overhang_diameter", "bearing_width", "seal_gap",
-        )  # fmt: skip
-        _require_not_negative(
-            self, "seal_diameter", "bearing_clearance", "bore_diameter", "overhang_front", "overhang_rear"
-        )
-        if not math.isfinite(self.y):
-            raise GeometryError(
-                f"shaft {self.name}: y = {self.y} is no number; give the axis position in metres"
-            )
-        if self.locating not in SIDES:
-            raise GeometryError(
-                f"shaft {self.name}: locating = {self.locating!r} is neither 'front' nor 'rear'"
-            )
-        self._check_bore()
-
-    def _check_bore(self) -> None:
-        if 0.0 < self.bore_diameter < 2.0 * MINIMUM_LAND:
-            raise GeometryError(
-                f"shaft {self.name}: bore_diameter = {self.bore_diameter:g} m is below "
-                f"{2.0 * MINIMUM_LAND:g} m; give 0 for a solid shaft or a wider bore"
-            )
-        zones = ["journal_diameter", "seat_diameter", "overhang_diameter"]
-        if self.seal_diameter > 0.0:
-            zones.insert(1, "seal_diameter")
-        thinnest = min(zones, key=lambda zone: float(getattr(self, zone)))
-        limit = getattr(self, thinnest) - 2.0 * MINIMUM_LAND
-        if self.bore_diameter > limit:
-            raise GeometryError(
-                f"shaft {self.name}: bore_diameter = {self.bore_diameter:g} m is above {limit:g} m, which "
-                f"{thinnest} leaves; make the bore smaller or the shaft thicker"
-            )
-        if self.gear is not None and self.gear.outer_diameter < self.seat_diameter + 2.0 * MINIMUM_LAND:
-            raise GeometryError(
-                f"shaft {self.name}: gear outer_diameter = {self.gear.outer_diameter:g} m must exceed "
-                f"seat_diameter = {self.seat_diameter:g} m; enlarge the gear or reduce the seat"
-            )
-
-    def overhang(self, side: Side) -> float:
-        """Length outside the end wall of one side [m]."""
-        return self.overhang_front if side == "front" else self.overhang_rear
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,7 +45,7 @@ class ClampingField:
     thickness: float
 
     def __post_init__(self) -> None:
-        _require_positive(self, "length", "width", "thickness")
+        require_positive(self, "length", "width", "thickness")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,9 +87,9 @@ class HousingGeometry:
         if self.foot_joint and self.field is None:
             raise GeometryError("foot_joint = True without a field; give the field the housing stands on")
         optional = {"shafts", "field", "foot_joint", *PARTITIONS}
-        _require_positive(self, *(f.name for f in fields(self) if f.name not in optional))
+        require_positive(self, *(f.name for f in fields(self) if f.name not in optional))
         if any(getattr(self, name) != 0.0 for name in PARTITIONS):
-            _require_positive(self, *PARTITIONS)
+            require_positive(self, *PARTITIONS)
         self._check_walls()
         if not self.shafts:
             raise GeometryError("shafts is empty; a gearbox needs at least one shaft")
@@ -258,24 +153,26 @@ class HousingGeometry:
         """x of a plane ``depth`` metres inside the outer end face of one side."""
         return depth if side == "front" else self.length - depth
 
-    def bearing_depths(self, shaft: ShaftGeometry) -> tuple[float, float]:
+    def bearing_depths(self, bearing: EndBearing) -> tuple[float, float]:
         """Outer and inner edge of a bearing, measured inwards from the outer end face [m]."""
-        needed = self.end_seal_width + shaft.bearing_width
+        needed = self.end_seal_width + bearing.width
         flush = needed <= self.end_wall_thickness + SMALLEST_STEP
         inner = self.end_wall_thickness if flush else needed
-        return inner - shaft.bearing_width, inner
+        return inner - bearing.width, inner
 
-    def protrusion(self, shaft: ShaftGeometry) -> float:
+    def protrusion(self, bearing: EndBearing) -> float:
         """Length of the boss that carries the bearing into the housing [m]; 0 without a boss."""
-        return self.bearing_depths(shaft)[1] - self.end_wall_thickness
+        return self.bearing_depths(bearing)[1] - self.end_wall_thickness
 
     @property
     def gear_room(self) -> tuple[float, float]:
         """x between which gears have room [m]: partitions, or the bosses of the bearings and the end walls."""
         if not self.one_chamber:
             return self.partition_front[1], self.partition_rear[0]
-        deepest = max(self.bearing_depths(shaft)[1] for shaft in self.shafts)
-        return deepest, self.length - deepest
+        front, rear = (
+            max(self.bearing_depths(shaft.bearing(side))[1] for shaft in self.shafts) for side in SIDES
+        )
+        return front, self.length - rear
 
     def gear_limits(self, shaft: ShaftGeometry) -> tuple[float, float]:
         """x of the two sides of the gear of ``shaft`` [m]; ValueError for a shaft without a gear."""
@@ -284,13 +181,9 @@ class HousingGeometry:
         middle = (self.partition_front[1] + self.partition_rear[0]) / 2.0 + shaft.gear.offset
         return middle - shaft.gear.width / 2.0, middle + shaft.gear.width / 2.0
 
-    def bearing_radius(self, shaft: ShaftGeometry) -> float:
-        """Radius of the bearing bore [m]."""
-        return shaft.journal_diameter / 2.0 + shaft.bearing_clearance
-
-    def boss_radius(self, shaft: ShaftGeometry) -> float:
-        """Outer radius of the bearing boss [m]."""
-        return self.bearing_radius(shaft) + self.boss_wall
+    def boss_radius(self, bearing: EndBearing) -> float:
+        """Outer radius of the boss of a bearing [m]."""
+        return bearing.bore_radius + self.boss_wall
 
     def seal_radius(self, shaft: ShaftGeometry) -> float:
         """Radius of the seal bores in the partitions [m]."""
@@ -329,7 +222,8 @@ class HousingGeometry:
             "floor": self.shaft_height - self.floor_thickness,
             "top": self.height - self.top_thickness - self.shaft_height,
         }
-        for what, radius in self._radii(shaft).items():
+        radii = {what: radius for side in SIDES for what, radius in self._radii(shaft, side).items()}
+        for what, radius in radii.items():
             for wall, distance in room.items():
                 if radius + MINIMUM_LAND > distance:
                     raise GeometryError(
@@ -342,17 +236,18 @@ class HousingGeometry:
                 f"shaft {shaft.name}: seal_diameter = {shaft.seal_diameter:g} m must be {wanted}; it is the diameter "
                 "in the seals of the partitions"
             )
-        if self.one_chamber and 2.0 * self.protrusion(shaft) + MINIMUM_LAND > self.chamber_length:
+        bosses = [self.protrusion(shaft.bearing(side)) for side in SIDES]
+        if self.one_chamber and sum(bosses) + MINIMUM_LAND > self.chamber_length:
             raise GeometryError(
-                f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes {self.protrusion(shaft):g} m "
-                f"from each end wall, chamber_length = {self.chamber_length:g} m leaves no room between; narrow the "
-                "bearing or thicken the end wall"
+                f"shaft {shaft.name}: bearings of width {shaft.front.width:g} m and {shaft.rear.width:g} m protrude "
+                f"{bosses[0]:g} m and {bosses[1]:g} m from their end walls, chamber_length = {self.chamber_length:g} m "
+                "leaves no room between; narrow the bearings or thicken the end wall"
             )
-        for side in SIDES:
-            if not self.one_chamber and self.protrusion(shaft) + MINIMUM_LAND > self.cold_length(side):
+        for side, boss in zip(SIDES, bosses, strict=True):
+            if not self.one_chamber and boss + MINIMUM_LAND > self.cold_length(side):
                 raise GeometryError(
-                    f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes "
-                    f"{self.protrusion(shaft):g} m from the end wall, more than cold_length_{side} = "
+                    f"shaft {shaft.name}: {side} bearing of width {shaft.bearing(side).width:g} m protrudes "
+                    f"{boss:g} m from the end wall, more than cold_length_{side} = "
                     f"{self.cold_length(side):g} m allows; narrow the bearing or thicken the end wall"
                 )
             if 0.0 < shaft.overhang(side) < MINIMUM_LAND:
@@ -370,13 +265,13 @@ class HousingGeometry:
                     f"{high - low:g} m are free; lengthen the chamber"
                 )
 
-    def _radii(self, shaft: ShaftGeometry) -> dict[str, float]:
-        """Radius of everything that turns in, or is cut into, the housing around one axis."""
+    def _radii(self, shaft: ShaftGeometry, side: Side) -> dict[str, float]:
+        """Radius of everything that turns in, or is cut into, the half of the housing on one side around one axis."""
+        bearing = shaft.bearing(side)
+        boss = self.protrusion(bearing) > 0.0
         radii = {
             "seat": shaft.seat_diameter / 2.0,
-            "bearing": self.boss_radius(shaft)
-            if self.protrusion(shaft) > 0.0
-            else self.bearing_radius(shaft),
+            f"{side} bearing": self.boss_radius(bearing) if boss else bearing.bore_radius,
         }
         if not self.one_chamber:
             radii["partition seal bore"] = self.seal_radius(shaft)
@@ -388,36 +283,16 @@ class HousingGeometry:
 
     def _check_neighbours(self, first: ShaftGeometry, second: ShaftGeometry) -> None:
         distance = abs(first.y - second.y)
-        radii = [
-            max(radius for what, radius in self._radii(shaft).items() if what != "gear")
-            for shaft in (first, second)
-        ]
-        if sum(radii) + MINIMUM_LAND > distance:
+        needed = max(
+            sum(
+                max(radius for what, radius in self._radii(shaft, side).items() if what != "gear")
+                for shaft in (first, second)
+            )
+            for side in SIDES
+        )
+        if needed + MINIMUM_LAND > distance:
             raise GeometryError(
                 f"shafts {first.name} and {second.name}: distance {distance:g} m is less than the "
-                f"{sum(radii):g} m their bores, bosses and seats need; move the axes apart or "
+                f"{needed:g} m their bores, bosses and seats need; move the axes apart or "
                 "reduce diameters or boss_wall"
             )
-
-
-def _require_positive(record: object, *names: str) -> None:
-    for name in names:
-        value = getattr(record, name)
-        if not (math.isfinite(value) and value > 0.0):
-            raise GeometryError(
-                f"{_label(record)}{name} = {value} m must be greater than 0; give a positive length"
-            )
-
-
-def _require_not_negative(record: object, *names: str) -> None:
-    for name in names:
-        value = getattr(record, name)
-        if not (math.isfinite(value) and value >= 0.0):
-            raise GeometryError(f"{_label(record)}{name} = {value} m must not be negative; give 0 or more")
-
-
-def _label(record: object) -> str:
-    """Who owns the quantity: the shaft by name, the field, the gear; nothing for the housing itself."""
-    if isinstance(record, ShaftGeometry):
-        return f"shaft {record.name}: "
-    return {"GearDisc": "gear: ", "ClampingField": "field: "}.get(type(record).__name__, "")

@@ -1,8 +1,11 @@
 """Where an engineer reads the clearances of a parametric gearbox: its stations, from the geometry alone."""
 
-from thermal.housing.geometry import SIDES, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import HousingGeometry
+from thermal.housing.housing_surfaces import FOOT, SEAT
+from thermal.housing.measures import SIDES
+from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_zones
 from thermal.housing.stations import BearingStation, FootJoint, GearStation, Point, SealStation, ShaftStation
-from thermal.housing.surfaces import FOOT, SEAT, shaft_zones
 
 
 def shaft_stations(geometry: HousingGeometry) -> tuple[ShaftStation, ...]:
@@ -32,9 +35,10 @@ def bearing_stations(geometry: HousingGeometry) -> tuple[BearingStation, ...]:
             name=f"{shaft.name}_{side}", shaft=shaft.name, bore_surface=f"bearing_bore_{shaft.name}_{side}",
             journal_surface=f"shaft_{shaft.name}_journal_{side}",
             centre=_on_axis(
-                geometry, shaft, geometry.mirrored(side, sum(geometry.bearing_depths(shaft)) / 2.0)
+                geometry, shaft, geometry.mirrored(side, sum(geometry.bearing_depths(shaft.bearing(side))) / 2.0)
             ),
-            diameter=shaft.journal_diameter, width=shaft.bearing_width, locating=shaft.locating == side,
+            diameter=shaft.bearing(side).journal_diameter, width=shaft.bearing(side).width,
+            locating=shaft.locating == side,
         )
         for shaft in geometry.shafts
         for side in SIDES
@@ -51,9 +55,12 @@ def seal_stations(geometry: HousingGeometry) -> tuple[SealStation, ...]:
                 ("front", sum(geometry.partition_front) / 2.0, shaft.seal_diameter),
                 ("rear", sum(geometry.partition_rear) / 2.0, shaft.seal_diameter),
             ]
-        land = geometry.bearing_depths(shaft)[0]
         places += [
-            (f"{side}_end", geometry.mirrored(side, land / 2.0), shaft.overhang_diameter)
+            (
+                f"{side}_end",
+                geometry.mirrored(side, geometry.bearing_depths(shaft.bearing(side))[0] / 2.0),
+                shaft.overhang_diameter,
+            )
             for side in SIDES
             if shaft.overhang(side) > 0.0
         ]

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from thermal.housing.curving import BendAxis
-from thermal.housing.geometry import SIDES, ClampingField, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.measures import SIDES, GeometryError
 from thermal.housing.meshing import SizeLaw
-from thermal.housing.surfaces import shaft_zones
+from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_zones
 
 SAME = 1e-6
 """Two lengths are one if they differ by less [m]."""
@@ -61,19 +63,20 @@ def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
     for shaft in g.shafts:
         axis = (shaft.y, g.shaft_height)
         for side in SIDES:
-            outer, inner = g.bearing_depths(shaft)
+            bearing = shaft.bearing(side)
+            outer, inner = g.bearing_depths(bearing)
             reach = sorted((g.mirrored(side, outer), g.mirrored(side, inner)))
-            bores.append(_cylinder(occ, axis, g.bearing_radius(shaft), *reach))
+            bores.append(_cylinder(occ, axis, bearing.bore_radius, *reach))
             if not g.one_chamber:
                 partition = g.partition_front if side == "front" else g.partition_rear
                 bores.append(_cylinder(occ, axis, g.seal_radius(shaft), *partition))
             if shaft.overhang(side) > 0.0:
                 land = sorted((g.mirrored(side, 0.0), g.mirrored(side, outer)))
                 bores.append(_cylinder(occ, axis, g.end_seal_radius(shaft), *land))
-            if g.protrusion(shaft) > 0.0:
+            if g.protrusion(bearing) > 0.0:
                 wall = g.mirrored(side, g.end_wall_thickness)
                 boss = sorted((wall, g.mirrored(side, inner)))
-                bosses.append(_cylinder(occ, axis, g.boss_radius(shaft), *boss))
+                bosses.append(_cylinder(occ, axis, g.boss_radius(bearing), *boss))
     if bosses:
         solid, _ = occ.fuse(solid, bosses)
     solid, _ = occ.cut(solid, bores)
@@ -142,13 +145,15 @@ def bend_axes(g: HousingGeometry) -> list[BendAxis]:
 
 def _circles(g: HousingGeometry, shaft: ShaftGeometry) -> list[tuple[float, Literal["seal", "bearing"]]]:
     """Radius and zone of every bore and boss of a shaft in the housing."""
-    circles: list[tuple[float, Literal["seal", "bearing"]]] = [(g.bearing_radius(shaft), "bearing")]
+    bearings = (shaft.front, shaft.rear)
+    circles: list[tuple[float, Literal["seal", "bearing"]]] = [
+        (each.bore_radius, "bearing") for each in bearings
+    ]
     if not g.one_chamber:
         circles.append((g.seal_radius(shaft), "seal"))
     if shaft.overhang_front or shaft.overhang_rear:
         circles.append((g.end_seal_radius(shaft), "seal"))
-    if g.protrusion(shaft) > 0.0:
-        circles.append((g.boss_radius(shaft), "bearing"))
+    circles += [(g.boss_radius(each), "bearing") for each in bearings if g.protrusion(each) > 0.0]
     return circles
 
 

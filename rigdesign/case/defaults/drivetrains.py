@@ -7,6 +7,7 @@ second stands behind it: its shafts start at the coupling; that of the wheel goe
 import math
 
 from rigdesign.case.defaults.parts import (
+    bearing_bores,
     bearing_distance,
     bearings_on,
     gear_on,
@@ -96,7 +97,10 @@ def _shaft_material(tree: RawTree, shaft: str) -> Filling:
 
 @book.default("drivetrain.shafts.*.sections")
 def _sections(tree: RawTree, shaft: str) -> Filling:
-    """As thick as in the bearings, from the front bearing to the coupling, or on to the motor."""
+    """As thick as in the bearings, from the front bearing to the coupling, or on to the motor.
+
+    None where the bearings differ in bore: the case says where the shaft steps.
+    """
     boxes = _two_boxes(tree)
     box = next((name for name in boxes if shaft in shafts_of(tree, name)), None)
     if box is None:
@@ -106,7 +110,7 @@ def _sections(tree: RawTree, shaft: str) -> Filling:
     )
     places = [place for place in found if place is not None]
     diameter, stub = shaft_diameter(tree, box, shaft), _stub(tree, box, shaft)
-    if not places or diameter is None or stub is None:
+    if not places or diameter is None or stub is None or max(bearing_bores(tree, box, shaft)) > diameter:
         return None
     reaches_out = box == boxes[0] or shaft == (
         tree.text("drivetrain.motor.shaft") or _side(tree, box, "wheel")

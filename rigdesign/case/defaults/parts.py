@@ -87,9 +87,14 @@ def bearing_width(tree: RawTree, box: str, bearing: str) -> float | None:
 
 
 def shaft_diameter(tree: RawTree, box: str, shaft: str) -> float | None:
-    """Diameter of a shaft in its bearings [m]."""
-    bores = [bearing_bore(tree, box, name) for name in bearings_on(tree, box, shaft)]
-    return next((bore for bore in bores if bore is not None), None)
+    """Diameter of a shaft in its bearings [m], the smaller one where they differ."""
+    return min(bearing_bores(tree, box, shaft), default=None)
+
+
+def bearing_bores(tree: RawTree, box: str, shaft: str) -> list[float]:
+    """Known bores of the bearings of a shaft [m]."""
+    bores = (bearing_bore(tree, box, name) for name in bearings_on(tree, box, shaft))
+    return [bore for bore in bores if bore is not None]
 
 
 def section_diameter(tree: RawTree, shaft: str, position: float | None) -> float | None:
@@ -119,11 +124,11 @@ def inner_length(tree: RawTree, box: str) -> float | None:
 def bearing_distance(tree: RawTree, box: str, shaft: str) -> float | None:
     """Distance of the two bearings of a shaft [m]: at the inner side of the end walls; three diameters beside the gear
     in a gearbox without a housing."""
-    bearings = bearings_on(tree, box, shaft)
-    width = bearing_width(tree, box, bearings[0]) if bearings else None
     if tree.has(f"gearboxes.{box}.housing"):
         inner = inner_length(tree, box)
-        return None if inner is None or width is None else inner + width
+        found = (bearing_width(tree, box, name) for name in bearings_on(tree, box, shaft))
+        widths = [width for width in found if width is not None]
+        return None if inner is None or not widths else inner + sum(widths) / len(widths)
     gear, diameter = gear_on(tree, box, shaft), shaft_diameter(tree, box, shaft)
     face = None if gear is None else tree.length(f"gearboxes.{box}.gears.{gear}.face_width")
     return None if face is None or diameter is None else face + 3.0 * diameter

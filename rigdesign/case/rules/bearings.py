@@ -28,6 +28,7 @@ def bearing_faults(case: "Case") -> Iterator[Fault]:
                 yield from _heat(at, here, box, bearing)
                 yield from _seat(here, case, bearing)
         yield from _thrust(at, box)
+        yield from _induced(at, box)
 
 
 def _heat(at: str, here: str, box: "Gearbox", bearing: "BearingInput") -> Iterator[Fault]:
@@ -92,3 +93,19 @@ def _thrust(at: str, box: "Gearbox") -> Iterator[Fault]:
                 f"{at}.bearings", "", f"helical gears push shaft {shaft} axially and no bearing locates it",
                 f"write locating = true at {' or '.join(own)}",
             )  # fmt: skip
+
+
+def _induced(at: str, box: "Gearbox") -> Iterator[Fault]:
+    """A bearing with a contact angle pushes its shaft away: the other end has to hold it."""
+    for name, bearing in box.bearings.items():
+        if bearing.induced_axial_load(1.0) == 0.0:
+            continue
+        for other, partner in box.bearings.items():
+            if other != name and partner.shaft == bearing.shaft and not partner.holds_axially:
+                yield Fault(
+                    f"{at}.bearings.{name}", bearing.label,
+                    f"its contact angle pushes shaft {bearing.shaft} away, and {other} at the other end does not hold "
+                    "it axially",
+                    f"take a second bearing with a contact angle, or one for {other} that locates the shaft, "
+                    "locating = true",
+                )  # fmt: skip

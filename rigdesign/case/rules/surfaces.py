@@ -76,17 +76,6 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
             )  # fmt: skip
             continue
         front, rear = (bearing_on(gearbox, shaft, side) for side in ("front", "rear"))
-        for key, measures in (
-            ("diameter", (front.shaft_diameter, rear.shaft_diameter)),
-            ("width", (front.width, rear.width)),
-            ("bore in the housing", (front.housing_bore, rear.housing_bore)),
-        ):
-            if measures[0] != measures[1]:
-                yield Fault(
-                    f"{at}.bearings", "",
-                    f"the two bearings of shaft {shaft} differ in {key}, one value per shaft is modelled",
-                    "give both the same value",
-                )  # fmt: skip
         if not (front.locating or rear.locating):
             yield Fault(
                 f"{at}.bearings",

@@ -13,7 +13,7 @@ FRICTION = (
 )  # fmt: skip
 WARM = (
     "bearing", "stage", "temperature_degC", "inner_ring_degC", "outer_ring_degC", "operating_clearance_um",
-    "radial_stiffness_N_um", "axial_stiffness_N_um",
+    "radial_stiffness_N_um", "axial_stiffness_N_um", "tilting_stiffness_kNm_rad",
 )  # fmt: skip
 
 

@@ -8,6 +8,8 @@ from rigdesign.results.units import RPM, UM, ZERO
 
 N_UM = 1e-6
 """Newtons per micrometre in a newton per metre."""
+KNM_RAD = 1e-3
+"""Kilonewton metres in a newton metre."""
 
 
 def rolling_bearing_row(found: RollingBearingRecord) -> dict[str, Any]:
@@ -39,6 +41,7 @@ def rolling_bearing_row(found: RollingBearingRecord) -> dict[str, Any]:
         "viscosity_ratio": found.viscosity_ratio,
         "radial_stiffness_N_um": N_UM * found.radial_stiffness,
         "axial_stiffness_N_um": N_UM * found.axial_stiffness,
+        "tilting_stiffness_kNm_rad": KNM_RAD * found.tilting_stiffness,
     }
 
 

@@ -110,7 +110,7 @@ def test_housing_has_its_bearings_where_the_shafts_have_them(case: Case) -> None
         places = {
             bearing.side: bearing.position for bearing in box.bearings.values() if bearing.shaft == shaft.name
         }
-        depth = sum(geometry.bearing_depths(shaft)) / 2.0
+        depth = sum(geometry.bearing_depths(shaft.front)) / 2.0
         assert places["front"] is not None
         assert places["rear"] is not None
         assert geometry.length - 2.0 * depth == pytest.approx(places["rear"] - places["front"], abs=1e-5)

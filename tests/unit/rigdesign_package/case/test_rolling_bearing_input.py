@@ -8,6 +8,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.base.units import parse
+from rigdesign.case.geometry import housing_geometry
 from tests.builders.rolling_rig import FED, GREASE, SPLASH, rolling_case
 
 AT = "gearboxes.test.bearings.pinion_front"
@@ -45,6 +46,16 @@ def test_a_bearing_by_its_numbers_is_that_of_its_designation(tmp_path: Path) -> 
     assert given.drawn_clearance == tabled.drawn_clearance == pytest.approx(32.5e-6)
 
 
+def test_each_end_of_a_shaft_takes_its_own_bearing(tmp_path: Path) -> None:
+    """A small roller bearing and a large one on the pinion, a plain bearing and a ball bearing on the wheel."""
+    others = {"test.pinion_front": "NU 206", "test.wheel_rear": "6306"}
+    case = load_case(rolling_case(tmp_path, test_oil=FED, plain=("test.wheel_front",), others=others))
+    pinion, wheel = housing_geometry(case.gearboxes["test"]).shafts
+    ends = (pinion.front, pinion.rear, wheel.front, wheel.rear)
+    assert [end.bore_radius for end in ends] == pytest.approx([0.031, 0.045, 0.015025, 0.036], rel=1e-12)
+    assert [end.width for end in ends] == [0.016, 0.023, 0.023, 0.019]
+
+
 def test_an_unknown_designation_names_the_nearest(tmp_path: Path) -> None:
     (sentence,) = faults(tmp_path, '"NU 406"', '"NU 4061"')
     assert sentence.startswith(f'{AT}.designation = "NU 4061": not among the')
@@ -58,7 +69,6 @@ def test_an_unknown_designation_names_the_nearest(tmp_path: Path) -> None:
         ('designation = "NU 406"', f'designation = "NU 406"\n{NUMBERS}', "either its designation or the numbers"),
         ('designation = "NU 406"', NUMBERS.replace('series = "4"', 'series = "9"'), "no friction coefficients"),
         ('designation = "NU 406"', NUMBERS.replace('"53 kN"', '"53 N"'), "static_rating = 53 N: would need 10"),
-        ('"NU 406"', '"NU 206"', "differ in bore in the housing"),
         ('"NU 406"', '"NU 207"', "the shaft test_pinion has 30 mm there, the bore of the bearing is 35 mm"),
         ('"NJ 406"', '"NU 406"', "carries no axial load"),
         ('"NU 406"', '"NU 406"\nshaft_interference = "0.5 mm"', "two thousandths of the seat"),
@@ -101,8 +111,22 @@ def test_helical_gears_need_a_bearing_that_locates(tmp_path: Path) -> None:
     assert any("push shaft slave_pinion axially and no bearing locates it" in said for said in _said(path))
 
 
+def test_a_bearing_that_pushes_its_shaft_needs_one_that_holds_it(tmp_path: Path) -> None:
+    pushing = {"test.pinion_front": "7206 B"}
+    load_case(rolling_case(tmp_path, others=pushing))  # beside NJ 406, which locates
+    load_case(rolling_case(tmp_path, others=pushing | {"test.pinion_rear": "30206"}))
+    alone = rolling_case(tmp_path, others={"test.pinion_rear": "30206"})
+    (sentence,) = _said(alone)  # beside NU 406
+    assert sentence.startswith(
+        "gearboxes.test.bearings.pinion_rear = 30206 J2/Q: its contact angle pushes shaft"
+    )
+    assert "pinion_front at the other end does not hold it axially" in sentence
+
+
 def test_a_plain_bearing_on_splash_is_refused_beside_rolling_ones(tmp_path: Path) -> None:
-    (sentence,) = _said(rolling_case(tmp_path, test_oil=SPLASH, plain=("test_wheel",)))
+    (sentence,) = _said(
+        rolling_case(tmp_path, test_oil=SPLASH, plain=("test.wheel_front", "test.wheel_rear"))
+    )
     assert "plain bearing, which needs oil that is fed" in sentence
 
 

@@ -16,7 +16,7 @@ from rigdesign import load_case
 from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_heat import conductances
-from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.bearing_loads import axial_force, bearing_loads
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.losses import rotating_losses
@@ -176,6 +176,36 @@ def test_axial_force_goes_to_the_locating_bearing_and_tilts_the_shaft(tmp_path: 
         force * math.cos(alpha) + weight, force * math.sin(alpha) + axial * pair.working_radii[0] / 0.139
     )
     assert loads["test.pinion_front"].radial == pytest.approx(by_hand, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("ends", "induced"),
+    [
+        (("30206", "30306"), (1.0 / 3.2, 1.0 / 3.8)),  # F_r / (2 Y)
+        (("7206 B", "6306"), (1.14, 0.0)),  # a deep groove ball bearing induces nothing and holds the shaft
+    ],
+)
+def test_bearings_that_press_each_other_share_the_axial_force_of_the_gears(
+    tmp_path: Path, ends: tuple[str, str], induced: tuple[float, float]
+) -> None:
+    others = dict(zip(("test.pinion_front", "test.pinion_rear"), ends, strict=True))
+    path = rolling_case(tmp_path, dip=False, test_oil=FED, slave_oil=FED, others=others)
+    path.write_text(
+        path.read_text().replace(
+            'normal_module = "4.5 mm"', 'normal_module = "4.35 mm", helix_angle = "15 deg"'
+        )
+    )
+    rig = build_rig(load_case(path), "quick")
+    state = initial_state(rig, held_points(rig)[0])
+    front, rear = (bearing_loads(rig, state)[name] for name in others)
+    gears = axial_force(rig, "test", "test_pinion", state)
+    own = [share * load.radial for share, load in zip(induced, (front, rear), strict=True)]
+    assert gears > 0.0 and rear.axial - front.axial == pytest.approx(gears)
+    assert rear.axial == pytest.approx(
+        max(own[1], own[0] + gears)
+    )  # it locates the shaft: the gears press it
+    assert front.axial == pytest.approx(max(own[0], own[1] - gears))
+    assert solve_bearings(rig, held_points(rig)[0], state)["test.pinion_rear"].power > 0.0
 
 
 def test_a_sump_that_finds_its_temperature_takes_what_the_bearings_leave_in_the_oil(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from thermal.expansion.setup import ExpansionSetup
 from thermal.fe.elements import FiniteElements
 from thermal.films.convection import constant
 from thermal.housing.gearbox import build_gearbox, exact_areas, surface_names
-from thermal.housing.surfaces import FOOT, SEAT
+from thermal.housing.housing_surfaces import FOOT, SEAT
 
 BASE = (CASES / "uhcf_prototype" / "case.toml").as_posix()
 JOINED = replace(PROTOTYPE, foot_joint=True)

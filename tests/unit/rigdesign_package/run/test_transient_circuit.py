@@ -1,4 +1,4 @@
-"""The prototype with given losses, its warm oil from a tank with a heater at its limit: housing and circuit over time."""
+"""The prototype with given losses and a circuit for its warm oil: housing and heater at its limit over time."""
 
 from pathlib import Path
 

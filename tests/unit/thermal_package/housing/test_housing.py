@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.builders.housing import ONE_CHAMBER, PINION, PROTOTYPE, WHEEL, _triangles, area
+from tests.builders.housing import BEARING, ONE_CHAMBER, PINION, PROTOTYPE, WHEEL, _triangles, area
 from thermal.fe.mesh import MeshError, NamedMesh, facet_keys, facet_table
 from thermal.housing.curving import bend_round_axes, jacobian_ratio, straighten_inverted
 from thermal.housing.gearbox import (
     ClampingField,
+    EndBearing,
     GearDisc,
     GeometryError,
     HousingGeometry,
@@ -26,19 +27,24 @@ from thermal.housing.gearbox import (
     mesh_sizes,
     surface_names,
 )
+from thermal.housing.measures import SIDES
 from thermal.housing.stations import GearboxModel
+
+WIDE, LOOSE = replace(BEARING, width=0.045), replace(BEARING, clearance=5e-5)
+ROLLING = EndBearing(journal_diameter=0.035, width=0.034, clearance=0.0185)
 
 THREE_SHAFTS = replace(
     PROTOTYPE,
     width=0.42,
     field=None,
     shafts=(
-        replace(PINION, name="left", y=-0.1, bearing_width=0.045, bore_diameter=0.016),
-        replace(PINION, name="middle", y=0.0, gear=None, overhang_rear=0.0),
-        replace(PINION, name="right", y=0.1, bearing_clearance=5e-5, overhang_diameter=0.044),
+        replace(PINION, name="left", y=-0.1, front=WIDE, rear=WIDE, bore_diameter=0.016),
+        replace(PINION, name="middle", y=0.0, rear=ROLLING, gear=None, overhang_rear=0.0),
+        replace(PINION, name="right", y=0.1, front=LOOSE, rear=LOOSE, overhang_diameter=0.044),
     ),
 )
-"""Bosses, a hollow shaft, a blind one without a gear, an overhang thicker than its journal; no field."""
+"""Bosses, a hollow shaft, a blind one without a gear and with a bearing of its own at each end, an overhang thicker
+than its journal; no field."""
 
 
 def volume(mesh: NamedMesh, body: str) -> float:
@@ -103,9 +109,11 @@ def test_bores_and_journals_are_pure_cylinders(built: tuple[HousingGeometry, Gea
     geometry, model = built
     shafts = {shaft.name: shaft for shaft in geometry.shafts}
     rings = [(b.journal_surface, b.centre, b.diameter / 2) for b in model.bearings]
-    rings += [
-        (b.bore_surface, b.centre, b.diameter / 2 + shafts[b.shaft].bearing_clearance) for b in model.bearings
+    seats = {f"{name}_{side}": shaft.bearing(side) for name, shaft in shafts.items() for side in SIDES}
+    assert [(b.diameter, b.width) for b in model.bearings] == [
+        (seats[b.name].journal_diameter, seats[b.name].width) for b in model.bearings
     ]
+    rings += [(b.bore_surface, b.centre, seats[b.name].bore_radius) for b in model.bearings]
     rings += [(s.shaft_surface, s.centre, s.shaft_diameter / 2) for s in model.seals]
     rings += [(s.bore_surface, s.centre, s.shaft_diameter / 2 + s.radial_gap) for s in model.seals]
     for surface, centre, radius in rings:
@@ -202,12 +210,12 @@ def test_node_count_hardly_depends_on_the_size_of_the_gearbox() -> None:
         lengths = {
             name: 3.0 * getattr(shaft, name)
             for name in (
-                "y", "journal_diameter", "seal_diameter", "seat_diameter", "overhang_diameter",
-                "bearing_width", "overhang_front", "overhang_rear",
+                "y", "seal_diameter", "seat_diameter", "overhang_diameter", "overhang_front", "overhang_rear",
             )
         }  # fmt: skip
         gear = GearDisc(outer_diameter=3 * shaft.gear.outer_diameter, width=3 * shaft.gear.width)
-        return replace(shaft, gear=gear, **lengths)
+        bearing = EndBearing(journal_diameter=3 * BEARING.journal_diameter, width=3 * BEARING.width)
+        return replace(shaft, gear=gear, front=bearing, rear=bearing, **lengths)
 
     large = HousingGeometry(
         chamber_length=0.3, cold_length_front=0.27, cold_length_rear=0.27, height=0.84, width=0.96,

@@ -10,14 +10,26 @@ from typing import Any
 
 import pytest
 
-from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
-from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, shaft_zones, surface_names
+from thermal.housing.geometry import ClampingField, HousingGeometry
+from thermal.housing.measures import GeometryError
+from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
+from thermal.housing.shaft_surfaces import shaft_zones
+from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, surface_names
+
+
+def bearing(width: float = 0.024, diameter: float = 0.040) -> EndBearing:
+    return EndBearing(journal_diameter=diameter, width=width)
+
+
+def ends(width: float) -> dict[str, EndBearing]:
+    """Bearings of one width at both ends."""
+    return {"front": bearing(width), "rear": bearing(width)}
 
 
 def shaft(**changes: Any) -> ShaftGeometry:
     data: dict[str, Any] = {
-        "name": "pinion", "y": -0.04975, "journal_diameter": 0.040, "seal_diameter": 0.045,
-        "seat_diameter": 0.050, "overhang_diameter": 0.036, "bearing_width": 0.024, "seal_gap": 0.6e-3,
+        "name": "pinion", "y": -0.04975, "front": bearing(), "rear": bearing(), "seal_diameter": 0.045,
+        "seat_diameter": 0.050, "overhang_diameter": 0.036, "seal_gap": 0.6e-3,
         "locating": "front", "overhang_rear": 0.06, "gear": GearDisc(outer_diameter=0.101, width=0.007),
     }  # fmt: skip
     return ShaftGeometry(**(data | changes))
@@ -40,22 +52,20 @@ def test_stations_along_the_shafts() -> None:
     assert g.partition_rear == pytest.approx((0.235, 0.25))
     assert g.length == pytest.approx(0.36)
     assert g.warm_limits == pytest.approx((0.1275, 0.2425))
-    assert g.bearing_depths(g.shafts[0]) == pytest.approx((0.006, 0.03))
+    assert g.bearing_depths(g.shafts[0].front) == pytest.approx((0.006, 0.03))
     assert g.gear_limits(g.shafts[0]) == pytest.approx((0.1815, 0.1885))
 
 
 def test_wide_bearing_gets_a_boss() -> None:
-    g = gearbox(shafts=(shaft(bearing_width=0.04),))
-    assert g.protrusion(g.shafts[0]) == pytest.approx(0.016)
-    assert g.bearing_depths(g.shafts[0]) == pytest.approx((0.006, 0.046))
+    g = gearbox(shafts=(shaft(**ends(0.04)),))
+    assert g.protrusion(g.shafts[0].front) == pytest.approx(0.016)
+    assert g.bearing_depths(g.shafts[0].front) == pytest.approx((0.006, 0.046))
 
 
 def test_bearing_that_just_fills_its_wall_is_flush() -> None:
     """0.018 + 0.072 exceeds 0.09 by a rounding error, which must not become a boss."""
-    g = gearbox(
-        end_wall_thickness=0.09, end_seal_width=0.018, shafts=(shaft(bearing_width=0.072),), field=None
-    )
-    assert g.protrusion(g.shafts[0]) == 0.0
+    g = gearbox(end_wall_thickness=0.09, end_seal_width=0.018, shafts=(shaft(**ends(0.072)),), field=None)
+    assert g.protrusion(g.shafts[0].front) == 0.0
 
 
 def test_zones_of_a_shaft_touch_and_fill_its_length() -> None:
@@ -114,7 +124,11 @@ def test_closed_forms_agree_with_a_body_whose_surface_is_counted_otherwise() -> 
         ({"shafts": ()}, ("shafts is empty",)),
         ({"shafts": (shaft(), shaft())}, ("'pinion'", "2 times")),
         ({"shafts": (shaft(), shaft(name="b", y=0.0))}, ("pinion and b", "0.04975", "move the axes")),
-        ({"shafts": (shaft(bearing_width=0.12),)}, ("bearing_width = 0.12", "cold_length_front", "narrow")),
+        ({"shafts": (shaft(**ends(0.12)),)}, ("front bearing of width 0.12", "cold_length_front", "narrow")),
+        (
+            {"shafts": (shaft(rear=bearing(0.12)),)},
+            ("rear bearing of width 0.12", "cold_length_rear", "narrow"),
+        ),
         ({"shafts": (shaft(overhang_rear=1e-5),)}, ("overhang_rear = 1e-05", "give 0")),
     ],
 )
@@ -131,6 +145,10 @@ def test_refused_housings_name_value_limit_and_remedy(change: dict[str, Any], wo
         ({"name": "Pinion 1"}, ("'Pinion 1'", "lower-case")),
         ({"seal_gap": 0.0}, ("shaft pinion", "seal_gap", "greater than 0")),
         ({"bore_diameter": 0.035}, ("bore_diameter = 0.035", "overhang_diameter", "thicker")),
+        (
+            {"bore_diameter": 0.033, "rear": bearing(diameter=0.034)},
+            ("journal_diameter of its rear bearing", "thicker"),
+        ),
         ({"bore_diameter": 1e-4}, ("bore_diameter = 0.0001", "give 0")),
         ({"gear": GearDisc(outer_diameter=0.05, width=0.01)}, ("outer_diameter = 0.05", "seat_diameter")),
         ({"locating": "middle"}, ("'middle'", "front")),
@@ -146,7 +164,7 @@ def test_refused_shafts(change: dict[str, Any], words: tuple[str, ...]) -> None:
 
 def chamber(**changes: Any) -> HousingGeometry:
     """The gearbox without partitions: bearings that protrude 16 mm into the chamber."""
-    bare = {"seal_diameter": 0.0, "bearing_width": 0.04}
+    bare = {"seal_diameter": 0.0, **ends(0.04)}
     shafts = (shaft(**bare), shaft(name="wheel", y=0.04975, overhang_front=0.05, **bare))
     none = {"cold_length_front": 0.0, "cold_length_rear": 0.0, "partition_thickness": 0.0}
     return gearbox(**(none | {"shafts": shafts} | changes))
@@ -190,7 +208,7 @@ def test_shafts_of_one_chamber_reach_from_bearing_to_bearing() -> None:
         ({"cold_length_front": 0.05}, ("cold_length_rear = 0.0", "greater than 0")),
         ({"shafts": (shaft(),)}, ("seal_diameter = 0.045", "must be 0", "without partitions")),
         ({"chamber_length": 0.038}, ("gear of width 0.007", "0.006 m are free", "lengthen")),
-        ({"chamber_length": 0.03}, ("bearing_width = 0.04", "no room between", "thicken")),
+        ({"chamber_length": 0.03}, ("width 0.04 m and 0.04 m", "no room between", "thicken")),
     ],
 )
 def test_refused_housings_of_one_chamber(change: dict[str, Any], words: tuple[str, ...]) -> None:
