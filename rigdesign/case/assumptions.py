@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from rigdesign.base.units import show
 from rigdesign.case.assumption_record import AssumptionRecord
+from rigdesign.case.enclosures import OILED, EnclosureInput
 from rigdesign.case.films import FAN_VELOCITY, ForcedAir
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.surface_conditions import Condition
@@ -25,6 +26,7 @@ def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[Assumption
             )
         if box.housing is not None:
             yield from _fans(f"gearboxes.{name}.housing.boundary", box.housing.boundary)
+            yield from _oiled(f"gearboxes.{name}.housing.enclosures", box.housing.enclosures)
 
 
 def _fans(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionRecord]:
@@ -36,4 +38,16 @@ def _fans(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionReco
                 value=show(FAN_VELOCITY, "velocity"),
                 reason="not stated: fans of motors and gear units blow 1.5 to 6 m/s along the housing; measure it",
                 range=("1.5 m/s", "6 m/s"),
+            )
+
+
+def _oiled(at: str, enclosures: Mapping[str, EnclosureInput]) -> Iterator[AssumptionRecord]:
+    """Chambers of unknown emissivity."""
+    for entry, enclosure in enclosures.items():
+        if enclosure.chamber is not None and enclosure.emissivity is None:
+            yield AssumptionRecord(
+                path=f"{at}.{entry}.emissivity",
+                value=f"{OILED:g}",
+                reason="not stated: thick film of oil on polished steel (P2); dry ground steel has 0.2 to 0.5",
+                range=("0.5", "0.95"),
             )

@@ -66,10 +66,12 @@ def solve_housing(
 
 
 def heat_into_oil(field: HousingField) -> dict[str, float]:
-    """Heat the solids give to each oil stream of the gearbox [W], bearing films left out."""
+    """Heat solids and linked volumes give to each oil stream of the gearbox [W], bearing films left out."""
     return {
         f"{field.gearbox}.{kind}": -math.fsum(
-            row.power for row in field.solution.balance.rows if row.kind == kind and row.area > 0.0
+            row.power
+            for row in field.solution.balance.rows
+            if row.kind == kind and row.surface != GEAR_OIL  # the sump itself, where it is an unknown
         )
         for kind in (GEAR_OIL, BEARING_OIL)
     }

@@ -23,6 +23,7 @@ WORDS = {
     "mesh": "tooth friction",
     "air": "room air",
     "radiation": "radiation to the room",
+    "chamber_radiation": "radiation in chambers",
     "bearing_film": "bearing films",
     "exchange": "seal gaps",
     "bearing_seats": "through rolling bearings",
