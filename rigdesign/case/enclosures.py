@@ -46,7 +46,8 @@ class EnclosureInput(Part):
     """Surfaces with an emissivity of their own, by any name; in addition to the chamber or as its exception."""
     view_factors: Literal["computed"] | Mapping[Name, Mapping[Name, Share]] = "computed"
     """computed: by rays between the surfaces as they are meshed, hidden by all that stands between them; or a table
-    surface -> surface -> share of its radiation that arrives there. Closed by reciprocity and summation."""
+    surface -> surface -> share of its radiation that arrives there; a pair named in one direction holds in the other by
+    reciprocity. Both are closed by reciprocity and summation."""
     opening_temperature: Temperature | None = None
     """Surroundings behind an opening, which take what the view factors of the surfaces leave to one; a closed
     chamber when left out."""
@@ -72,11 +73,18 @@ class EnclosureInput(Part):
             found |= dict.fromkeys(matched(part.surfaces, known), part.emissivity)
         return found
 
-    def rows(self, surfaces: Iterable[str]) -> tuple[tuple[float, ...], ...] | None:
-        """The given view factors of ``surfaces`` as a matrix; None where they are computed."""
+    def rows(self, areas: Mapping[str, float]) -> tuple[tuple[float, ...], ...] | None:
+        """The given view factors as a matrix between surfaces with ``areas`` [m2]; None where they are computed.
+
+        What the table says in one direction only holds in the other by reciprocity, A_i F_ij = A_j F_ji.
+        """
         if self.view_factors == "computed":
             return None
-        known = tuple(surfaces)
-        return tuple(
-            tuple(self.view_factors.get(name, {}).get(other, 0.0) for other in known) for name in known
-        )
+        given = self.view_factors
+
+        def factor(name: str, other: str) -> float:
+            if other in given.get(name, {}):
+                return given[name][other]
+            return given.get(other, {}).get(name, 0.0) * areas[other] / areas[name]
+
+        return tuple(tuple(factor(name, other) for other in areas) for name in areas)

@@ -10,17 +10,20 @@ CHAMBER_RADIATION = "chamber_radiation"
 
 
 def enclosure_conditions(rig: Rig, name: str) -> Iterator[Enclosure]:
-    """Enclosures of the housing of gearbox ``name``; CaseError for one whose computed view factors do not close."""
+    """Enclosures of the housing of gearbox ``name``; CaseError for view factors that do not close."""
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     for entry, enclosure in housing.enclosures.items():
         emissivities = enclosure.emissivities(rig.surface_names(name))
         surfaces = tuple(emissivities)
         opening = enclosure.opening_temperature
-        rows = enclosure.rows(surfaces)
+        at = f"gearboxes.{name}.housing.enclosures.{entry}.view_factors"
+        views = rig.chamber_views
+        rows = enclosure.rows(views.areas(name, surfaces))
         if rows is None:
-            at = f"gearboxes.{name}.housing.enclosures.{entry}"
-            rows = rig.chamber_views.between(name, surfaces, opening=opening is not None, at=at)
+            rows = views.between(name, surfaces, opening=opening is not None, at=at)
+        else:
+            views.require_closed(name, surfaces, rows, opening=opening is not None, at=at)
         yield Enclosure(
             name=entry,
             surfaces=surfaces,

@@ -31,7 +31,7 @@ class ChamberViews:
     def between(self, gearbox: str, surfaces: tuple[str, ...], *, opening: bool, at: str) -> ViewFactors:
         """View factors of ``surfaces`` of a gearbox as rows, closed.
 
-        opening : whether they leave a share to surroundings; at : path of the enclosure in the case, for errors
+        opening : whether they leave a share to surroundings; at : path of the view factors in the case, for errors
 
         Raises CaseError for surfaces that do not close a chamber.
         """
@@ -43,11 +43,26 @@ class ChamberViews:
             try:
                 closed = close_view_factors(np.array(exchange.factors), flat, surfaces, opening)
             except EnclosureError as error:
-                raise CaseError(f"{at}.view_factors = computed: {error}{_elsewhere(exchange)}") from error
-            areas = np.array([elements.surfaces[name].area for name in surfaces])
+                raise CaseError(f"{at} = computed: {error}{_elsewhere(exchange)}") from error
+            areas = np.array([*self.areas(gearbox, surfaces).values()])
             closed = close_view_factors(closed, areas, surfaces, opening, CURVED)
             self._found[key] = tuple(tuple(row) for row in closed.tolist())
         return self._found[key]
+
+    def areas(self, gearbox: str, surfaces: tuple[str, ...]) -> dict[str, float]:
+        """Area of surfaces of a gearbox [m2]."""
+        elements = self.conduction[gearbox].elements
+        return {name: elements.surfaces[name].area for name in surfaces}
+
+    def require_closed(
+        self, gearbox: str, surfaces: tuple[str, ...], rows: ViewFactors, *, opening: bool, at: str
+    ) -> None:
+        """CaseError at the path ``at`` for given view factors that do not close on the mesh."""
+        areas = np.array([*self.areas(gearbox, surfaces).values()])
+        try:
+            close_view_factors(np.array(rows), areas, surfaces, opening)
+        except EnclosureError as error:
+            raise CaseError(f"{at}: {error}") from error
 
 
 def _elsewhere(exchange: RayExchange) -> str:

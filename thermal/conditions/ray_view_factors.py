@@ -101,8 +101,8 @@ def _rays_of(part: FacetTriangles, rays: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _sequence(count: int, dimensions: int) -> FloatArray:
-    """(count, dimensions) numbers of the Sobol sequence in 0 to 1, as it is: the same every time."""
+    """(count, dimensions) numbers of the Sobol sequence between 0 and 1, in the middle of their steps."""
     from scipy.stats.qmc import Sobol
 
     whole = Sobol(dimensions, scramble=False).random_base2(math.ceil(math.log2(count)))
-    return np.asarray(whole[:count])
+    return np.asarray(whole[:count] + 0.5 / len(whole))

@@ -13,7 +13,7 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.matching import matched
 from rigdesign.case.paths import nearest
 from rigdesign.case.surface_conditions import FixedTemperature, Insulated, ThermalRadiation
-from thermal.conditions.enclosure import OPEN, EnclosureError, close_view_factors
+from thermal.conditions.enclosure import EnclosureError, close_view_factors
 from thermal.housing.surfaces import exact_areas
 
 
@@ -108,26 +108,17 @@ def _view_factors(
             f"its surfaces: {', '.join(surfaces)}",
         )  # fmt: skip
         return
-    rows = enclosure.rows(surfaces)
-    assert rows is not None
-    opening = enclosure.opening_temperature is not None
-    sums = {surface: sum(row) for surface, row in zip(surfaces, rows, strict=True)}
-    for surface, whole in sums.items():
-        if whole > 1.0 + OPEN or (whole < 1.0 - OPEN and not opening):
-            yield Fault(
-                f"{path}.{surface}", f"{whole:.4g}", f"sum of the row, is not 1 within {OPEN:g}",
-                "correct its shares"
-                + ("" if opening or whole > 1.0 else ", or give an opening_temperature for what leaves the chamber"),
-            )  # fmt: skip
-            return
     housing = gearbox.housing
     assert housing is not None
-    if housing.part_file is None:
-        areas = exact_areas(housing_geometry(gearbox))
-        try:
-            close_view_factors(
-                np.array(rows), np.array([areas[name] for name in surfaces]), list(surfaces), opening
-            )
-        except EnclosureError as error:
-            problem, _, remedy = str(error).rpartition("; ")
-            yield Fault(path, "", problem, remedy)
+    if housing.part_file is not None:
+        return
+    exact = exact_areas(housing_geometry(gearbox))
+    areas = {surface: exact[surface] for surface in surfaces}
+    rows = enclosure.rows(areas)
+    assert rows is not None
+    opening = enclosure.opening_temperature is not None
+    try:
+        close_view_factors(np.array(rows), np.array([*areas.values()]), list(surfaces), opening)
+    except EnclosureError as error:
+        problem, _, remedy = str(error).rpartition("; ")
+        yield Fault(path, "", problem, remedy)

@@ -31,7 +31,14 @@ def housing_fluid_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) ->
             )  # fmt: skip
     for stream, entry in housing.streams.items():
         yield from _stream(f"{at}.streams.{stream}", stream, entry.surfaces, wetted[stream], names)
+    pairs: dict[frozenset[str], str] = {}
     for link, joined in housing.links.items():
+        first = pairs.setdefault(frozenset(joined.between), link)
+        if first != link:
+            yield Fault(
+                f"{at}.links.{link}.between", written(", ".join(joined.between)), f"is linked by {first} already",
+                f"add the conductances in {first}",
+            )  # fmt: skip
         yield from _link(f"{at}.links.{link}", joined.between, gearbox, housing)
 
 
