@@ -269,8 +269,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__enclosures="radiation between the surfaces of a chamber, in the temperature field",
         rig__chamber_views="view factors between them, by rays on the mesh",
     ),
-    "gearboxes.*.housing.enclosures.*.emissivity": _at(coupling__enclosures=_GREY),
-    "gearboxes.*.housing.enclosures.*.parts.*": _at(coupling__enclosures=_GREY),
+    "gearboxes.*.housing.enclosures.*.emissivity": _at(case__enclosures=_GREY),
+    "gearboxes.*.housing.enclosures.*.parts.*": _at(case__enclosures=_GREY),
     "gearboxes.*.housing.enclosures.*.opening_temperature": _at(
         coupling__enclosures="surroundings behind an opening of the chamber"
     ),

@@ -54,9 +54,9 @@ def fluid_temperatures(
 
 def carried_and_given(rig: Rig, fields: Mapping[str, HousingField]) -> tuple[float | None, float | None]:
     """Heat that streams carry off and heat set free in volumes, of all housings [W]; None where there are none."""
-    housings = {name: box.housing for name, box in rig.case.gearboxes.items() if box.housing is not None}
-    with_streams = [name for name, housing in housings.items() if housing.streams]
-    with_volumes = [housing for housing in housings.values() if housing.volumes]
+    housings = {name: rig.case.gearboxes[name].housing for name in fields}
+    with_streams = [name for name, housing in housings.items() if housing is not None and housing.streams]
+    with_volumes = [housing for housing in housings.values() if housing is not None and housing.volumes]
     carried = math.fsum(heat_carried_off(fields[name].solution) for name in with_streams)
     given = math.fsum(heat_given_off(housing) for housing in with_volumes)
     return carried if with_streams else None, given if with_volumes else None
