@@ -255,3 +255,28 @@ def test_rays_want_known_surfaces_and_numbers_that_say_something() -> None:
         ray_view_factors(cavity(), ["x_lo"])
     with pytest.raises(ConditionError, match="by 10 rays a surface, the limit is 100"):
         ray_view_factors(cavity(), FACES, rays=10)
+
+
+def test_a_held_surface_radiates_and_what_holds_it_takes_the_heat() -> None:
+    """Plates a = 1 m2 opposite each other, closed by reflection: q = sigma (T1^4 - T2^4) / (1/e1 + 1/e2 - 1)."""
+    low = renamed(box_mesh((1.0, 1.0, 0.1), (2, 2, 1), name="low"), "low")
+    high = renamed(box_mesh((1.0, 1.0, 0.1), (2, 2, 1), (0.0, 0.0, 0.6), "high"), "high")
+    mesh = disjoint_union(low, high)
+    held = {"low_z_max": 500.0, "high_z_min": 400.0}
+    conditions: list[Condition] = [
+        Enclosure(
+            name="gap",
+            surfaces=tuple(held),
+            emissivities=(0.8, 0.5),
+            view_factors=((0.0, 1.0), (1.0, 0.0)),
+        ),
+        *(PrescribedTemperature(surface=name, temperature=value) for name, value in held.items()),
+        *(Adiabatic(surface=name) for name in mesh.surfaces if name not in held),
+    ]
+    solution = solve_steady(ConductionSetup(mesh, {"low": 50.0, "high": 50.0}), conditions, 450.0)
+    flux = STEFAN_BOLTZMANN * (500.0**4 - 400.0**4) / (1.0 / 0.8 + 1.0 / 0.5 - 1.0)
+    rows = {(row.surface, row.kind): row.power for row in solution.balance.rows}
+    assert rows["low_z_max", "enclosure"] == pytest.approx(-flux, rel=1e-9)
+    assert rows["low_z_max", "prescribed_temperature"] == pytest.approx(flux, rel=1e-9)
+    assert rows["high_z_min", "prescribed_temperature"] == pytest.approx(-flux, rel=1e-9)
+    assert solution.balance.closure < 1e-9

@@ -12,7 +12,7 @@ from rigdesign.case.geometry import conditions_of, housing_geometry
 from rigdesign.case.housing import Housing
 from rigdesign.case.matching import matched
 from rigdesign.case.paths import nearest
-from rigdesign.case.surface_conditions import FixedTemperature, Insulated, ThermalRadiation
+from rigdesign.case.surface_conditions import Insulated, ThermalRadiation
 from thermal.conditions.enclosure import EnclosureError, close_view_factors
 from thermal.housing.surfaces import exact_areas
 
@@ -86,10 +86,9 @@ def _conditions(
                 at, written(surface), f"radiates to its surroundings by boundary.{entry} already",
                 f"take it out of one of them, or give the enclosure an opening_temperature in place of {entry}",
             )  # fmt: skip
-        elif isinstance(condition, Insulated | FixedTemperature):
-            problem = "passes no heat" if isinstance(condition, Insulated) else "is held at its temperature"
+        elif isinstance(condition, Insulated):
             yield Fault(
-                at, written(surface), f"{problem} by boundary.{entry}",
+                at, written(surface), f"passes no heat by boundary.{entry}",
                 f"take it out of {entry}: the enclosure is a condition of its own; or write a film",
             )  # fmt: skip
 
