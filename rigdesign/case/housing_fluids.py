@@ -20,7 +20,10 @@ class HousingVolume(Part):
 
 
 class HousingStream(Part):
-    """A stream along surfaces of the housing that warms up on its way (plug flow): jacket, oil gallery, air duct."""
+    """A stream along surfaces of the housing that warms up on its way (plug flow): jacket, oil gallery, air duct.
+
+    Over time it runs through all phases, warm-up and cooling down included.
+    """
 
     flow: Flow
     """Volume flow at the inlet."""

@@ -1,5 +1,6 @@
 """The FZG test gearbox with chambers that radiate, a jacket, and the air of a cold section, as a case and as solved."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from rigdesign import load_case
@@ -43,9 +44,9 @@ opening_temperature = "25 degC", view_factors = { cold_floor_rear = { cold_wall_
 """
 
 
-def warm_chambers_case(folder: Path, *, tables: str = TABLES) -> Path:
-    """Write the case; tables : what it says of enclosures, volumes, streams and links."""
-    path = fzg_case(folder)
+def warm_chambers_case(folder: Path, *, tables: str = TABLES, sumps: Mapping[str, str] | None = None) -> Path:
+    """Write the case; tables : what it says of enclosures, volumes, streams and links; sumps : as `fzg_case` has it."""
+    path = fzg_case(folder, sumps=sumps)
     text = path.read_text()
     for old, new in (
         (AIR, COATED),
@@ -66,9 +67,11 @@ def first_losses(rig: Rig) -> PointLosses:
     return PointLosses(point=point, coupling_state=state, bearings=bearings, losses=tuple(losses))
 
 
-def solved_chambers(folder: Path) -> tuple[Rig, PointLosses, HousingField]:
+def solved_chambers(
+    folder: Path, sumps: Mapping[str, str] | None = None
+) -> tuple[Rig, PointLosses, HousingField]:
     """The test gearbox of the case in its first iteration."""
-    rig = build_rig(load_case(warm_chambers_case(folder)), "quick")
+    rig = build_rig(load_case(warm_chambers_case(folder, sumps=sumps)), "quick")
     losses = first_losses(rig)
     return rig, losses, solve_housing(rig, "test", losses)
 

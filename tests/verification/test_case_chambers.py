@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from rigdesign.records.housing_fluids import fluid_temperatures
 from rigdesign.rig.model import Rig
 from rigdesign.transient.blend import blended
 from rigdesign.transient.oil import oil_conditions
+from tests.builders.fzg_case import HELD
 from tests.builders.warm_chambers import solved_chambers, stated_conditions
 from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import StreamNetwork
@@ -176,6 +178,20 @@ def test_over_time_links_end_in_the_oil_that_is_an_unknown_there(solved) -> None
     drain = [row for row in steady.balance.rows if row.kind == "gear_oil" and row.surface == "cold_air"]
     outlet, air = steady.volumes["gear_oil"], steady.volumes["cold_air"]
     assert [row.power for row in drain] == pytest.approx([3.0 * (outlet - air)], rel=1e-9)
+
+
+def test_a_link_ends_in_a_sump_that_finds_its_own_temperature(tmp_path: Path) -> None:
+    _, _, field = solved_chambers(tmp_path, {"test": "", "slave": HELD})
+    assert field.solution.balance.closure < 1e-8
+    oil, air = field.solution.volumes["gear_oil"], field.solution.volumes["cold_air"]
+    rows = field.solution.balance.rows
+    drained = [row.power for row in rows if row.surface == "cold_air" and row.kind == "gear_oil"]
+    assert drained == pytest.approx([3.0 * (oil - air)], rel=1e-9)
+    # what is churned in the sump leaves through the walls it wets and the drain
+    given = sum(row.power for row in rows if row.surface == "gear_oil" and row.kind == "power")
+    walls = sum(row.power for row in rows if row.area > 0.0 and row.kind == "gear_oil")
+    assert given > 0.0
+    assert given == pytest.approx(walls + drained[0], abs=1e-4)
 
 
 def test_the_reduced_model_takes_enclosures(solved) -> None:
