@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 
 from rigdesign.base.units import show
 from rigdesign.case.assumption_record import AssumptionRecord
+from rigdesign.case.bath_film import BathFilm
+from rigdesign.case.enclosures import OILED, EnclosureInput
 from rigdesign.case.films import FAN_VELOCITY, ForcedAir
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.surface_conditions import Condition
@@ -25,6 +27,8 @@ def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[Assumption
             )
         if box.housing is not None:
             yield from _fans(f"gearboxes.{name}.housing.boundary", box.housing.boundary)
+            yield from _splashed(f"gearboxes.{name}.housing.boundary", box.housing.boundary)
+            yield from _oiled(f"gearboxes.{name}.housing.enclosures", box.housing.enclosures)
 
 
 def _fans(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionRecord]:
@@ -36,4 +40,29 @@ def _fans(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionReco
                 value=show(FAN_VELOCITY, "velocity"),
                 reason="not stated: fans of motors and gear units blow 1.5 to 6 m/s along the housing; measure it",
                 range=("1.5 m/s", "6 m/s"),
+            )
+
+
+def _splashed(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionRecord]:
+    """Films on the inner walls of a box with a sump as the standard has them."""
+    for entry, condition in boundary.items():
+        if isinstance(condition, BathFilm) and condition.usual_film:
+            yield AssumptionRecord(
+                path=f"{at}.{entry}.film_factor",
+                value="1",
+                reason="not stated: 200 W/(m2 K) on walls wetted by splash, whatever speed and level (ISO/TR 14179-2); "
+                "Niemann/Winter have 100 to 300",
+                range=("0.5", "1.5"),
+            )
+
+
+def _oiled(at: str, enclosures: Mapping[str, EnclosureInput]) -> Iterator[AssumptionRecord]:
+    """Chambers of unknown emissivity."""
+    for entry, enclosure in enclosures.items():
+        if enclosure.chamber is not None and enclosure.emissivity is None:
+            yield AssumptionRecord(
+                path=f"{at}.{entry}.emissivity",
+                value=f"{OILED:g}",
+                reason="not stated: thick film of oil on polished steel (P2); dry ground steel has 0.2 to 0.5",
+                range=("0.5", "0.95"),
             )

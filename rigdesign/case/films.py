@@ -6,19 +6,19 @@ name in `PlateFilm` or `ShaftFilm`. A coefficient that the case gives: `rigdesig
 
 from abc import abstractmethod
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, get_args
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.fields import Part, Size, Text, Velocity
+from rigdesign.case.fields import Name, Part, Size, Text, Velocity
 from rigdesign.case.ribs import Ribs
 from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
 from thermal.films import convection
 from thermal.films.law import FilmLaw
 
-Fluid = Literal[
+UsualFluid = Literal[
     "ambient",
     "gear_oil_inlet",
     "gear_oil_mean",
@@ -28,6 +28,11 @@ Fluid = Literal[
     "bearing_oil_outlet",
 ]
 """What wets a surface: room air, or the oil of the chamber at inlet, outlet or their mean."""
+FLUIDS: tuple[str, ...] = get_args(UsualFluid)
+Fluid = Annotated[
+    Name, WithJsonSchema({"anyOf": [{"type": "string", "enum": list(FLUIDS)}, {"type": "string"}]})
+]
+"""One of `FLUIDS`, or the name of a volume or stream of the housing."""
 FilmFactor = Annotated[float, Field(gt=0.0, le=10.0)]
 """Multiplies a film: what it really is, over what its law or the case says."""
 
@@ -49,7 +54,7 @@ class SurfaceCondition(Part):
     """It may stand on a surface that has a film already."""
 
     @property
-    def wetted_by(self) -> Fluid | None:
+    def wetted_by(self) -> str | None:
         """Fluid of the case that its film exchanges heat with; None for anything else."""
         return None
 
@@ -103,7 +108,7 @@ class StillAirFilm(PublishedFilm):
     """Ribs on the surface that are not drawn: the film counts on their area too, at their fin efficiency."""
 
     @property
-    def wetted_by(self) -> Fluid:
+    def wetted_by(self) -> str:
         """Room air."""
         return "ambient"
 

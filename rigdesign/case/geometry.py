@@ -1,12 +1,12 @@
 """From the housing of a case to the geometry the thermal model is built of, and what covers its surfaces."""
 
-import re
 from collections.abc import Iterable, Mapping
 
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
+from rigdesign.case.matching import matched
 from thermal.housing.geometry import ClampingField, HousingGeometry
 from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
 
@@ -71,19 +71,6 @@ def bearing_on(gearbox: Gearbox, shaft: str, side: str) -> BearingInput:
         if (bearing.shaft, bearing.side) == (shaft, side):
             return bearing
     raise KeyError(f"{shaft}, {side}")
-
-
-def matched(patterns: Iterable[str], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Surface -> what each ``*`` stood for, for every name that a pattern fits."""
-    known = tuple(names)
-    found = {}
-    for pattern in patterns:
-        expression = re.compile("(.+)".join(re.escape(part) for part in pattern.split("*")))
-        for name in known:
-            match = expression.fullmatch(name)
-            if match is not None:
-                found[name] = match.groups()
-    return found
 
 
 def conditions_of(housing: Housing, names: Iterable[str]) -> list[tuple[str, str, tuple[str, ...]]]:

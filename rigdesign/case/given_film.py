@@ -84,7 +84,8 @@ class ConstantFilm(SurfaceFilm):
     heat_transfer_coefficient: HeatTransferCoefficient
     """Heat flux per kelvin between surface and fluid."""
     fluid: Fluid
-    """Fluid that wets the surface: room air, or one of the oils at inlet, mean or outlet."""
+    """Fluid that wets the surface: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
+    ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
     taken_from: TakenFrom | None = None
     """For a printed coefficient to room air: what it was read from."""
     fluid_temperature: Temperature | None = None
@@ -93,7 +94,7 @@ class ConstantFilm(SurfaceFilm):
     """Multiplies the coefficient."""
 
     @property
-    def wetted_by(self) -> Fluid:
+    def wetted_by(self) -> str:
         """The fluid it names."""
         return self.fluid
 

@@ -5,9 +5,11 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from rigdesign.case.enclosures import EnclosureInput
 from rigdesign.case.faces import FaceSelection
 from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, fault
 from rigdesign.case.films import FilmFactor
+from rigdesign.case.housing_fluids import HousingLink, HousingStream, HousingVolume
 from rigdesign.case.joint import FootContact
 from rigdesign.case.mesh import HousingMesh
 from rigdesign.case.surface_conditions import Condition
@@ -111,6 +113,16 @@ class Housing(Part):
     """Shafts in the housing by name, each with two bearings and a seal."""
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     """Boundary conditions by name: every surface needs one."""
+    enclosures: Mapping[Name, EnclosureInput] = {}
+    """Chambers whose surfaces radiate at each other, by name; none when left out: walls, shafts and gears then
+    exchange heat through films and bodies only."""
+    volumes: Mapping[Name, HousingVolume] = {}
+    """Air, mist or oil at rest in the housing, whose temperature is found with the field; ``boundary`` films name them
+    as their fluid."""
+    streams: Mapping[Name, HousingStream] = {}
+    """Streams along surfaces of the housing, as through a jacket; ``boundary`` films name them as their fluid."""
+    links: Mapping[Name, HousingLink] = {}
+    """Heat exchange of volumes with each other, room air and oils."""
     ambient_film_factor: FilmFactor = 1.0
     """Multiplies every film to room air on top of the ``film_factor`` of each: draught, a badly ventilated place."""
     bearing_film_factor: FilmFactor = 1.0

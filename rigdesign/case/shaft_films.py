@@ -34,7 +34,7 @@ class HorizontalCylinder(TurningFilm):
     """Selects the film of a shaft at rest."""
 
     @property
-    def wetted_by(self) -> Fluid:
+    def wetted_by(self) -> str:
         """Room air."""
         return "ambient"
 
@@ -52,12 +52,13 @@ class RotatingCylinder(TurningFilm):
     """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to zero speed;
     jungnickel: constants of air near room temperature."""
     fluid: Fluid
-    """Fluid whose temperature counts: room air, or one of the oils at inlet, mean or outlet."""
+    """Fluid whose temperature counts: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
+    ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
     medium: Medium = "air"
     """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
 
     @property
-    def wetted_by(self) -> Fluid:
+    def wetted_by(self) -> str:
         """The fluid it names."""
         return self.fluid
 
@@ -84,12 +85,13 @@ class RotatingDisc(TurningFilm):
     correlation: Literal["kreith", "jungnickel"] = "kreith"
     """kreith: air at the film temperature; jungnickel: constants of air near room temperature."""
     fluid: Fluid
-    """Fluid whose temperature counts: room air, or one of the oils at inlet, mean or outlet."""
+    """Fluid whose temperature counts: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
+    ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
     medium: Medium = "air"
     """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
 
     @property
-    def wetted_by(self) -> Fluid:
+    def wetted_by(self) -> str:
         """The fluid it names."""
         return self.fluid
 

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
+from rigdesign.case.bath_film import BathFilm
 from rigdesign.case.fields import Clearance, HeatTransferCoefficient, Temperature, Text, fault
 from rigdesign.case.films import FilmFactor, PlateFilm, SurfaceCondition
 from rigdesign.case.given_film import ConstantFilm
@@ -175,6 +176,7 @@ class Insulated(SurfaceCondition):
 Condition = Annotated[
     PlateFilm
     | ConstantFilm
+    | BathFilm
     | FlankFilm
     | ShaftFilm
     | BearingFilm

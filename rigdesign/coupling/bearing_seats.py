@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from dynamics.bearing.protocol import BearingState, HeatStar
-from rigdesign.case.geometry import matched
+from rigdesign.case.matching import matched
 from rigdesign.case.surface_conditions import BearingFilm
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig

@@ -5,14 +5,16 @@ from dataclasses import dataclass, replace
 
 from dynamics.bearing.protocol import BearingState
 from rigdesign.case import surface_conditions as laws
-from rigdesign.case.films import Fluid, SurfaceCondition, SurfaceFilm
+from rigdesign.case.films import SurfaceCondition, SurfaceFilm
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of
 from rigdesign.case.given_film import ConstantFilm, TakenFrom
 from rigdesign.case.housing import Housing
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
+from rigdesign.coupling.enclosures import enclosure_conditions
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
+from rigdesign.coupling.housing_fluids import LinkEnd, WettedSurface, fluid_networks
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
@@ -82,8 +84,8 @@ class _Context:
     def geometry(self) -> HousingGeometry:
         return self.rig.geometries[self.name]
 
-    def fluid(self, name: Fluid) -> tuple[str, float]:
-        """Kind and temperature [K] of a fluid of the case."""
+    def fluid(self, name: str) -> tuple[str, float]:
+        """Kind and temperature [K] of room air or an oil."""
         if name == "ambient":
             return AIR, self.rig.case.ambient.temperature
         kind, _, which = name.rpartition("_")
@@ -94,8 +96,23 @@ class _Context:
         outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
 
-    def wetting(self, fluid: Fluid, surface: str) -> float:
+    def finds_own_temperature(self, fluid: str | None) -> bool:
+        """Whether a fluid is a volume or stream of the housing."""
+        return fluid in self.housing.volumes or fluid in self.housing.streams
+
+    def link_ends(self, *, sump_given: bool) -> dict[str, LinkEnd]:
+        """Room air and the oils as they leave the chamber; a sump that finds its own temperature is left out."""
+        ends = {"ambient": LinkEnd(temperature=self.rig.case.ambient.temperature, kind=AIR)}
+        for kind in (GEAR_OIL, BEARING_OIL):
+            if kind == BEARING_OIL or self.box.gear_oil_temperature is not None or sump_given:
+                outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
+                ends[kind] = LinkEnd(temperature=outlet, kind=kind)
+        return ends
+
+    def wetting(self, fluid: str, surface: str) -> float:
         """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
+        if self.finds_own_temperature(fluid):
+            return 1.0
         kind, _ = self.fluid(fluid)
         if kind == AIR:
             return 1.0
@@ -152,7 +169,7 @@ def boundary_conditions(
     radiation_included: bool,
     sump_given: bool = False,
 ) -> list[Condition]:
-    """Every condition of the housing of gearbox ``name``: films, radiation, exchanges, joints and sources.
+    """Every condition of the housing of gearbox ``name``: films, fluids, radiation, exchanges, joints and sources.
 
     radiation_included : leave out explicit radiation where the film to room air contains it already
     sump_given : a sump has the temperature of the coupling state also where it finds its own
@@ -162,13 +179,17 @@ def boundary_conditions(
     assert housing is not None
     rows = conditions_of(housing, rig.surface_names(name))
     covered = {surface for entry, surface, _ in rows if _radiation_in_film(context, entry, surface)}
-    conditions: list[Condition] = [*foot_joint(rig, name)]
+    conditions: list[Condition] = [*foot_joint(rig, name), *enclosure_conditions(rig, name)]
+    wetted: list[WettedSurface] = []
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
         if isinstance(condition, laws.BearingFilm) and _bearing_of(context, surface)[1].star is not None:
             continue
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
             conditions += _excess_radiation(context, condition, surface)
+            continue
+        if isinstance(condition, SurfaceFilm) and context.finds_own_temperature(condition.wetted_by):
+            wetted.append(_wetted(context, condition, surface))
             continue
         found = _condition(context, condition, surface, stood_for)
         if isinstance(found, Film):
@@ -177,6 +198,7 @@ def boundary_conditions(
     conditions += _joined_bearings(context)
     if context.box.gear_oil_temperature is None and not sump_given:
         conditions = _with_free_sump(context, conditions, losses.losses)
+    conditions += fluid_networks(rig, name, wetted, context.link_ends(sump_given=sump_given))
     return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
 
 
@@ -270,6 +292,17 @@ def _film(context: _Context, condition: SurfaceFilm, surface: str) -> Film:
         law = convection.scaled(law, context.housing.ambient_film_factor)
     temperature = condition.fluid_temperature_given(usual)
     return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
+
+
+def _wetted(context: _Context, condition: SurfaceFilm, surface: str) -> WettedSurface:
+    """Film to a volume or stream of the housing."""
+    assert condition.wetted_by is not None
+    law = condition.film_law(context.place(condition, surface))
+    return WettedSurface(
+        surface=surface,
+        fluid=condition.wetted_by,
+        law=behind_shell(context.rig, context.name, surface, law),
+    )
 
 
 def _radiation(

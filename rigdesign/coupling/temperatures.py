@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.coupling.bearing_seats import bearing_seats
-from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
+from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
+from rigdesign.coupling.enclosures import CHAMBER_RADIATION
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
@@ -66,10 +67,12 @@ def solve_housing(
 
 
 def heat_into_oil(field: HousingField) -> dict[str, float]:
-    """Heat the solids give to each oil stream of the gearbox [W], bearing films left out."""
+    """Heat solids and linked volumes give to each oil stream of the gearbox [W], bearing films left out."""
     return {
         f"{field.gearbox}.{kind}": -math.fsum(
-            row.power for row in field.solution.balance.rows if row.kind == kind and row.area > 0.0
+            row.power
+            for row in field.solution.balance.rows
+            if row.kind == kind and row.surface != GEAR_OIL  # the sump itself, where it is an unknown
         )
         for kind in (GEAR_OIL, BEARING_OIL)
     }
@@ -96,8 +99,9 @@ def heat_into_films(field: HousingField) -> dict[str, float]:
 
 
 def heat_to_room(field: HousingField) -> float:
-    """Heat to room air and walls of the room [W]."""
-    return -math.fsum(row.power for row in field.solution.balance.rows if row.kind in ("air", "radiation"))
+    """Heat to room air, to walls of the room and through openings of chambers that radiate [W]."""
+    kinds = AIR, "radiation", CHAMBER_RADIATION
+    return -math.fsum(row.power for row in field.solution.balance.rows if row.kind in kinds)
 
 
 def heat_stored(field: HousingField) -> float:

@@ -30,6 +30,7 @@ def entering(path: str) -> tuple[Station, ...]:
 
 _OIL_FLOW = "heat capacity flow of the oil stream: its outlet temperature"
 _BOUNDARY = "film law of the surfaces of the condition, in the temperature field"
+_GREY = "emission and reflection of the surfaces of a chamber"
 _SHEET = "properties of the oil at every temperature, from its data sheet"
 _BOX = "geometry of the housing that is meshed"
 _WARM = "flank of the loaded contact: load distribution, transmission error, mesh stiffness"
@@ -263,6 +264,24 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.housing.shafts.*": _at(
         case__geometry="shaft in the temperature field, diameters of its seals"
+    ),
+    "gearboxes.*.housing.enclosures.*": _at(
+        coupling__enclosures="radiation between the surfaces of a chamber, in the temperature field",
+        rig__chamber_views="view factors between them, by rays on the mesh",
+    ),
+    "gearboxes.*.housing.enclosures.*.emissivity": _at(case__enclosures=_GREY),
+    "gearboxes.*.housing.enclosures.*.parts.*": _at(case__enclosures=_GREY),
+    "gearboxes.*.housing.enclosures.*.opening_temperature": _at(
+        coupling__enclosures="surroundings behind an opening of the chamber"
+    ),
+    "gearboxes.*.housing.volumes.*": _at(
+        coupling__housing_fluids="volume of one temperature, found with the temperature field"
+    ),
+    "gearboxes.*.housing.streams.*": _at(
+        coupling__housing_fluids="plug flow along surfaces: outlet temperature, heat carried off"
+    ),
+    "gearboxes.*.housing.links.*": _at(
+        coupling__housing_fluids="conductance between a volume and another place"
     ),
     "gearboxes.*.housing.boundary.*": _at(coupling__boundary=_BOUNDARY),
     "gearboxes.*.housing.boundary.*.ribs": _at(case__ribs="fin array as a factor on the film"),

@@ -21,6 +21,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed
 from thermal.conditions.boundary import Exchange, Film, Radiation
 from thermal.conditions.contact import Contact
+from thermal.conditions.enclosure import Enclosure
 from thermal.conduction.reduced import Link, Projection, ReducedConduction
 from thermal.fe.mesh import FloatArray
 
@@ -230,4 +231,6 @@ def link_name(gearbox: str, link: Link) -> str:
             return f"exchange:{gearbox}.{first}|{second}"
         case Contact(surface_a=first, surface_b=second):
             return f"contact:{gearbox}.{first}|{second}"
+        case Enclosure(name=name):
+            return f"enclosure:{gearbox}.{name}"
     raise TypeError(f"no link: {type(link.condition).__name__}")

@@ -70,6 +70,7 @@ class Predictor:
         if not self.settings:
             raise UsageError("no operating points; give one setting at least")
         _require_held_sumps(case)
+        _require_no_own_fluids(case)
         with self._solving():
             self._reduced = ReducedRig(case, self.settings, self.channels, fidelity)
             self._points = self._reduced.converged_base()
@@ -186,7 +187,8 @@ class Predictor:
         """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.
 
         Names: ``film:``, ``bearing_film:``, ``radiation:`` gearbox.surface; ``exchange:``, ``contact:``
-        gearbox.surface|surface. The conductance changes at all operating points together.
+        gearbox.surface|surface; ``enclosure:`` gearbox.enclosure. The conductance changes at all operating points
+        together.
         """
         if not self._reduced.housings.bases:
             return {}
@@ -285,6 +287,18 @@ class Predictor:
         """Errors of the tool, linear algebra on one thread."""
         with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
             yield
+
+
+def _require_no_own_fluids(case: Case) -> None:
+    """Volumes and streams of a housing are unknowns that the reduced model does not have."""
+    for name, box in case.gearboxes.items():
+        for kind in ("volumes", "streams") if box.housing is not None else ():
+            if fluids := getattr(box.housing, kind):
+                raise UsageError(
+                    f"gearboxes.{name}.housing.{kind} = {', '.join(fluids)}: the model that measured data are held "
+                    "against takes films to room air and oils only; for it give the films of these surfaces a measured "
+                    'fluid_temperature with fluid = "ambient", and leave the table out'
+                )
 
 
 def _require_held_sumps(case: Case) -> None:

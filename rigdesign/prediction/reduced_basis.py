@@ -25,6 +25,7 @@ from thermal.conditions.boundary import (
     SurfaceSource,
 )
 from thermal.conditions.contact import Contact
+from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.newton import newton
 from thermal.conduction.reduced import ReducedConduction, shapes_of
@@ -148,6 +149,9 @@ class FullField:
                 case BodySource():
                     share = elements.body_load(condition.body)
                     yield condition.power * share / share.sum()
+        for condition in conditions:
+            if isinstance(condition, Enclosure):
+                yield -EnclosureTerms(elements, condition).heat_out(field)[0]
         for body in elements.mesh.bodies:
             share = elements.body_load(body)
             yield 50.0 * share / share.sum()
@@ -256,6 +260,9 @@ def _changed(condition: Condition, factor: float, shift: float) -> Condition:
                 emissivity=min(1.0, condition.emissivity * math.sqrt(factor)),
                 surroundings_temperature=condition.surroundings_temperature + shift,
             )
+        case Enclosure():
+            greyer = min(1.0, math.sqrt(factor))
+            return replace(condition, emissivities=tuple(greyer * e for e in condition.emissivities))
         case SurfaceSource() | BodySource():
             return replace(condition, power=condition.power * factor)
         case PrescribedTemperature():

@@ -11,6 +11,7 @@ from rigdesign.coupling.oil import heater_and_cooler
 from rigdesign.coupling.oil_circuits import circuit_balances
 from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from rigdesign.records.heat_split import COMPARED, heat_splits
+from rigdesign.records.housing_fluids import carried_and_given, fluid_temperatures
 from rigdesign.results.housing import BodyTemperature, CoolingBalance, HousingTemperatures, RadiationReadings
 from rigdesign.results.thermal import TemperatureField
 from rigdesign.rig.model import Rig
@@ -25,6 +26,7 @@ def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
     circuits = balances.values()
     heater, carried = (float(power[0]) for power in heater_and_cooler(rig.case, heats))
     steady = rig.case.ambient.warming_time is None
+    streams, volumes = carried_and_given(rig, last.fields)
     return CoolingBalance(
         stage=last.point.stage,
         losses=math.fsum(placed.loss.power for placed in last.losses) - damped,
@@ -38,6 +40,8 @@ def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
         circulation=math.fsum(found.pump_heat for found in circuits),
         tanks=math.fsum(found.wall_loss for found in circuits),
         circuits=balances,
+        streams=streams,
+        volumes=volumes,
     )
 
 
@@ -84,6 +88,7 @@ def housing_temperatures(rig: Rig, result: PointResult, field: HousingField) -> 
         room_heat=heat_to_room(field),
         nodes=len(mesh.points),
         elements=len(mesh.cells),
+        fluids=tuple(fluid_temperatures(rig, field, result.last.coupling_state.oil_outlet)),
     )
 
 

@@ -62,6 +62,24 @@ class RadiationReadings:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FluidTemperature:
+    """A volume or stream of a housing."""
+
+    name: str
+    kind: Literal["volume", "stream"]
+    inlet: float | None
+    """Of a stream [K]; None for a volume."""
+    temperature: float
+    """Of a volume, at the outlet of a stream [K]."""
+    heat: float
+    """From its surfaces into it [W]."""
+    links: Mapping[str, float]
+    """Link -> heat that it brings into the volume [W]."""
+    power: float = 0.0
+    """Set free in it [W]."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class HousingTemperatures:
     """Steady temperatures and heat of one gearbox at one held stage."""
 
@@ -83,6 +101,8 @@ class HousingTemperatures:
     """None where the other reading was not solved."""
     heat_split: tuple[GearHeatSplit, ...] = ()
     """Of every gear that friction heats."""
+    fluids: tuple[FluidTemperature, ...] = ()
+    """Volumes and streams of the housing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,9 +129,13 @@ class CoolingBalance:
     """From tanks and pipes of the oil circuits to the room."""
     circuits: Mapping[str, SteadyCircuit] = field(default_factory=dict)
     """Oil circuits in balance, by name."""
+    streams: float | None = None
+    """Heat that streams of the housings carry off; None where there are none."""
+    volumes: float | None = None
+    """Heat set free in volumes of the housings; None where there are none."""
 
     @property
     def imbalance(self) -> float:
         """Put in less taken out and stored [W]."""
-        given = self.losses + self.pump + self.heater + self.circulation
-        return given - self.cooler - self.room - self.tanks - (self.stored or 0.0)
+        given = self.losses + self.pump + self.heater + self.circulation + (self.volumes or 0.0)
+        return given - self.cooler - self.room - self.tanks - (self.stored or 0.0) - (self.streams or 0.0)

@@ -86,6 +86,24 @@ class HeatSplitRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FluidRow:
+    """A volume or stream of a housing; heat + power + links = 0 for a volume."""
+
+    name: str
+    kind: Literal["volume", "stream"]
+    inlet_degC: float | None  # noqa: N815
+    """Of a stream."""
+    temperature_degC: float  # noqa: N815
+    """Of a volume, at the outlet of a stream."""
+    heat_W: float  # noqa: N815
+    """From its surfaces into it."""
+    power_W: float = 0.0  # noqa: N815
+    """Set free in it."""
+    links_W: dict[str, float] = field(default_factory=dict)  # noqa: N815
+    """Link -> heat that it brings into the volume."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class ThermalResult:
     """Steady temperatures of one gearbox at one held stage."""
 
@@ -104,6 +122,8 @@ class ThermalResult:
     """Highest temperature under either reading of radiation, heat to the room under the one not taken."""
     heat_split: list[HeatSplitRow] = field(default_factory=list)
     """Of the friction heat of every gear."""
+    fluids: list[FluidRow] = field(default_factory=list)
+    """Volumes and streams of the housing."""
 
 
 @dataclass(frozen=True, kw_only=True)

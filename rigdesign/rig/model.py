@@ -19,6 +19,7 @@ from rigdesign.case.model import Case
 from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
+from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
@@ -152,6 +153,11 @@ class Rig:
             )
             for name, model in self.models.items()
         }
+
+    @cached_property
+    def chamber_views(self) -> ChamberViews:
+        """View factors between the surfaces of the chambers that radiate at each other."""
+        return ChamberViews(self.conduction)
 
     @cached_property
     def expansion(self) -> Mapping[str, ExpansionSetup]:

@@ -3,7 +3,7 @@
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.rig.model import Rig
 
-HOUSINGS = ("models", "conduction")
+HOUSINGS = ("models", "conduction", "chamber_views")
 """Cached parts of a rig that depend on geometry and materials of its housings alone, as ``expansion`` does."""
 
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
+from rigdesign.coupling.housing_fluids import without_oils
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
@@ -65,7 +66,7 @@ def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tup
     wetted: list[tuple[Film, float]] = []
     for condition, other in zip(given, moved, strict=True):
         if not isinstance(condition, Film) or not isinstance(other, Film):
-            bodies.append(condition)
+            bodies.append(_led_to_oils(condition))
             continue
         film = _floored(condition, floor)
         if film.kind == AIR:
@@ -82,6 +83,13 @@ def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tup
     if rig.case.gearboxes[name].fed_bearings is None:
         return *rest, with_nodes(gears, nodes, GEAR_OIL if oil else None)
     return *rest, gears, _bearing_network(rig, name, state, losses, films, oil)
+
+
+def _led_to_oils(condition: Condition) -> Condition:
+    """Links of the volumes of a housing end in its oils, which are unknowns here."""
+    if isinstance(condition, StreamNetwork):
+        return without_oils(condition, (GEAR_OIL, BEARING_OIL))
+    return condition
 
 
 def _gear_heat(rig: Rig, name: str, losses: Sequence[PlacedLoss]) -> float:

@@ -14,6 +14,7 @@ from tests.builders.curved_blocks import cylinder_sector
 from tests.builders.two_blocks import renamed
 from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure, EnclosureError, close_view_factors
+from thermal.conditions.ray_view_factors import ray_view_factors
 from thermal.conditions.view_factors import view_factors
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.setup import ConductionSetup
@@ -201,3 +202,81 @@ def test_unknown_surfaces_and_large_meshes_are_refused() -> None:
         view_factors(cavity(), ["roof"])
     with pytest.raises(ConditionError, match="take a coarser mesh"):
         view_factors(box_mesh((1.0, 1.0, 1.0), (40, 40, 1)), ["z_min"])
+
+
+@pytest.mark.parametrize("cell", ["tetra10", "hexahedron20"])
+def test_rays_between_rectangles(cell: CellName) -> None:
+    mesh = cavity(cell)
+    exchange = ray_view_factors(mesh, FACES)
+    factors = np.array(exchange.factors)
+    assert factors[0, 1] == pytest.approx(parallel(0.8, 0.6), abs=3e-3)
+    assert factors[4, 0] == pytest.approx(perpendicular(0.6 / 0.8, 1.0 / 0.8), abs=3e-3)
+    assert_allclose(factors, np.array(view_factors(mesh, FACES)), atol=3e-3)
+    assert_allclose(factors.sum(axis=1), 1.0, atol=3e-3)
+    exchanged = np.array(exchange.areas)[:, None] * factors
+    assert_allclose(exchanged, exchanged.T, rtol=1e-12)
+    assert_allclose(exchange.areas, [0.48, 0.48, 0.6, 0.6, 0.8, 0.8], rtol=1e-12)
+    assert exchange.elsewhere == {}
+    assert ray_view_factors(mesh, FACES) == exchange
+
+
+def test_rays_between_coaxial_cylinders() -> None:
+    full = 2.0 * np.pi
+    inner = cylinder_sector((0.4, 0.5), (1, 48, 3), "inner", angle=full, length=2.0)
+    outer = cylinder_sector((1.0, 1.1), (1, 48, 3), "outer", angle=full, length=2.0)
+    factors = np.array(ray_view_factors(disjoint_union(inner, outer), ["inner_outer", "outer_inner"]).factors)
+    to_inner, to_self = coaxial(2.0, 4.0)
+    assert factors[1, 0] == pytest.approx(to_inner, abs=3e-3)
+    assert factors[1, 1] == pytest.approx(to_self, abs=3e-3)
+    assert factors[0, 0] == 0.0
+
+
+def test_rays_stop_at_surfaces_that_are_no_members_and_name_them() -> None:
+    low = renamed(box_mesh((1.0, 1.0, 0.1), (3, 3, 1), name="low"), "low")
+    high = renamed(box_mesh((1.0, 1.0, 0.1), (3, 3, 1), (0.0, 0.0, 1.1), "high"), "high")
+    screen = renamed(box_mesh((1.0, 0.5, 0.1), (3, 3, 1), (0.0, 0.0, 0.55), "screen"), "screen")
+    pair = ["low_z_max", "high_z_min"]
+    free = ray_view_factors(disjoint_union(low, high), pair)
+    assert free.factors[0][1] == pytest.approx(parallel(1.0, 1.0), abs=3e-3)
+    hidden = ray_view_factors(disjoint_union(low, high, screen), pair)
+    assert hidden.factors[0][1] < 0.6 * free.factors[0][1]
+    assert hidden.elsewhere["screen_z_min"] > 0.15
+
+
+def test_faces_that_touch_see_each_other() -> None:
+    low = renamed(box_mesh((1.0, 1.0, 0.1), (3, 3, 1), name="low"), "low")
+    high = renamed(box_mesh((1.0, 1.0, 0.1), (2, 2, 1), (0.0, 0.0, 0.1), "high"), "high")
+    factors = ray_view_factors(disjoint_union(low, high), ["low_z_max", "high_z_min"]).factors
+    assert_allclose(factors, [[0.0, 1.0], [1.0, 0.0]], atol=1e-3)
+
+
+def test_rays_want_known_surfaces_and_numbers_that_say_something() -> None:
+    with pytest.raises(ConditionError, match="unknown surface 'x_lo'; known: x_high_x_max"):
+        ray_view_factors(cavity(), ["x_lo"])
+    with pytest.raises(ConditionError, match="by 10 rays a surface, the limit is 100"):
+        ray_view_factors(cavity(), FACES, rays=10)
+
+
+def test_a_held_surface_radiates_and_what_holds_it_takes_the_heat() -> None:
+    """Plates a = 1 m2 opposite each other, closed by reflection: q = sigma (T1^4 - T2^4) / (1/e1 + 1/e2 - 1)."""
+    low = renamed(box_mesh((1.0, 1.0, 0.1), (2, 2, 1), name="low"), "low")
+    high = renamed(box_mesh((1.0, 1.0, 0.1), (2, 2, 1), (0.0, 0.0, 0.6), "high"), "high")
+    mesh = disjoint_union(low, high)
+    held = {"low_z_max": 500.0, "high_z_min": 400.0}
+    conditions: list[Condition] = [
+        Enclosure(
+            name="gap",
+            surfaces=tuple(held),
+            emissivities=(0.8, 0.5),
+            view_factors=((0.0, 1.0), (1.0, 0.0)),
+        ),
+        *(PrescribedTemperature(surface=name, temperature=value) for name, value in held.items()),
+        *(Adiabatic(surface=name) for name in mesh.surfaces if name not in held),
+    ]
+    solution = solve_steady(ConductionSetup(mesh, {"low": 50.0, "high": 50.0}), conditions, 450.0)
+    flux = STEFAN_BOLTZMANN * (500.0**4 - 400.0**4) / (1.0 / 0.8 + 1.0 / 0.5 - 1.0)
+    rows = {(row.surface, row.kind): row.power for row in solution.balance.rows}
+    assert rows["low_z_max", "enclosure"] == pytest.approx(-flux, rel=1e-9)
+    assert rows["low_z_max", "prescribed_temperature"] == pytest.approx(flux, rel=1e-9)
+    assert rows["high_z_min", "prescribed_temperature"] == pytest.approx(-flux, rel=1e-9)
+    assert solution.balance.closure < 1e-9

@@ -38,7 +38,7 @@ class Enclosure:
     name: str
     surfaces: tuple[str, ...]
     emissivities: tuple[float, ...]
-    """One per surface, above 0 to 1 [-]."""
+    """One per surface, 0 to 1 [-]; 0 re-radiates what arrives and keeps no heat, one at least is above it."""
     view_factors: tuple[tuple[float, ...], ...]
     """Row i: share of the radiation of surface i that reaches each surface; given, or from view_factors()."""
     opening_temperature: float | None = None
@@ -122,8 +122,10 @@ def check_enclosure(enclosure: Enclosure) -> None:
             f"{place}: {len(enclosure.emissivities)} emissivities for {len(enclosure.surfaces)} surfaces"
         )
     for name, value in zip(enclosure.surfaces, enclosure.emissivities, strict=True):
-        if not 0.0 < value <= 1.0:
-            raise ConditionError(f"{place}, {name}: emissivity = {value:g} is outside of 0 (excluded) to 1")
+        if not 0.0 <= value <= 1.0:
+            raise ConditionError(f"{place}, {name}: emissivity = {value:g} is outside of 0 to 1")
+    if not any(enclosure.emissivities):
+        raise ConditionError(f"{place}: every emissivity is 0, nothing radiates; give one above 0")
     room = enclosure.opening_temperature
     if room is not None and not (np.isfinite(room) and room > 0.0):
         raise ConditionError(f"{place}: opening_temperature = {room:g} K must be above 0 K; give kelvin")

@@ -77,7 +77,7 @@ class Stream:
 
 @dataclass(frozen=True, kw_only=True)
 class VolumeLink:
-    """A conductance between a volume and another volume or a supply."""
+    """A conductance between a volume and a supply or another volume, be it of another network."""
 
     a: str
     b: str
@@ -127,6 +127,7 @@ def check_networks(networks: Sequence[StreamNetwork]) -> None:
     inflows and outflows differ. Surfaces are checked with the other conditions, heat paths in the solver.
     """
     names: set[str] = set()
+    volumes = {volume.name for network in networks for volume in network.volumes}
     for network in networks:
         _check_number("network", "specific_heat", network.specific_heat, above=0.0)
         for name in network.places:
@@ -139,38 +140,44 @@ def check_networks(networks: Sequence[StreamNetwork]) -> None:
         for supply in network.supplies:
             _check_number(supply.name, "temperature", supply.temperature, above=0.0)
         _check_ends(network)
+        _check_links(network, volumes)
         _check_flows(network)
+
+
+def _require_place(what: str, name: str, among: set[str]) -> None:
+    if name not in among:
+        raise ConditionError(f"{what}: unknown place {name!r}; known: {', '.join(sorted(among))}")
 
 
 def _check_ends(network: StreamNetwork) -> None:
     volumes = {volume.name for volume in network.volumes}
     places = volumes | {supply.name for supply in network.supplies}
-
-    def known(what: str, name: str, among: set[str]) -> None:
-        if name not in among:
-            raise ConditionError(f"{what}: unknown place {name!r}; known: {', '.join(sorted(among))}")
-
     for film in network.films:
         label = f"film {film.kind!r} on {film.surface}"
-        known(label, film.volume, volumes)
+        _require_place(label, film.volume, volumes)
         if film.supply is not None:
-            known(label, film.supply, places - volumes)
+            _require_place(label, film.supply, places - volumes)
         if not 0.0 <= film.supply_share <= (0.0 if film.supply is None else 1.0):
             raise ConditionError(
                 f"{label}: supply_share = {film.supply_share:g} must lie within 0 and 1, and be 0 without a supply"
             )
     for stream in network.streams:
         label = f"{stream.kind} from {stream.source} to {stream.target}"
-        known(label, stream.source, places)
+        _require_place(label, stream.source, places)
         if stream.target is not None:
-            known(label, stream.target, volumes)
+            _require_place(label, stream.target, volumes)
         if stream.source == stream.target:
             raise ConditionError(f"{label}: needs two different places")
         _check_number(label, "mass_flow", stream.mass_flow, above=0.0)
+
+
+def _check_links(network: StreamNetwork, volumes: set[str]) -> None:
+    """volumes : of all networks"""
+    places = volumes | {supply.name for supply in network.supplies}
     for link in network.links:
         label = f"link of {link.a} and {link.b}"
-        known(label, link.a, places)
-        known(label, link.b, places)
+        _require_place(label, link.a, places)
+        _require_place(label, link.b, places)
         if link.a == link.b or not {link.a, link.b} & volumes:
             raise ConditionError(f"{label}: needs a volume and another place")
         _check_number(label, "conductance", link.conductance, least=0.0)

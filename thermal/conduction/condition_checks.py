@@ -161,13 +161,18 @@ def _check_values(condition: Condition) -> None:
 
 
 def _check_combinations(conditions: Sequence[Condition]) -> None:
-    """Refuse a second condition in addition to `Adiabatic` or a prescribed temperature, and repeated kinds."""
+    """Refuse a second condition in addition to `Adiabatic` or a prescribed temperature, and repeated kinds.
+
+    A surface of prescribed temperature may radiate in an enclosure: what holds it takes the heat.
+    """
     on: dict[str, list[Condition]] = {}
     for condition in conditions:
         for name in surfaces_of(condition):
             on.setdefault(name, []).append(condition)
     for name, found in on.items():
         alone = [c for c in found if isinstance(c, Adiabatic | PrescribedTemperature)]
+        if alone and isinstance(alone[0], PrescribedTemperature):
+            found = [c for c in found if not isinstance(c, Enclosure)]
         if alone and len(found) > 1:
             others = ", ".join(type(c).__name__ for c in found if c is not alone[0])
             raise ConditionError(

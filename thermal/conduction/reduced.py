@@ -28,10 +28,12 @@ from thermal.conditions.boundary import (
     SurfaceSource,
 )
 from thermal.conditions.contact import Contact
+from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conduction.balance import HeatBalance
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition, ConditionError
 from thermal.conduction.heat_rows import HeatFlow
+from thermal.conduction.reduced_enclosure import ReducedEnclosure
 from thermal.conduction.setup import ConductionSetup
 from thermal.errors import ThermalNotConverged
 from thermal.fe.low_rank import DIFFERENCE
@@ -176,6 +178,11 @@ class ReducedConduction:
             self._joints[key] = _Joint(self.setup, contact, self.shapes)
         return self._joints[key]
 
+    def enclosure(self, condition: Enclosure) -> ReducedEnclosure:
+        """The shapes on the surfaces of an enclosure."""
+        surfaces = [self.surface(name) for name in condition.surfaces]
+        return ReducedEnclosure(EnclosureTerms(self.setup.elements, condition), surfaces)
+
     def capacity(self, condition: StoredHeat) -> FloatArray:
         """(m, m) heat capacity matrix of the bodies [J/K]."""
         key = tuple(sorted(condition.capacity.items()))
@@ -236,6 +243,7 @@ class Projection:
         self.source = np.zeros(reduced.size)
         self.matrix = reduced.matrix
         self.held: list[tuple[FloatArray, float]] = []
+        self.enclosures: dict[Enclosure, ReducedEnclosure] = {}
         for condition in conditions:
             match condition:
                 case SurfaceSource():
@@ -249,6 +257,8 @@ class Projection:
                         self.source += rate * condition.start * reduced.body(body)
                 case PrescribedTemperature():
                     self.held.append((reduced.surface(condition.surface).mean, condition.temperature))
+                case Enclosure():
+                    self.enclosures[condition] = reduced.enclosure(condition)
                 case Film() | Radiation() | Exchange() | Contact() | Adiabatic():
                     pass
                 case _:
@@ -313,6 +323,8 @@ class Projection:
                 residual += (
                     condition.emissivity * STEFAN_BOLTZMANN * (surface.weights * flux) @ surface.points
                 )
+            elif isinstance(condition, Enclosure):
+                residual += self.enclosures[condition].heat_out(a)
         return np.asarray(residual)
 
     def at(self, a: FloatArray, *, exact: bool = False) -> tuple[FloatArray, FloatArray]:
@@ -337,6 +349,8 @@ class Projection:
                     jacobian += surface.points.T @ (slope[:, None] * surface.points)
                 else:
                     jacobian += factor * float(surface.mean @ a) ** 3 * surface.mass
+            elif isinstance(condition, Enclosure):
+                jacobian += self.enclosures[condition].slope(a)
         return self.residual(a), jacobian
 
     def unit(self, condition: Film | Exchange | Contact, a: FloatArray) -> FloatArray:
@@ -397,6 +411,8 @@ class Projection:
                 flux = (surface.points @ a) ** 4 - condition.surroundings_temperature**4
                 column = condition.emissivity * STEFAN_BOLTZMANN * (surface.weights * flux) @ surface.points
                 found.append(Link(condition, np.asarray(column), 0.0, nothing))
+            elif isinstance(condition, Enclosure):
+                found.append(Link(condition, self.enclosures[condition].heat_out(a), 0.0, nothing))
         return found
 
     def answers(self, a: FloatArray, loads: FloatArray) -> FloatArray:
@@ -427,6 +443,10 @@ class Projection:
                     flux = condition.surroundings_temperature**4 - (surface.points @ a) ** 4
                     power = condition.emissivity * STEFAN_BOLTZMANN * float(surface.weights @ flux)
                     rows.append(self._row(condition.surface, condition.kind, power, a))
+                case Enclosure():
+                    powers = self.enclosures[condition].powers(a)
+                    for name, power in zip(condition.surfaces, powers.tolist(), strict=True):
+                        rows.append(self._row(name, condition.kind, power, a))
                 case Exchange() | Contact():
                     assert found is not None
                     first, second = self._means(condition)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.geometry import matched
+from rigdesign.case.matching import matched
 
 if TYPE_CHECKING:
     from rigdesign.case.bearings import BearingInput

@@ -7,6 +7,8 @@ from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.component_limits import PLACES, has_result
 from rigdesign.case.faults import unknown, written
+from rigdesign.case.films import ROOM
+from rigdesign.case.housing import Housing
 from rigdesign.case.paths import known_paths, nearest_paths
 from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
@@ -17,6 +19,7 @@ from rigdesign.case.rules.oil_circuits import oil_circuit_faults
 from rigdesign.case.rules.schedule import schedule_faults
 from rigdesign.case.rules.surfaces import housing_faults
 from rigdesign.case.rules.transient import transient_faults
+from rigdesign.properties.fluid import ATMOSPHERE, FluidError, volumetric_heat
 from rigdesign.properties.materials import MATERIALS
 from rigdesign.properties.oil import OILS
 
@@ -65,6 +68,7 @@ def _substances(case: "Case") -> Iterator[Fault]:
         if box.housing is not None:
             used |= {f"{at}.housing.material": box.housing.material}
             used |= {f"{at}.housing.field.material": box.housing.field.material}
+            yield from _media(f"{at}.housing", box.housing, oils)
             used |= {
                 f"{at}.housing.shafts.{s}.material": part.material for s, part in box.housing.shafts.items()
             }
@@ -75,6 +79,30 @@ def _substances(case: "Case") -> Iterator[Fault]:
         for shaft, part in case.drivetrain.shafts.items():
             if part.material not in materials:
                 yield unknown(f"drivetrain.shafts.{shaft}.material", part.material, materials, "material")
+
+
+def _media(at: str, housing: Housing, oils: Iterable[str]) -> Iterator[Fault]:
+    """What flows in streams and links: an oil of the case, or a fluid that has properties there."""
+    flows = [
+        (f"{at}.streams.{name}.medium", stream.medium, stream.inlet_temperature, stream.pressure)
+        for name, stream in housing.streams.items()
+    ]
+    flows += [
+        (f"{at}.links.{name}.medium", link.medium, ROOM, ATMOSPHERE)
+        for name, link in housing.links.items()
+        if link.medium is not None
+    ]
+    for path, medium, temperature, pressure in flows:
+        if medium not in oils:
+            try:
+                volumetric_heat(medium, temperature, pressure)
+            except FluidError as error:
+                yield Fault(
+                    path,
+                    written(medium),
+                    str(error),
+                    "name an oil of the case, or a fluid such as Water or Air",
+                )
 
 
 def _limits(case: "Case") -> Iterator[Fault]:

@@ -8,10 +8,13 @@ from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import written
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched
+from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry
 from rigdesign.case.housing import Housing
+from rigdesign.case.matching import matched
 from rigdesign.case.paths import nearest
+from rigdesign.case.rules.enclosures import enclosure_faults
 from rigdesign.case.rules.flanks import GEAR_RIMS, flank_faults
+from rigdesign.case.rules.housing_fluids import housing_fluid_faults
 from rigdesign.case.surface_place import SurfaceSite
 from thermal.errors import ThermalInputError
 from thermal.housing.surfaces import surface_names
@@ -60,6 +63,8 @@ def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list
     return [
         *_boundary(at, housing, names),
         *_on_their_surfaces(at, gearbox, housing, names),
+        *enclosure_faults(name, gearbox, names),
+        *housing_fluid_faults(name, gearbox, names),
         *flank_faults(name, gearbox, housing, names),
     ]
 
@@ -174,6 +179,9 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
             yield Fault(
                 f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
             )
+    for enclosure in housing.enclosures.values():
+        for surface in enclosure.emissivities(names):
+            covered[surface].append("")
     for surface, conditions in covered.items():
         films = [name for name in conditions if name]
         if not conditions:

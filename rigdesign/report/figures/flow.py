@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 OIL, BODIES, COOLER, ROOM, HEATERS = "oil", "gears, shafts, housings", "cooler", "room", "oil heaters"
+STREAMS = "streams of the housings"
 TURNING, STANDING = "gears and shafts", "housing and field"
 WORDS = {
     "mesh_loss": "tooth friction",
@@ -23,6 +24,7 @@ WORDS = {
     "mesh": "tooth friction",
     "air": "room air",
     "radiation": "radiation to the room",
+    "chamber_radiation": "radiation in chambers",
     "bearing_film": "bearing films",
     "exchange": "seal gaps",
     "bearing_seats": "through rolling bearings",
@@ -50,6 +52,7 @@ def rig_flow_figure(
     flows += [Flow(kind, BODIES, max(power, 0.0)) for kind, power in into_bodies.items()]
     flows += [Flow(HEATERS, OIL, float(cooler["heater_W"])), Flow(OIL, COOLER, float(cooler["cooler_W"]))]
     flows.append(Flow(BODIES, ROOM, max(float(cooler["room_W"]), 0.0)))
+    flows.append(Flow(BODIES, STREAMS, max(float(cooler.get("streams_W", 0.0)), 0.0)))
     given = sum(row.heat_W for row in oil) - sum(row.into_oil_W for row in losses)
     flows.append(Flow(BODIES, OIL, given) if given >= 0.0 else Flow(OIL, BODIES, -given))
     totals = {kind: into_oil[kind] + into_bodies[kind] for kind in into_oil}
@@ -57,7 +60,7 @@ def rig_flow_figure(
     if not any(flow.value > 0.0 for flow in flows):
         return None
     middle, bodies = ([BODIES, OIL], 1) if given >= 0.0 else ([OIL, BODIES], 2)
-    columns = [[HEATERS, *kinds], [middle[0]], [middle[1]], [COOLER, ROOM]]
+    columns = [[HEATERS, *kinds], [middle[0]], [middle[1]], [COOLER, ROOM, STREAMS]]
     return _drawn(layout(columns, flows, low=(bodies,)), len(kinds) + 1)
 
 
@@ -65,6 +68,8 @@ def body_flow_figure(thermal: ThermalResult) -> "Figure":
     """Heat into and out of the solids of one gearbox by kind of boundary [W]."""
     flows: dict[tuple[str, str, bool], float] = defaultdict(float)
     for row in thermal.heat:
+        if row.area_m2 == 0.0 and row.surface not in thermal.bodies:
+            continue  # of a volume of fluid
         kind = _words(row.kind.partition(":")[0])
         group = TURNING if row.surface.startswith(("shaft_", "gear_")) else STANDING
         flows[kind, group, row.power_W > 0.0] += abs(row.power_W)

@@ -6,8 +6,8 @@ from dataclasses import asdict
 from rigdesign.coupling.boundary import BEARING_OIL
 from rigdesign.coupling.oil import OilStream
 from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.results.housing import CoolingBalance, GearHeatSplit, HousingTemperatures
-from rigdesign.results.thermal import HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
+from rigdesign.results.housing import CoolingBalance, FluidTemperature, GearHeatSplit, HousingTemperatures
+from rigdesign.results.thermal import FluidRow, HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
 from rigdesign.results.units import L_MIN, ZERO
 from thermal.conduction.heat_rows import HeatFlow
 
@@ -51,6 +51,11 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
     """Heat balance of the rig at one held stage."""
     warming = {} if balance.stored is None else {"stored_W": balance.stored}
     circuits = {"circulation_W": balance.circulation, "tanks_W": balance.tanks} if balance.circuits else {}
+    fluids = {
+        key: value
+        for key, value in (("streams_W", balance.streams), ("volumes_W", balance.volumes))
+        if value is not None
+    }
     return {
         "stage": balance.stage,
         "losses_W": balance.losses,
@@ -60,6 +65,7 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
         "room_W": balance.room,
         **warming,
         **circuits,
+        **fluids,
         "not_heat_W": balance.not_heat,
         "open_W": balance.imbalance,
         "flow_l_min": L_MIN * balance.flow,
@@ -88,6 +94,7 @@ def thermal_row(found: HousingTemperatures) -> ThermalResult:
         room_heat_W=found.room_heat,
         alternatives=_alternatives(found),
         heat_split=[heat_split_row(split) for split in found.heat_split],
+        fluids=[_fluid_row(fluid) for fluid in found.fluids],
     )
 
 
@@ -99,6 +106,18 @@ def _alternatives(found: HousingTemperatures) -> dict[str, float]:
         "highest_radiation_included_true_degC": found.radiation.highest_included - ZERO,
         "heat_to_the_room_under_the_other_reading_W": found.radiation.other_room_heat,
     }
+
+
+def _fluid_row(fluid: FluidTemperature) -> FluidRow:
+    return FluidRow(
+        name=fluid.name,
+        kind=fluid.kind,
+        inlet_degC=_degrees(fluid.inlet),
+        temperature_degC=fluid.temperature - ZERO,
+        heat_W=fluid.heat,
+        power_W=fluid.power,
+        links_W=dict(fluid.links),
+    )
 
 
 def _heat_row(flow: HeatFlow) -> HeatRow:

@@ -1,9 +1,12 @@
 """Boundary conditions of the case say themselves what they need of a surface and which law they stand for there."""
 
+from pathlib import Path
 from typing import get_args
 
 import pytest
 
+from rigdesign import load_case
+from rigdesign.case.bath_film import BathFilm
 from rigdesign.case.films import (
     NiemannWinter,
     SurfaceFilm,
@@ -13,6 +16,7 @@ from rigdesign.case.given_film import PRINTED_LAWS, ConstantFilm, TakenFrom
 from rigdesign.case.shaft_films import RotatingCylinder
 from rigdesign.case.surface_conditions import Condition, FlankFilm, GapExchange, SurfaceExchange
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
+from tests.builders.fzg_case import fzg_case
 from thermal.films import convection
 
 WALL = SurfaceSite(surface="outer_warm", housing_height=0.28, on_shaft=False, has_teeth=False)
@@ -80,3 +84,25 @@ def test_gaps_and_flanks_ask_for_seals_and_teeth() -> None:
     assert not list(gap.faults_on(seal))
     film = FlankFilm(surfaces=("outer_warm",), law="flank_film", correlation="constant")
     assert [fault.path for fault in film.faults_on(WALL)] == ["surfaces", "heat_transfer_coefficient"]
+
+
+def test_walls_over_a_sump_have_the_film_of_the_standard() -> None:
+    film = BathFilm.model_validate({"surfaces": ("chamber_*",), "law": "bath", "film_factor": 0.5})
+    coefficient = film.film_law(SurfacePlace(height=0.28, wetted_share=0.8))(350.0, 363.15)
+    assert coefficient.value == pytest.approx(0.5 * 0.8 * 200.0)
+    assert "ISO/TR 14179-2" in coefficient.source
+    assert (film.wetted_by, film.usual_film) == ("gear_oil_mean", False)
+    assert not film.radiation_included(SurfacePlace(height=0.28))
+    usual = BathFilm.model_validate({"surfaces": ("chamber_*",), "law": "bath"})
+    assert usual.usual_film
+
+
+def test_the_film_of_the_standard_is_an_assumption(tmp_path: Path) -> None:
+    path = fzg_case(tmp_path, sumps=dict.fromkeys(("test", "slave"), ', sump_temperature = "90 degC"'))
+    oiled = 'law = "constant_film", heat_transfer_coefficient = "300 W/(m2 K)", fluid = "gear_oil_mean" }'
+    text = path.read_text()
+    assert oiled in text
+    path.write_text(text.replace(oiled, 'law = "bath" }'))
+    records = {record.path: record for record in load_case(path).assumptions}
+    found = records["gearboxes.test.housing.boundary.oil.film_factor"]
+    assert (found.value, found.range) == ("1", ("0.5", "1.5"))

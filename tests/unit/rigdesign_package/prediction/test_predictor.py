@@ -13,6 +13,7 @@ from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 from tests.builders.fzg_case import HELD, fzg_case
 from tests.builders.paths import CASES
+from tests.builders.warm_chambers import warm_chambers_case
 
 pytestmark = pytest.mark.whole_run
 
@@ -140,6 +141,15 @@ def test_a_loop_without_housing_has_no_links():
     full = predict(changed_together(case, TIGHT), settings, channels)
     assert predictor.base == pytest.approx(full.values, abs=5e-3)
     assert set(predictor.sources()) >= {"oil:test.gear_oil", "film:test.pinion_front"}
+
+
+def test_streams_of_a_housing_are_refused(tmp_path: Path) -> None:
+    case = load_case(warm_chambers_case(tmp_path))
+    setting = OperatingCondition(name="a", speed=200.0, torque=300.0)
+    with pytest.raises(
+        UsageError, match=r"gearboxes\.test\.housing\.volumes = cold_air: .*leave the table out"
+    ):
+        Predictor(case, [setting], [Channel(name="power", quantity="motor_power")])
 
 
 def test_a_sump_that_finds_its_own_temperature_is_refused(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Flow diagrams: widths add up in every node, nothing overlaps, both diagrams carry the heat of the result."""
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -95,6 +96,24 @@ def test_heat_of_the_rig_goes_where_the_balance_says() -> None:
     assert found["cooler"] == "10.5 kW"
     assert found["oil heaters"] == "600 W"
     assert found["windage"] == "700 W"
+
+
+def test_heat_that_streams_carry_off_has_its_place() -> None:
+    result = make_result()
+    losses = [row for row in result.losses if row.stage == "dwell"]
+    with drawing_style():
+        figure = rig_flow_figure(losses, result.oil, {**result.cooler[0], "streams_W": 900.0})
+    assert labels(figure)["streams of the housings"] == "900 W"
+
+
+def test_volumes_of_fluid_are_no_solids() -> None:
+    thermal, _ = thermal_and_expansion()
+    row = thermal.heat[0]
+    fluid = replace(row, surface="jacket", kind="stream", power_W=-5000.0, area_m2=0.0)
+    with drawing_style():
+        assert labels(body_flow_figure(replace(thermal, heat=[*thermal.heat, fluid]))) == labels(
+            body_flow_figure(thermal)
+        )
 
 
 def test_heat_through_the_bodies_is_drawn_by_kind() -> None:

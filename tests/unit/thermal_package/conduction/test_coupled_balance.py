@@ -206,7 +206,7 @@ BAD: list[tuple[list[Condition], str]] = [
         [*without(Enclosure), replace(enclosure(), surfaces=("base_x_max", "wall_xmin"))],
         "unknown surface 'wall_xmin'",
     ),
-    ([*without(Enclosure), replace(enclosure(), emissivities=(0.8, 0.0))], "wall_x_min: emissivity = 0 is outside"),
+    ([*without(Enclosure), replace(enclosure(), emissivities=(0.8, -0.1))], "wall_x_min: emissivity = -0.1 is outside"),
     ([*without(Enclosure), replace(enclosure(), emissivities=(0.8,))], "1 emissivities for 2 surfaces"),
     ([*without(Enclosure), replace(enclosure(), opening_temperature=-3.0)], "must be above 0 K; give kelvin"),
     ([*without(Enclosure), replace(enclosure(), opening_temperature=None)], "cannot close"),
