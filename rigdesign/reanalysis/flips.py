@@ -39,6 +39,7 @@ BY_HEAT = (
     "oil.cooler",
     "oil.heater",
     "oil.room",
+    "oil.room_temperature",
     "alignment.*",
 )
 """Checks that follow the temperatures."""

@@ -51,6 +51,7 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
     """Heat balance of the rig at one held stage."""
     warming = {} if balance.stored is None else {"stored_W": balance.stored}
     circuits = {"circulation_W": balance.circulation, "tanks_W": balance.tanks} if balance.circuits else {}
+    machines = {"machines_W": balance.machines} if balance.machines else {}
     return {
         "stage": balance.stage,
         "losses_W": balance.losses,
@@ -60,6 +61,7 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
         "room_W": balance.room,
         **warming,
         **circuits,
+        **machines,
         "not_heat_W": balance.not_heat,
         "open_W": balance.imbalance,
         "flow_l_min": L_MIN * balance.flow,
