@@ -216,11 +216,13 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         case__rig_heat="loss of the machine over speed and torque of its output"
     ),
     "rig_heat.machines.*.coolant_share": _at(
+        case__rig_heat_parts="split of its heat",
         coupling__oil_circuits="heat into the tank of the oil circuit that cools it",
         records__rig_heat="heat by where it goes",
     ),
     "rig_heat.couplings.*": _at(
-        coupling__rig_heat="windage of the coupling: load of the drive, heat of the room"
+        case__rig_heat_parts="rim and faces that stir air",
+        coupling__rig_heat="windage of the coupling: load of the drive, heat of the room",
     ),
     "rig_heat.room": _at(records__rig_heat="balance of the room: its temperature and the air flow it needs"),
     "rig_heat.room.temperature_maximum": _at(checks__rig_heat=_LIMIT),

@@ -106,11 +106,9 @@ def _room(rig: Rig, sources: Sequence[HeatSource]) -> RoomBalance | None:
 def _warnings(rig: Rig, drive: DriveHeat, room: RoomBalance | None) -> tuple[str, ...]:
     found = [f"{part.name}: {text}" for part in drive.components for text in part.warnings]
     ambient = rig.case.ambient.temperature
-    if room is not None:
-        found += room.warnings
-        if abs(room.temperature - ambient) > FAR_FROM_AMBIENT:
-            found.append(
-                f"room: temperature = {celsius(room.temperature)}: the housings are computed in a room of "
-                f"{celsius(ambient)} (ambient.temperature); write that of the room and compute again"
-            )
+    if room is not None and abs(room.temperature - ambient) > FAR_FROM_AMBIENT:
+        found.append(
+            f"room: temperature = {celsius(room.temperature)}: the housings are computed in a room of "
+            f"{celsius(ambient)} (ambient.temperature); write that of the room and compute again"
+        )
     return tuple(found)

@@ -20,7 +20,12 @@ def _tables(result: RunResult, draw: Draw) -> Values:
 
 def _tank(row: Mapping[str, Any]) -> dict[str, Any]:
     powers = {key.replace("_W", "_kW"): 1e-3 * row[key] for key in POWERS}
-    return {key: row[key] for key in ("circuit", "stage", "tank_degC", "flow_l_min")} | powers
+    return {
+        "circuit": _words(row["circuit"]),
+        "stage": row["stage"],
+        "tank_degC": row["tank_degC"],
+        "flow_l_min": row["flow_l_min"],
+    } | powers
 
 
 def _line(row: Mapping[str, Any], line: Mapping[str, Any]) -> dict[str, Any]:
@@ -28,8 +33,8 @@ def _line(row: Mapping[str, Any], line: Mapping[str, Any]) -> dict[str, Any]:
     if line["setpoint_degC"] is not None:
         held = abs(line["supply_degC"] - line["setpoint_degC"]) <= line["tolerance_K"]
     return {
-        "circuit": row["circuit"],
-        "line": line["line"],
+        "circuit": _words(row["circuit"]),
+        "line": _words(line["line"]),
         "stage": row["stage"],
         "flow_l_min": line["flow_l_min"],
         "setpoint_degC": line["setpoint_degC"],
@@ -45,14 +50,18 @@ def _devices(row: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     for device in row["devices"]:
         limit = device["capability_W"]
         yield {
-            "circuit": row["circuit"],
-            "device": device["device"],
+            "circuit": _words(row["circuit"]),
+            "device": _words(device["device"]),
             "stage": row["stage"],
             "power_kW": 1e-3 * device["power_W"],
             "needed_for_its_setpoint_kW": 1e-3 * device["needed_W"],
             "most_kW": 1e-3 * limit,
             "used": f"{100.0 * device['needed_W'] / limit:.0f} %" if limit else None,
         }
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 OIL_CIRCUITS = ReportSection(

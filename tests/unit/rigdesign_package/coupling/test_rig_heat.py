@@ -80,7 +80,7 @@ def test_power_from_the_mains_leaves_by_all_sinks(balance: CoolingBalance) -> No
     assert heat.into("stored") == 0.0
     assert heat.input_power - out == pytest.approx(heat.imbalance)
     assert abs(heat.imbalance) < 0.005 * heat.input_power
-    assert heat.imbalance == pytest.approx(balance.imbalance, abs=1.0)
+    assert heat.imbalance == pytest.approx(balance.imbalance, abs=1e-3 * heat.input_power)
     assert heat.into("oil") == pytest.approx(balance.cooler, rel=5e-3)
     assert heat.input_power == pytest.approx(
         heat.mains_power + balance.pump + balance.heater + balance.circulation

@@ -56,7 +56,13 @@ def test_the_sections_stand_where_there_is_something_to_say() -> None:
 def test_heat_of_the_rig_shows_every_source_and_the_room() -> None:
     page = report_html(replace(make_result(), rig_heat=[row()]))
     section = page.split('<h2 id="rig_heat">')[1].split("<h2 id=")[0]
-    for text in ("motor", "cooling water [W]", "oil supply", "air flow that holds the limit [m³/h]", "from the mains"):
+    for text in (
+        "motor",
+        "cooling water [W]",
+        "oil supply",
+        "air flow that holds the limit [m³/h]",
+        "from the mains",
+    ):
         assert text in section
     assert "stored [W]" not in section
     room = row()["room"]
@@ -80,5 +86,9 @@ def test_both_stand_in_results_json() -> None:
 
 def test_what_a_source_takes_from_the_oil_stands_to_the_left() -> None:
     axes = rig_heat_figure(row()).axes[0]
-    assert [label.get_text() for label in axes.get_yticklabels()] == ["gearbox test", "oil supply warm", "machine motor"]
+    assert [label.get_text() for label in axes.get_yticklabels()] == [
+        "gearbox test",
+        "oil supply warm",
+        "machine motor",
+    ]
     assert min(patch.get_x() + patch.get_width() for patch in axes.patches) == -0.5
