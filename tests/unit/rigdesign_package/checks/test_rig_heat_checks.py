@@ -11,6 +11,7 @@ from rigdesign.case import Case, load_case
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.checks.oil_circuits import machine_heat
 from rigdesign.checks.rig_heat import TEMPERATURE, checks, without_machines
+from rigdesign.reanalysis.affected_parts import parts_of, through_heat
 from tests.builders.oil_circuit import PLANT
 from tests.builders.paths import CASES
 from tests.builders.rig_heat import ROOM, TRANSMISSION
@@ -63,13 +64,22 @@ def test_a_machine_moves_all_checks_only_through_an_oil_circuit(
     assert influences_of(case, "rig_heat.room.air_flow") == ("rig heat",)
 
 
+def test_only_the_coupling_is_solved_again_for_a_machine_and_nothing_for_the_room() -> None:
+    assert parts_of("rig_heat.room.air_flow") == ()
+    assert parts_of("rig_heat.machines.motor.efficiency") == ("coupling",)
+    assert through_heat("rig_heat.machines.motor.efficiency")
+
+
 def test_the_air_flow_that_holds_the_limit_is_the_reason(tmp_path: Path) -> None:
     room = SimpleNamespace(temperature=300.15, needed_air_flow=0.5)
     walls = SimpleNamespace(temperature=301.15, needed_air_flow=math.inf)
     case = loaded(tmp_path, ROOM)
     cooling = [SimpleNamespace(stage="a", heat=SimpleNamespace(room=each)) for each in (room, walls)]
-    (warmest,) = checks(SimpleNamespace(case=case, cooling=cooling))  # type: ignore[arg-type]
-    assert (warmest.value, warmest.verdict) == (pytest.approx(28.0), "pass")
+    whole: Any = SimpleNamespace(case=case, cooling=cooling)
+    (warmest,) = checks(whole)
+    assert warmest.value == pytest.approx(28.0)
+    assert warmest.verdict == "pass"
     assert "no ventilation" in warmest.reason
-    (only,) = checks(SimpleNamespace(case=case, cooling=cooling[:1]))  # type: ignore[arg-type]
+    first: Any = SimpleNamespace(case=case, cooling=cooling[:1])
+    (only,) = checks(first)
     assert only.reason == "stage a, 1800 m3/h of air hold the limit"

@@ -135,7 +135,8 @@ def test_the_checks_hold_the_same_room(solved: tuple[Rig, PointResult], balance:
     (check,) = room_checks(whole)
     room = balance.heat.room
     assert room is not None
-    assert (check.id, check.limit) == ("oil.room_temperature", pytest.approx(30.0))
+    assert check.id == "oil.room_temperature"
+    assert check.limit == pytest.approx(30.0)
     assert check.value == pytest.approx(room.temperature - ZERO)
     assert f"{3600.0 * (room.needed_air_flow or 0.0):.4g} m3/h" in check.reason
     found = {check.id: check.value for check in oil_checks(whole)}

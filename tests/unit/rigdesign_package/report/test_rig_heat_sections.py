@@ -1,6 +1,7 @@
 """Oil circuits and heat of the rig in the report: every source, every limit, the room."""
 
 from dataclasses import replace
+from typing import Any
 
 from rigdesign.report.figures.rig_heat import rig_heat_figure
 from rigdesign.report.pages.report import report_html
@@ -85,7 +86,7 @@ def test_both_stand_in_results_json() -> None:
 
 
 def test_what_a_source_takes_from_the_oil_stands_to_the_left() -> None:
-    axes = rig_heat_figure(row()).axes[0]
+    axes: Any = rig_heat_figure(row()).axes[0]
     assert [label.get_text() for label in axes.get_yticklabels()] == [
         "gearbox test",
         "oil supply warm",
