@@ -35,7 +35,7 @@ AirFlow = Annotated[float, Quantity("flow", at_least="0 m3/h", at_most="1e6 m3/h
 """Of a ventilation."""
 
 
-class LossPoint(Part):
+class LossPointInput(Part):
     """Loss at one operating point of the output shaft."""
 
     speed: Speed
@@ -53,7 +53,7 @@ class MachineInput(Part):
     """Machine that it drives; the rig itself when left out."""
     efficiency: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     """Output over input power at every operating point, or ``loss_map``."""
-    loss_map: tuple[LossPoint, ...] | None = Field(default=None, min_length=4)
+    loss_map: tuple[LossPointInput, ...] | None = Field(default=None, min_length=4)
     """Losses on a grid of speeds and torques of the output shaft, every speed with every torque; bilinear in between
     and not extrapolated. That of a frequency converter stands over speed and torque of its motor."""
     speed_ratio: Annotated[float, Field(gt=0.0, le=1000.0)] | None = None
@@ -126,7 +126,7 @@ class RoomInput(Part):
         return self
 
 
-class RigHeat(Part):
+class RigHeatInput(Part):
     """What gives heat to the room and its coolants besides gearboxes and oil circuits."""
 
     machines: Mapping[Name, MachineInput] = {}

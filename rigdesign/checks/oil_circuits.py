@@ -24,7 +24,7 @@ def supply_lines(case: Case) -> Iterator[str]:
     )
 
 
-def machine_heat(solved: SolvedRig, check: Check) -> Omissions:
+def machines_over_time(solved: SolvedRig, check: Check) -> Omissions:
     """Machines cooled with the oil of the circuit, whose heat the thermal history does not follow."""
     circuit = check.id.split(".")[2]
     for name, machine in solved.case.rig_heat.machines.items():
@@ -52,7 +52,7 @@ WARM_UP = RuleFamily(
     group="transient",
     source="transient.warm_up; oil circuit with the limits of its heaters and coolers",
     places=supply_lines,
-    leaves_out=(machine_heat,),
+    leaves_out=(machines_over_time,),
     moved_by=frozenset({"housing", "test time", "thermal history"}),
 )
 

@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign.case import Case, load_case
 from rigdesign.checks.assumptions import influences_of
-from rigdesign.checks.oil_circuits import machine_heat
+from rigdesign.checks.oil_circuits import machines_over_time
 from rigdesign.checks.rig_heat import TEMPERATURE, checks, without_machines
 from rigdesign.reanalysis.affected_parts import parts_of, through_heat
 from tests.builders.oil_circuit import PLANT
@@ -30,11 +30,11 @@ def solved(case: Case, **more: Any) -> Any:
 def test_the_history_of_a_circuit_leaves_out_the_machine_it_cools(tmp_path: Path) -> None:
     check: Any = SimpleNamespace(id="transient.oil_supply.warm.lines.mesh")
     whole = loaded(tmp_path, TRANSMISSION)
-    assert [each.text for each in machine_heat(solved(whole), check)] == [
+    assert [each.text for each in machines_over_time(solved(whole), check)] == [
         "heat of machine transmission in oil circuit warm over time"
     ]
     by_water = whole.with_value("rig_heat.machines.transmission.coolant", "water")
-    assert not list(machine_heat(solved(by_water), check))
+    assert not list(machines_over_time(solved(by_water), check))
 
 
 def test_a_room_without_the_machines_of_its_drivetrain_names_them(tmp_path: Path) -> None:
