@@ -22,6 +22,7 @@ from rigdesign.case.numerics import Numerics
 from rigdesign.case.oil_circuits import OilCircuit, with_setpoints
 from rigdesign.case.paths import places
 from rigdesign.case.provenance import Mark, take_off
+from rigdesign.case.rig_heat import RigHeatInput
 from rigdesign.case.schedule import ScheduleInput, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
 from rigdesign.case.transient import Transient
@@ -82,6 +83,8 @@ class Case(Part):
     """Gearboxes of the rig by name."""
     oil_circuits: Mapping[Name, OilCircuit] = {}
     """Oil circuits by name; what no circuit feeds has the inlet temperature its gearbox states."""
+    rig_heat: RigHeatInput = RigHeatInput()
+    """Machines, couplings and room: heat of the rig outside of its gearboxes."""
     drivetrain: DrivetrainInput | None = None
     """Left out when the losses are given: the dynamic checks are then not applicable."""
     losses: Losses
@@ -125,7 +128,8 @@ class Case(Part):
             for mark in self._origin.marks
             if mark.assumed is not None
         )
-        return (*marked, *implied_assumptions(self.gearboxes))
+        heat = self.rig_heat.assumptions(self.ambient.temperature)
+        return (*marked, *implied_assumptions(self.gearboxes), *heat)
 
     @property
     def inputs(self) -> tuple[InputRow, ...]:

@@ -94,6 +94,11 @@ class ScheduleInput(Part):
             speed, torque = speed_end, torque_end
         return tuple(values)
 
+    def held(self) -> tuple[StageValues, ...]:
+        """Stages long enough for steady temperatures; the last one if none is marked as such."""
+        stages = self.resolved()
+        return tuple(stage for stage in stages if stage.held) or stages[-1:]
+
 
 class TestPlan(Part):
     """What the test is to reach."""

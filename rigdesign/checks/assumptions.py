@@ -40,13 +40,21 @@ def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) ->
 
 def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
     """What an input moves; None for all checks."""
-    bare = [name for name, entry in case.gearboxes.items() if entry.housing is None]
     for inputs, influences in INPUTS.items():
         for part in inputs:
-            filled = [part.replace("{bare}", name) for name in bare] if "{bare}" in part else [part]
-            if any(is_under(path, one) for one in filled):
+            if any(is_under(path, one) for one in _filled(case, part)):
                 return influences
     return None
+
+
+def _filled(case: Case, part: str) -> list[str]:
+    """Paths that an entry of `INPUTS` means in a case."""
+    if "{dry}" in part:
+        wet = any(machine.coolant in case.oil_circuits for machine in case.rig_heat.machines.values())
+        return [] if wet else [part.replace("{dry}", "")]
+    if "{bare}" in part:
+        return [part.replace("{bare}", name) for name, box in case.gearboxes.items() if box.housing is None]
+    return [part]
 
 
 def is_under(path: str, part: str) -> bool:

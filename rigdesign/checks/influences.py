@@ -11,6 +11,7 @@ from typing import Literal
 Influence = Literal[
     "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
     "thermal history", "coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
+    "rig heat",
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
@@ -46,9 +47,11 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("gearboxes.*.meshes.*.face_load_factor", "gearboxes.*.gears.*.quality_grade"): ("gear rating",),
     ("gearboxes.*.housing", "gearboxes.*.seals"): ("housing",),
     ("gearboxes.*.bearings.*.axial_play",): ("axial play",),
+    ("rig_heat.room", "rig_heat{dry}"): ("rig heat",),
 }  # fmt: skip
 """Inputs -> what they move; the first entry that holds a path counts. ``*`` stands for any name, ``{bare}`` for a
-gearbox without a housing."""
+gearbox without a housing; an entry with ``{dry}`` counts where no machine heats an oil circuit, which feeds
+gearboxes."""
 OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
 """Influences of an input that stay in its gearbox: the place of a check begins with it."""
 SPEEDS = ("schedule", "gearboxes.*.gears", "gearboxes.*.meshes")

@@ -51,7 +51,7 @@ RULES = (
         procedure=(
             "Heat that the oils bring back above their inlet temperatures at the held stages, summed over "
             "circuits of one oil and inlet temperature; circuits that come back colder do not count "
-            "against it."
+            "against it. With the heat that machines give to these oils."
         ),
         unit=KILOWATT,
         group=GROUP,
@@ -59,7 +59,7 @@ RULES = (
         limit=lambda limits: limits.oil.cooler_power_maximum,
         values=_of_stages(lambda balance: balance.cooler),
         leaves_out=(OIL_EXCHANGE, *HEAT),
-        moved_by=frozenset({"housing"}),
+        moved_by=frozenset({"housing", "rig heat"}),
     ),
     RigRule(
         key="oil.heater",
@@ -81,15 +81,16 @@ RULES = (
         title="heat to the room",
         procedure=(
             "Heat from the surfaces of all housings and their clamping fields to the room at the held "
-            "stages, from the temperature fields; with tanks and pipes of the oil circuits."
+            "stages, from the temperature fields; with tanks, pipes and pumps of the oil circuits, couplings and "
+            "machines."
         ),
         unit=KILOWATT,
         group=GROUP,
         source="limits.oil.room_heat_maximum",
         limit=lambda limits: limits.oil.room_heat_maximum,
-        values=_of_stages(lambda balance: balance.room + balance.tanks),
+        values=_of_stages(lambda balance: balance.heat.into("room")),
         leaves_out=(ROOM_HEAT, *HEAT),
-        moved_by=frozenset({"housing"}),
+        moved_by=frozenset({"housing", "rig heat"}),
     ),
 )
 

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from rigdesign.case.model import Case
+from rigdesign.checks.omissions import Omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import hold
+from rigdesign.checks.rules import Omission, hold
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import HOUR, DisplayUnit
@@ -21,6 +22,14 @@ def supply_lines(case: Case) -> Iterator[str]:
         for line in circuit.lines
         if circuit.lines[line].setpoint is not None
     )
+
+
+def machines_over_time(solved: SolvedRig, check: Check) -> Omissions:
+    """Machines cooled with the oil of the circuit, whose heat the thermal history does not follow."""
+    circuit = check.id.split(".")[2]
+    for name, machine in solved.case.rig_heat.machines.items():
+        if machine.coolant == circuit:
+            yield Omission(f"heat of machine {name} in oil circuit {circuit} over time")
 
 
 SUPPLY = RuleFamily(
@@ -43,6 +52,7 @@ WARM_UP = RuleFamily(
     group="transient",
     source="transient.warm_up; oil circuit with the limits of its heaters and coolers",
     places=supply_lines,
+    leaves_out=(machines_over_time,),
     moved_by=frozenset({"housing", "test time", "thermal history"}),
 )
 

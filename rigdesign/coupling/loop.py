@@ -9,6 +9,7 @@ from rigdesign.coupling.fixed_point import solve_fixed_point
 from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.loads import BracingState
 from rigdesign.coupling.oil_circuits import demand_setpoints
+from rigdesign.coupling.rig_heat import demand_loss_maps
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
@@ -59,6 +60,8 @@ def solve_point(
         A loss, temperature, length or torque of an iteration is NaN or infinite.
     SetpointNotHeldError
         A supply temperature of an oil circuit that is demanded as hard and is not held.
+    CaseError
+        A machine whose loss map does not hold the torque that the losses ask of it.
     """
     problem = PointProblem.braced(rig, point, freeze=freeze)
     begin = problem.initial if start is None else start.freeze(freeze, problem.initial)
@@ -71,6 +74,7 @@ def solve_point(
         before,
     )
     demand_setpoints(rig, last)
+    demand_loss_maps(rig, last)
     return PointResult(
         point=point,
         last=last,

@@ -18,6 +18,7 @@ from rigdesign.case.oil_circuits import place_of
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.oil import OilStream
+from rigdesign.coupling.rig_heat import machine_heat
 from rigdesign.oil_circuit.line_balance import HeatTaken
 from rigdesign.oil_circuit.steady import SetpointNotHeldError, steady_circuit
 from rigdesign.oil_circuit.steady_result import SteadyCircuit
@@ -47,8 +48,11 @@ def circuit_balances(rig: Rig, done: IterationResult) -> dict[str, SteadyCircuit
     if not rig.oil_circuits:
         return {}
     heats = {stream.name: _heat_over_supply(rig, done, stream) for stream in done.streams}
+    machines = machine_heat(rig, done)
     return {
-        name: steady_circuit(circuit, {each.name: heats[each.name] for each in circuit.consumers})
+        name: steady_circuit(
+            circuit, {each.name: heats[each.name] for each in circuit.consumers}, machines.get(name, 0.0)
+        )
         for name, circuit in rig.oil_circuits.items()
     }
 

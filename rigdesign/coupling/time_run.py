@@ -1,6 +1,6 @@
 """The time run over the whole schedule: once, after the coupling loop, with the warm rig of its last point."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -239,8 +239,7 @@ def stage_names(schedule: Schedule, time: NDArray[np.float64]) -> list[str]:
 
 def held_points(rig: Rig) -> list[OperatingPoint]:
     """Operating points of the stages marked held; the last dwell if none is."""
-    stages = rig.case.schedule.resolved()
-    held: Sequence[StageValues] = [stage for stage in stages if stage.held] or stages[-1:]
     return [
-        OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end) for stage in held
+        OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
+        for stage in rig.case.schedule.held()
     ]

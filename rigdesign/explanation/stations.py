@@ -208,6 +208,25 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
             ".lines.*.return_pipe",
         )
     },
+    "rig_heat": _at(coupling__rig_heat="heat of the rig outside of its gearboxes"),
+    "rig_heat.machines.*": _at(
+        case__rig_heat="machine between the rig and the mains",
+        coupling__rig_heat="loss at what the rig takes: power from the mains, heat of coolant and room",
+    ),
+    "rig_heat.machines.*.loss_map.*": _at(
+        case__rig_heat="loss of the machine over speed and torque of its output"
+    ),
+    "rig_heat.machines.*.coolant_share": _at(
+        case__rig_heat_parts="split of its heat",
+        coupling__oil_circuits="heat into the tank of the oil circuit that cools it",
+        records__rig_heat="heat by where it goes",
+    ),
+    "rig_heat.couplings.*": _at(
+        case__rig_heat_parts="rim and faces that stir air",
+        coupling__rig_heat="windage of the coupling: load of the drive, heat of the room",
+    ),
+    "rig_heat.room": _at(records__rig_heat="balance of the room: its temperature and the air flow it needs"),
+    "rig_heat.room.temperature_maximum": _at(checks__rig_heat=_LIMIT),
     "gearboxes.*.seals.*": _at(
         coupling__losses="loss of the seals",
         case__geometry="gap between shaft and wall",

@@ -19,13 +19,16 @@ class SetpointNotHeldError(CaseError):
     """A supply temperature demanded as hard that the circuit cannot hold."""
 
 
-def steady_circuit(circuit: Circuit, heats: Mapping[str, HeatTaken]) -> SteadyCircuit:
+def steady_circuit(
+    circuit: Circuit, heats: Mapping[str, HeatTaken], machine_heat: float = 0.0
+) -> SteadyCircuit:
     """Balance of a circuit with its pump running.
 
     Parameters
     ----------
     heats : consumer -> heat into its oil [W], or that as a function of its supply temperature [K]; negative where a
         consumer cools the oil. It should not rise with the temperature, else there may be several balances.
+    machine_heat : into the tank from what is cooled with its oil and is no consumer [W]
 
     Raises
     ------
@@ -45,7 +48,7 @@ def steady_circuit(circuit: Circuit, heats: Mapping[str, HeatTaken]) -> SteadyCi
     supplies = {line.name: line.setpoint or circuit.room_temperature for line in circuit.lines}
     for _ in range(ITERATIONS):
         flows = {line.name: circuit.oil.density(supplies[line.name]) * line.flow for line in circuit.lines}
-        equation = TankEquation(circuit=circuit, mass_flows=flows, heats=heats)
+        equation = TankEquation(circuit=circuit, mass_flows=flows, heats=heats, machine_heat=machine_heat)
         balance = equation.solve(setpoints)
         better = {name: line.supply for name, line in balance.lines.items()}
         change = max(abs(better[name] - supplies[name]) for name in better)
@@ -108,16 +111,17 @@ def _result(equation: TankEquation, balance: TankBalance) -> SteadyCircuit:
         trim_heaters=trims,
         pump_heat=pump_heat,
         room_loss=balance.room_loss + pump_to_room,
-        imbalance=_imbalance(circuit, balance, pump_heat),
+        machine_heat=equation.machine_heat,
+        imbalance=_imbalance(equation, balance, pump_heat),
         warnings=(),
     )
     return replace(draft, warnings=steady_warnings(draft))
 
 
-def _imbalance(circuit: Circuit, balance: TankBalance, pump_heat: float) -> float:
+def _imbalance(equation: TankEquation, balance: TankBalance, pump_heat: float) -> float:
     """All heat into the oil of the circuit less all out of it [W]."""
     lines = balance.lines.values()
-    into = [balance.heater_power, pump_heat]
+    into = [balance.heater_power, pump_heat, equation.machine_heat]
     into += [line.trim_power for line in lines]
     into += [heat for line in lines for heat in line.heats.values()]
     out = [balance.cooler_heat, balance.room_loss, *(line.cooler_heat for line in lines)]

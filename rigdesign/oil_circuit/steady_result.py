@@ -59,12 +59,19 @@ class SteadyCircuit:
     imbalance: float
     """What the balance of the whole circuit leaves open [W]."""
     warnings: tuple[str, ...]
+    machine_heat: float = 0.0
+    """Into the tank from what is cooled with its oil and is no consumer [W]."""
+
+    @property
+    def pump_to_room(self) -> float:
+        """Heat of the pump that its oil does not take [W]."""
+        pump = self.circuit.pump
+        return pump.shaft_power - self.pump_heat if pump else 0.0
 
     @property
     def wall_loss(self) -> float:
         """Of tank and pipes to the room [W]."""
-        pump = self.circuit.pump
-        return self.room_loss - (pump.shaft_power - self.pump_heat if pump else 0.0)
+        return self.room_loss - self.pump_to_room
 
     @property
     def heater_power(self) -> float:

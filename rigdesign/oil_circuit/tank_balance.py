@@ -1,6 +1,6 @@
 """The temperature of the tank at which the heat into its oil is zero, within the limits of heater and cooler.
 
-    sum m (h_back - h_tank) + P_relief + P_heater - Q_cooler - U (T - T_room) - (E(T) - E_before) / w = 0
+    sum m (h_back - h_tank) + P_relief + P_machines + P_heater - Q_cooler - U (T - T_room) - (E(T) - E_before) / w = 0
 
 The last term belongs to an implicit time step of weight w. Heater and cooler are steps over the temperature of the
 tank: full power below the setpoint of the heater, anything up to its limit at the setpoint, nothing above; the cooler
@@ -87,6 +87,7 @@ class TankEquation:
 
     mass_flows : line -> [kg/s]; heats : consumer -> heat into its oil
     before, weight : contents before an implicit step and its weight [s]; None and infinite for the steady balance
+    machine_heat : into the tank from what is cooled with its oil and is no consumer [W]
     """
 
     circuit: Circuit
@@ -94,6 +95,7 @@ class TankEquation:
     heats: Mapping[str, HeatTaken]
     before: Contents | None = None
     weight: float = math.inf
+    machine_heat: float = 0.0
 
     def at(self, temperature: float) -> Heating:
         """Heat into the tank at a temperature [K]."""
@@ -113,8 +115,8 @@ class TankEquation:
             stored = (tank_content(circuit).at(temperature) - self.before.tank) / self.weight
         return Heating(
             lines=lines,
-            given=returned + relief - loss,
-            power=returned + relief - loss - stored,
+            given=returned + relief + self.machine_heat - loss,
+            power=returned + relief + self.machine_heat - loss - stored,
             cooler_capability=self._cooler_capability(temperature, lines),
             room_loss=loss + math.fsum(line.room_loss for line in lines.values()),
         )

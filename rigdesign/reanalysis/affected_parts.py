@@ -30,6 +30,7 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
         "gearboxes.*.meshes.*.face_load_factor",
         "drivetrain.couplings.*.radial_offset_maximum",
         "drivetrain.couplings.*.angle_maximum",
+        "rig_heat.room",
     ): (),
     ("schedule.stages.*.duration", "drivetrain.motor.torque_limit"): ("time run",),
     (
@@ -43,6 +44,7 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
         "losses.chamber_density",
         "losses.squeeze_share",
         "losses.friction",
+        "rig_heat",
     ): ("coupling",),
 }
 """Inputs -> parts of the model they touch; the first entry that holds a path counts.
@@ -55,6 +57,7 @@ the motor follows its losses (`motor_torque`).
 THROUGH_HEAT = (
     "ambient",
     "oils",
+    "rig_heat",
     *(
         f"losses.{key}"
         for key in ("given", "chamber_density", "squeeze_share", "friction", "mesh_damping_heats_oil")

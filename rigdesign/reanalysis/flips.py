@@ -39,6 +39,7 @@ BY_HEAT = (
     "oil.cooler",
     "oil.heater",
     "oil.room",
+    "oil.room_temperature",
     "alignment.*",
 )
 """Checks that follow the temperatures."""
@@ -180,6 +181,8 @@ def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iter
 def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[str, list[str], bool]]:
     """Title and paths of the inputs by what the checks follow, and whether they are temperatures."""
     yield "test torque", ["schedule.test_torque"], False
+    if any(target.id == "oil.room_temperature" for target in targets):
+        yield "air flow of the room", ["rig_heat.room.air_flow"], False
     for name, box in case.gearboxes.items():
         own = f"gearboxes.{name}"
         if heat and box.housing is not None:

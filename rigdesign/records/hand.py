@@ -109,7 +109,9 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
                 )
             )  # fmt: skip
     for balance in solved.cooling:
-        given = math.fsum((balance.losses, balance.pump, balance.heater, balance.circulation))
+        given = math.fsum(
+            (balance.losses, balance.pump, balance.heater, balance.circulation, balance.machines)
+        )
         taken = math.fsum((balance.cooler, balance.room, balance.tanks))
         rows.append(
             _row(f"heat carried away, stage {balance.stage}", taken, given, "W",

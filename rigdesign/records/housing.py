@@ -5,13 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigdesign.case.rig_heat import OIL_COOLER
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import heater_and_cooler
 from rigdesign.coupling.oil_circuits import circuit_balances
+from rigdesign.coupling.rig_heat import drive_heat
 from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from rigdesign.records.heat_split import COMPARED, heat_splits
 from rigdesign.records.housing_fluids import carried_and_given, fluid_temperatures
+from rigdesign.records.rig_heat import into_oil, rig_heat
 from rigdesign.results.housing import BodyTemperature, CoolingBalance, HousingTemperatures, RadiationReadings
 from rigdesign.results.thermal import TemperatureField
 from rigdesign.rig.model import Rig
@@ -25,6 +28,8 @@ def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
     balances = circuit_balances(rig, last)
     circuits = balances.values()
     heater, carried = (float(power[0]) for power in heater_and_cooler(rig.case, heats))
+    drive = drive_heat(rig, last.point, last.losses)
+    by_oil = [part for part in drive.machines if into_oil(rig, part)]
     steady = rig.case.ambient.warming_time is None
     streams, volumes = carried_and_given(rig, last.fields)
     return CoolingBalance(
@@ -32,16 +37,24 @@ def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
         losses=math.fsum(placed.loss.power for placed in last.losses) - damped,
         pump=math.fsum(placed.pumped for placed in last.losses),
         heater=heater + math.fsum(found.heater_power for found in circuits),
-        cooler=carried + math.fsum(found.cooler_heat for found in circuits),
+        cooler=math.fsum(
+            (
+                carried,
+                *(found.cooler_heat for found in circuits),
+                *(part.to_coolant for part in by_oil if part.split.coolant == OIL_COOLER),
+            )
+        ),
         room=math.fsum(heat_to_room(field) for field in last.fields.values()),
         stored=None if steady else math.fsum(heat_stored(field) for field in last.fields.values()),
         not_heat=damped,
         flow=math.fsum(stream.flow for stream in last.streams),
         circulation=math.fsum(found.pump_heat for found in circuits),
         tanks=math.fsum(found.wall_loss for found in circuits),
+        machines=math.fsum(part.to_coolant for part in by_oil),
         circuits=balances,
         streams=streams,
         volumes=volumes,
+        heat=rig_heat(rig, last, drive, balances, heater),
     )
 
 

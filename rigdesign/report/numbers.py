@@ -11,13 +11,13 @@ UNIT_SIGNS = {
     "l_min": "l/min", "W_m2K": "W/(m² K)", "W/m2K": "W/(m² K)", "W/(m2 K)": "W/(m² K)", "N_um": "N/µm",
     "mm2_s": "mm²/s", "mm2/s": "mm²/s", "kg_m3": "kg/m³", "kg/m3": "kg/m³", "m_s": "m/s", "Nm": "N m",
     "Nm_deg": "N m/°", "kgm2": "kg m²", "kg m2": "kg m²", "W_mK": "W/(m K)", "GPa": "GPa", "1/K": "1/K",
-    "kNm_rad": "kN m/rad",
+    "kNm_rad": "kN m/rad", "m3_h": "m³/h", "m3/h": "m³/h",
 }  # fmt: skip
 """Unit as stored -> as printed."""
 
 KEY_UNITS = (
-    "l_min", "W_m2K", "W_mK", "N_um", "mm2_s", "kg_m3", "m_s", "kNm_rad", "Nm_deg", "kgm2", "degC", "deg", "mrad",
-    "MPa", "Nm", "rpm", "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
+    "l_min", "W_m2K", "W_mK", "N_um", "mm2_s", "m3_h", "kg_m3", "m_s", "kNm_rad", "Nm_deg", "kgm2", "degC", "deg",
+    "mrad", "MPa", "Nm", "rpm", "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
     "h",
 )  # fmt: skip
 """Units that may end a key, longest first."""

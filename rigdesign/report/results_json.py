@@ -45,6 +45,10 @@ def results_document(result: RunResult) -> dict[str, Any]:
     }
     if result.rolling_bearings:
         document["rolling_bearings"] = result.rolling_bearings
+    if result.rig_heat:
+        document["rig_heat"] = result.rig_heat
+    if result.oil_circuits:
+        document["oil_circuits"] = result.oil_circuits
     if result.ranges is not None:
         document["ranges"] = result.ranges
     if result.transient is not None:

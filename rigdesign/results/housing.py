@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from rigdesign.oil_circuit.steady_result import SteadyCircuit
+from rigdesign.results.rig_heat import RigHeat
 from thermal.conduction.heat_rows import HeatFlow
 
 
@@ -127,8 +128,12 @@ class CoolingBalance:
     """Heat of the pumps of the oil circuits into the oil."""
     tanks: float = 0.0
     """From tanks and pipes of the oil circuits to the room."""
+    machines: float = 0.0
+    """Of machines that drive the rig, into the oils."""
     circuits: Mapping[str, SteadyCircuit] = field(default_factory=dict)
     """Oil circuits in balance, by name."""
+    heat: RigHeat
+    """Of the whole rig by source and sink."""
     streams: float | None = None
     """Heat that streams of the housings carry off; None where there are none."""
     volumes: float | None = None
@@ -137,5 +142,7 @@ class CoolingBalance:
     @property
     def imbalance(self) -> float:
         """Put in less taken out and stored [W]."""
-        given = self.losses + self.pump + self.heater + self.circulation + (self.volumes or 0.0)
+        given = (
+            self.losses + self.pump + self.heater + self.circulation + self.machines + (self.volumes or 0.0)
+        )
         return given - self.cooler - self.room - self.tanks - (self.stored or 0.0) - (self.streams or 0.0)

@@ -93,6 +93,15 @@ class RunResult:
     """Per held stage {stage, losses_W, pump_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses of
     the shafts, jets of the pump and heaters put in what cooler and room take out; losses that are no heat stand
     apart."""
+    rig_heat: list[dict[str, Any]] = field(default_factory=list)
+    """Per held stage {stage, drive_power_W, mains_power_W, input_power_W, open_W, sources, room}; sources: {source,
+    kind, power_W, room_W, oil_W, water_W, stored_W, no_heat_W}; room: {temperature_degC, limit_degC, heat_W, by_air_W,
+    by_walls_W, air_flow_m3_h, needed_air_flow_m3_h}, None where the case states none. Of a case that states
+    `rig_heat`."""
+    oil_circuits: list[dict[str, Any]] = field(default_factory=list)
+    """Per oil circuit and held stage {circuit, stage, tank_degC, flow_l_min, heater_W, cooler_W, pump_W, machines_W,
+    room_W, open_W, lines, devices}; lines: {line, setpoint_degC, tolerance_K, supply_degC, drain_degC, back_degC,
+    flow_l_min, heat_W}; devices: {device, power_W, needed_W, capability_W}."""
     thermal: list[ThermalResult]
     expansion: list[ExpansionResult]
     coupling: list[CouplingHistory]

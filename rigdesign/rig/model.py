@@ -16,6 +16,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
+from rigdesign.case.rig_heat_parts import HeatParts, heat_parts
 from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
@@ -23,6 +24,7 @@ from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
+from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
 from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
@@ -103,6 +105,11 @@ class Rig:
     def oil_circuits(self) -> Mapping[str, Circuit]:
         """Oil circuits by name; empty where every inlet temperature is stated."""
         return oil_circuits(self.case, self.oils)
+
+    @cached_property
+    def heat_parts(self) -> HeatParts:
+        """Machines, couplings and room: heat of the rig outside of its gearboxes."""
+        return heat_parts(self.case)
 
     @cached_property
     def geometries(self) -> Mapping[str, HousingGeometry]:
@@ -246,6 +253,10 @@ class Rig:
         assert power is not None
         return self.shaft_speed(power.motor.shaft, speed)
 
+    def driven_speed(self, speed: float) -> float:
+        """Speed of the shaft that is driven [rad/s] at the stated speed; without a drivetrain of the first pinion."""
+        return abs(self.pinion_speed(speed) if self.case.drivetrain is None else self.drive_speed(speed))
+
     def bearings(self) -> list[tuple[str, Gearbox, BearingInput]]:
         """(``gearbox.bearing``, gearbox, bearing) of the whole rig."""
         return [
@@ -287,7 +298,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     Raises
     ------
     CaseError
-        A shaft that would twist off.
+        A shaft that would twist off, a machine whose loss map does not hold its speed.
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
@@ -304,6 +315,9 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         pairs=pairs,
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
+    if rig.heat_parts.machines:
+        speeds = {stage.name: rig.driven_speed(stage.speed_end) for stage in case.schedule.held()}
+        refuse_uncovered_speeds(rig.heat_parts.machines, speeds, str(case.path))
     return rig
 
 

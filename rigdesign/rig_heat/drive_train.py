@@ -1,8 +1,9 @@
 """From the power a back-to-back rig takes to the mains: transmission gearbox, motor, drive, each with its loss."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from rigdesign.base.errors import CaseError
 from rigdesign.base.number_faults import require_above, require_at_least
 from rigdesign.rig_heat.component import ComponentHeat, HeatSplit
 from rigdesign.rig_heat.machine_loss import MachineLoss
@@ -34,7 +35,9 @@ class DriveTrainHeat:
     input_power: float
 
 
-def drive_train_heat(speed: float, power: float, machines: Sequence[Machine]) -> DriveTrainHeat:
+def drive_train_heat(
+    speed: float, power: float, machines: Sequence[Machine], *, nearest: bool = False
+) -> DriveTrainHeat:
     """Losses of the machines that drive a rig.
 
     Parameters
@@ -42,6 +45,8 @@ def drive_train_heat(speed: float, power: float, machines: Sequence[Machine]) ->
     speed : of the shaft that drives the rig [rad/s], above 0
     power : at that shaft [W]; in a back-to-back rig the sum of its losses
     machines : from the rig to the mains, each driving the one before
+    nearest : an operating point outside of a loss map has the loss of the nearest one in it, for a power that is not
+        yet the final one
 
     Raises CaseError for a negative power, or an operating point outside of a loss map.
     """
@@ -49,10 +54,20 @@ def drive_train_heat(speed: float, power: float, machines: Sequence[Machine]) ->
     require_at_least("drive.power", power, "W", "the losses of the rig cannot be negative")
     found = []
     for machine in machines:
-        lost = machine.loss.power(speed, power / speed)
+        lost = _lost(machine, speed, power / speed, nearest=nearest)
         found.append(
             ComponentHeat(name=machine.name, power=lost, split=machine.split, source=machine.loss.source)
         )
         power += lost
         speed *= machine.speed_ratio
     return DriveTrainHeat(components=tuple(found), input_power=power)
+
+
+def _lost(machine: Machine, speed: float, torque: float, *, nearest: bool) -> float:
+    """Loss of a machine [W]; faults begin with its name."""
+    try:
+        return machine.loss.power(*(machine.loss.nearest(speed, torque) if nearest else (speed, torque)))
+    except CaseError as error:
+        raise CaseError(
+            [replace(fault, path=f"{machine.name}.{fault.path}") for fault in error.faults]
+        ) from error

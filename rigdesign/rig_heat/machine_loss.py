@@ -8,8 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.number_faults import refuse, require_share
+from rigdesign.base.units import show
 
 FloatArray = NDArray[np.float64]
+SAME = 1e-9
+"""Distance from the edge of a map that still counts as on it, as a share of its largest value."""
 
 
 class MachineLoss(Protocol):
@@ -21,6 +24,9 @@ class MachineLoss(Protocol):
 
     def power(self, speed: float, torque: float) -> float:
         """Loss [W] at a speed [rad/s] and a torque [Nm] of the output; their signs do not matter."""
+
+    def nearest(self, speed: float, torque: float) -> tuple[float, float]:
+        """Operating point nearest to this one at which the loss is known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +49,10 @@ class EfficiencyLoss:
     def power(self, speed: float, torque: float) -> float:
         """Loss [W] at a speed [rad/s] and a torque [Nm] of the output."""
         return abs(speed * torque) * (1.0 / self.efficiency - 1.0)
+
+    def nearest(self, speed: float, torque: float) -> tuple[float, float]:
+        """The operating point itself."""
+        return speed, torque
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -94,7 +104,7 @@ class LossMap:
             at = tuple(np.argwhere(counts != 1)[0])
             refuse(
                 "loss_map",
-                f"{first[at[0]]:.5g} rad/s, {second[at[1]]:.5g} Nm",
+                f"{show(float(first[at[0]]), 'speed')}, {show(float(second[at[1]]), 'torque')}",
                 f"must occur once, occurs {counts[at]} times",
                 "give every speed with every torque",
             )
@@ -109,21 +119,35 @@ class LossMap:
 
     def power(self, speed: float, torque: float) -> float:
         """Loss [W] at a speed [rad/s] and a torque [Nm] of the output. Raises CaseError outside the map."""
-        row, along = _cell("loss_map.speeds", self.speeds, abs(speed), "rad/s")
-        column, across = _cell("loss_map.torques", self.torques, abs(torque), "Nm")
+        row, along = _cell("speed", self.speeds, abs(speed))
+        column, across = _cell("torque", self.torques, abs(torque))
         corners = self.losses[row : row + 2, column : column + 2]
         return float(np.array([1.0 - along, along]) @ corners @ np.array([1.0 - across, across]))
 
+    def nearest(self, speed: float, torque: float) -> tuple[float, float]:
+        """Operating point of the map nearest to this one."""
+        return _within(self.speeds, speed), _within(self.torques, torque)
 
-def _cell(key: str, axis: FloatArray, value: float, unit: str) -> tuple[int, float]:
-    """Number of the interval a value lies in, and its share of it."""
+    def holds_speed(self, speed: float) -> bool:
+        """Whether the map reaches a speed [rad/s] of the output."""
+        slack = SAME * float(self.speeds[-1])
+        return bool(self.speeds[0] - slack <= abs(speed) <= self.speeds[-1] + slack)
+
+
+def _within(axis: FloatArray, value: float) -> float:
+    return min(max(abs(value), float(axis[0])), float(axis[-1]))
+
+
+def _cell(kind: str, axis: FloatArray, value: float) -> tuple[int, float]:
+    """Number of the interval a value lies in, and its share of it; kind : of quantity, speed or torque."""
     low, high = float(axis[0]), float(axis[-1])
-    if not low <= value <= high:
+    if not low - SAME * high <= value <= high + SAME * high:
         refuse(
-            key,
-            f"{value:.6g} {unit}",
-            f"must lie within the map, {low:.6g} to {high:.6g} {unit}",
+            f"loss_map.{kind}s",
+            show(value, kind),
+            f"must lie within the map, {show(low, kind)} to {show(high, kind)}",
             "extend the map to this operating point; it is not extrapolated",
         )
+    value = min(max(value, low), high)
     at = min(int(np.searchsorted(axis, value, side="right")) - 1, len(axis) - 2)
     return at, float((value - axis[at]) / (axis[at + 1] - axis[at]))

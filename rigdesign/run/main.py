@@ -32,6 +32,8 @@ from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
+from rigdesign.results.rows.oil_circuits import circuit_rows
+from rigdesign.results.rows.rig_heat import rig_heat_row
 from rigdesign.results.rows.rolling_bearings import rolling_bearing_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
@@ -152,6 +154,10 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
         rolling_bearings=[rolling_bearing_row(found) for found in rolling_bearings(rig, points)],
         cooler=[cooling_row(balance) for balance in solved.cooling],
+        rig_heat=[rig_heat_row(balance.heat, rig.heat_parts.room) for balance in solved.cooling]
+        if case.rig_heat.stated
+        else [],
+        oil_circuits=[row for balance in solved.cooling for row in circuit_rows(balance)],
         thermal=[thermal_row(found) for found in solved.temperatures],
         expansion=[expansion_row(warm) for warm in solved.warm],
         coupling=[coupling_row(p) for p in points],

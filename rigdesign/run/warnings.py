@@ -46,6 +46,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
         *(Finding(id="oil", text=text) for text in _oils(solved)),
         *(Finding(id="oil_circuit", text=text) for text in _circuits(solved)),
+        *(Finding(id="rig_heat", text=text) for text in _rig_heat(solved)),
         *(Finding(id="damping", text=text) for text in _damping(solved)),
         *(Finding(id="sampling", text=text) for text in _sampling(solved)),
         *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
@@ -184,6 +185,12 @@ def _circuits(solved: SolvedRig) -> Iterator[str]:
             for text in found.warnings:
                 said.setdefault(text, f"stage {balance.stage}: {text}")
     yield from said.values()
+
+
+def _rig_heat(solved: SolvedRig) -> Iterator[str]:
+    """Couplings outside of the range of their law, a room not as warm as the case states, at the held stages."""
+    for balance in solved.cooling:
+        yield from (f"stage {balance.stage}: {text}" for text in balance.heat.warnings)
 
 
 def oil_at_room_temperature(rig: Rig) -> Iterator[str]:
@@ -328,6 +335,10 @@ def not_modelled(solved: SolvedRig) -> list[str]:
     if without:
         items.append(
             f"housing of {', '.join(without)}: gears at the temperature of their oil outlet, all losses into the oil"
+        )
+    if not solved.case.rig_heat.machines:
+        items.append(
+            "heat and input power of motor, drive and transmission gearbox: rig_heat.machines names none"
         )
     if solved.run is None:
         items.append("dynamic loads: the losses are given")

@@ -16,6 +16,7 @@ from rigdesign.case.rules.gears import gearbox_faults
 from rigdesign.case.rules.losses import loss_faults
 from rigdesign.case.rules.lubrication import lubrication_faults
 from rigdesign.case.rules.oil_circuits import oil_circuit_faults
+from rigdesign.case.rules.rig_heat import rig_heat_faults
 from rigdesign.case.rules.schedule import schedule_faults
 from rigdesign.case.rules.surfaces import housing_faults
 from rigdesign.case.rules.transient import transient_faults
@@ -44,6 +45,7 @@ def broken_rules(case: "Case") -> list[Fault]:
         loss_faults,
         lubrication_faults,
         oil_circuit_faults,
+        rig_heat_faults,
         schedule_faults,
         _limits,
         _numerics,

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 OIL, BODIES, COOLER, ROOM, HEATERS = "oil", "gears, shafts, housings", "cooler", "room", "oil heaters"
 STREAMS = "streams of the housings"
+MACHINES = "motor and drive"
 TURNING, STANDING = "gears and shafts", "housing and field"
 WORDS = {
     "mesh_loss": "tooth friction",
@@ -50,6 +51,8 @@ def rig_flow_figure(
         into_bodies[_words(row.kind)] += row.into_body_W
     flows = [Flow(kind, OIL, max(power, 0.0)) for kind, power in into_oil.items()]
     flows += [Flow(kind, BODIES, max(power, 0.0)) for kind, power in into_bodies.items()]
+    if cooler.get("machines_W"):
+        flows.append(Flow(MACHINES, OIL, float(cooler["machines_W"])))
     flows += [Flow(HEATERS, OIL, float(cooler["heater_W"])), Flow(OIL, COOLER, float(cooler["cooler_W"]))]
     flows.append(Flow(BODIES, ROOM, max(float(cooler["room_W"]), 0.0)))
     flows.append(Flow(BODIES, STREAMS, max(float(cooler.get("streams_W", 0.0)), 0.0)))
@@ -60,7 +63,12 @@ def rig_flow_figure(
     if not any(flow.value > 0.0 for flow in flows):
         return None
     middle, bodies = ([BODIES, OIL], 1) if given >= 0.0 else ([OIL, BODIES], 2)
-    columns = [[HEATERS, *kinds], [middle[0]], [middle[1]], [COOLER, ROOM, STREAMS]]
+    columns = [
+        [HEATERS, *([MACHINES] if cooler.get("machines_W") else []), *kinds],
+        [middle[0]],
+        [middle[1]],
+        [COOLER, ROOM, STREAMS],
+    ]
     return _drawn(layout(columns, flows, low=(bodies,)), len(kinds) + 1)
 
 

@@ -8,7 +8,9 @@ from rigdesign.report.sections.ground import HAND_CHECKS, NOT_MODELLED, PROVENAN
 from rigdesign.report.sections.inputs import DRIVETRAIN_INPUTS, INPUTS
 from rigdesign.report.sections.loads import LOAD_DETAILS, LOADS
 from rigdesign.report.sections.losses import LOSS_DETAILS, LOSSES
+from rigdesign.report.sections.oil_circuits import OIL_CIRCUITS
 from rigdesign.report.sections.ranges import RANGE_DETAILS, RANGES
+from rigdesign.report.sections.rig_heat import RIG_HEAT
 from rigdesign.report.sections.rolling_bearings import ROLLING_BEARINGS
 from rigdesign.report.sections.section import ReportSection
 from rigdesign.report.sections.temperatures import TEMPERATURE_DETAILS, TEMPERATURES
@@ -22,6 +24,8 @@ SECTIONS: tuple[ReportSection, ...] = (
     RANGES,
     LOADS,
     LOSSES,
+    OIL_CIRCUITS,
+    RIG_HEAT,
     ROLLING_BEARINGS,
     TEMPERATURES,
     VIEWER,

@@ -56,6 +56,7 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
         for key, value in (("streams_W", balance.streams), ("volumes_W", balance.volumes))
         if value is not None
     }
+    machines = {"machines_W": balance.machines} if balance.machines else {}
     return {
         "stage": balance.stage,
         "losses_W": balance.losses,
@@ -66,6 +67,7 @@ def cooling_row(balance: CoolingBalance) -> dict[str, float | str]:
         **warming,
         **circuits,
         **fluids,
+        **machines,
         "not_heat_W": balance.not_heat,
         "open_W": balance.imbalance,
         "flow_l_min": L_MIN * balance.flow,

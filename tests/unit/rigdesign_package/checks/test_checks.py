@@ -17,6 +17,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.loads import ContactLoss, DynamicLoads, MeshResonance, StageLoad, UnsolvedSpeed
+from rigdesign.results.rig_heat import HeatSource, RigHeat
 from rigdesign.results.warm_gearbox import SealClearance, WarmGearbox
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.loads import mesh_loads
@@ -192,8 +193,12 @@ def test_cooler_heater_and_room_are_those_of_their_own_worst_stage() -> None:
     def balance(stage: str, cooler: float, heater: float, room: float) -> CoolingBalance:
         return CoolingBalance(
             stage=stage, losses=0.0, pump=0.0, heater=heater, cooler=cooler, room=room, stored=None, not_heat=0.0,
-            flow=26.0 / 6e4,
+            flow=26.0 / 6e4, heat=heat(stage, room),
         )  # fmt: skip
+
+    def heat(stage: str, room: float) -> RigHeat:
+        box = HeatSource(name="test", kind="gearbox", power=room, sinks={"room": room})
+        return RigHeat(stage=stage, sources=(box,), drive_power=room, mains_power=room, input_power=room)
 
     both = replace(solved(), cooling=[balance("hot", 9e3, 0.5e3, 2e3), balance("fast", 12e3, 1.5e3, 1e3)])
     found = {check.id: (check.value, check.reason) for check in oil.checks(both)}

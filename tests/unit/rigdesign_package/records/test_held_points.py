@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from rigdesign.case.rig_heat_parts import HeatParts
 from rigdesign.coupling.loop import governing_point
 from rigdesign.records.housing import cooling_balance
 
@@ -27,12 +28,14 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
     warm, cool = (SimpleNamespace(oil="ester", inlet_temperature=inlet) for inlet in (413.15, 313.15))
     test = SimpleNamespace(feeds={"gear_oil": (warm, 1), "bearing_oil": (cool, 4)})
     reference = SimpleNamespace(feeds={"gear_oil": (cool, 1), "bearing_oil": (cool, 4)})
-    ambient = SimpleNamespace(warming_time=None)
+    ambient = SimpleNamespace(warming_time=None, temperature=293.15)
     rig: Any = SimpleNamespace(
         case=SimpleNamespace(
             gearboxes={"test": test, "reference": reference}, ambient=ambient, oil_circuits={}
         ),
         oil_circuits={},
+        heat_parts=HeatParts(),
+        driven_speed=float,
     )
     heats = {
         "test.gear_oil": (413.15, -1400.0),
@@ -41,8 +44,10 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
         "reference.bearing_oil": (313.15, 4700.0),
     }
     last: Any = SimpleNamespace(
-        point=SimpleNamespace(stage="test"),
-        losses=[SimpleNamespace(loss=SimpleNamespace(power=9300.0), pumped=0.0, not_heat=0.0)],
+        point=SimpleNamespace(stage="test", speed=1000.0),
+        losses=[
+            SimpleNamespace(gearbox="test", loss=SimpleNamespace(power=9300.0), pumped=0.0, not_heat=0.0)
+        ],
         streams=[
             SimpleNamespace(name=name, inlet=inlet, heat=heat, to_tank=heat, flow=1e-4)
             for name, (inlet, heat) in heats.items()
@@ -53,3 +58,6 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
     assert balance.heater == pytest.approx(1400.0)
     assert balance.cooler == pytest.approx(6200.0 - 200.0 + 4700.0)
     assert balance.imbalance == pytest.approx(0.0)
+    assert balance.heat.drive_power == balance.heat.mains_power == 9300.0
+    assert balance.heat.input_power == 9300.0 + 1400.0
+    assert balance.heat.imbalance == pytest.approx(0.0)

@@ -51,7 +51,7 @@ def test_map_from_columns_in_any_order() -> None:
         (lambda: EfficiencyLoss(efficiency=0.0), "above 0"),
         (
             lambda: GRID.power(301.0, 10.0),
-            "loss_map.speeds = 301 rad/s: must lie within the map, 0 to 300 rad/s",
+            "loss_map.speeds = 2874.34 rpm: must lie within the map, 0 rpm to 2864.79 rpm",
         ),
         (lambda: GRID.power(100.0, 60.0), "it is not extrapolated"),
         (
