@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rigdesign.base.errors import CaseError
-from thermal.conditions.enclosure import EnclosureError, close_view_factors
 from thermal.conditions.ray_view_factors import RayExchange, ray_view_factors
+from thermal.conditions.view_factor_closure import EnclosureError, close_view_factors
 from thermal.conduction.setup import ConductionSetup
 
 ViewFactors = tuple[tuple[float, ...], ...]

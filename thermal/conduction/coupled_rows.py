@@ -9,8 +9,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from thermal.conditions.contact import Contact
-from thermal.conditions.enclosure import Enclosure, close_view_factors
+from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import StreamNetwork, inlet_share
+from thermal.conditions.view_factor_closure import close_view_factors
 from thermal.conduction.heat_rows import HeatFlow, surface_row
 from thermal.conduction.setup import ConductionSetup
 from thermal.fe.elements import FiniteElements

@@ -13,7 +13,7 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.matching import matched
 from rigdesign.case.paths import nearest
 from rigdesign.case.surface_conditions import Insulated, ThermalRadiation
-from thermal.conditions.enclosure import EnclosureError, close_view_factors
+from thermal.conditions.view_factor_closure import EnclosureError, close_view_factors
 from thermal.housing.surfaces import exact_areas
 
 

@@ -52,6 +52,7 @@ def solved(monkeypatch: pytest.MonkeyPatch, slow: str, most: int = 40) -> loop.P
     monkeypatch.setattr(fixed_point, "run_iteration", run_iteration)
     monkeypatch.setattr(acceleration, "next_state", lambda _, count, __: state(after(count)))
     monkeypatch.setattr(fixed_point, "heat_residual", lambda *_: 0.0)
+    monkeypatch.setattr(loop, "demand_loss_maps", lambda *_: None)
     return loop.solve_point(rig, POINT)
 
 

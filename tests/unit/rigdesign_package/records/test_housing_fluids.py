@@ -3,13 +3,16 @@
 import pytest
 
 from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.rig_heat import HeatSource, RigHeat
 from rigdesign.results.rows.housing import cooling_row
 
 
 def balance(streams: float | None, volumes: float | None) -> CoolingBalance:
+    box = HeatSource(name="test", kind="gearbox", power=300.0, sinks={"room": 300.0})
+    heat = RigHeat(stage="test", sources=(box,), drive_power=1e3, mains_power=1e3, input_power=1e3)
     return CoolingBalance(
         stage="test", losses=1000.0, pump=0.0, heater=0.0, cooler=500.0, room=300.0, stored=None, not_heat=0.0,
-        flow=1e-4, streams=streams, volumes=volumes,
+        flow=1e-4, heat=heat, streams=streams, volumes=volumes,
     )  # fmt: skip
 
 
