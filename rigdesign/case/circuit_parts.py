@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.case.jets import mesh_jet
 from rigdesign.case.oil_circuits import (
     CoolerInput,
     HeaterInput,
@@ -81,6 +82,19 @@ def fed_flow(case: "Case", stream: str) -> float:
     box, _, kind = stream.partition(".")
     feed, count = case.gearboxes[box].feeds[kind]
     return feed.flow * count
+
+
+def _jet_power(case: "Case", stream: str, oil: Oil) -> float:
+    """Kinetic energy of the jets of an oil stream [W] as far as the losses of the case count it; zero without jets."""
+    name, _, kind = stream.partition(".")
+    box = case.gearboxes[name]
+    if kind != "gear_oil" or box.jets is None:
+        return 0.0
+    meshes = set(box.meshes)
+    if case.losses.basis == "input":
+        jets = [loss for loss in case.losses.given.values() if loss.kind == "oil_acceleration"]
+        meshes &= {loss.part for loss in jets if loss.gearbox == name}
+    return len(meshes) * mesh_jet(box, box.jets, oil).power
 
 
 def _oil(case: "Case", given: OilCircuit, oils: Mapping[str, Oil]) -> Oil:
@@ -166,7 +180,13 @@ def _line(case: "Case", at: str, name: str, given: LineInput, oil: Oil) -> Suppl
         return SupplyLine(
             name=name,
             consumers=tuple(
-                Consumer(name=stream, flow=fed_flow(case, stream), holdup=each) for stream in given.consumers
+                Consumer(
+                    name=stream,
+                    flow=fed_flow(case, stream),
+                    holdup=each,
+                    jet_power=_jet_power(case, stream, oil),
+                )
+                for stream in given.consumers
             ),
             setpoint=given.setpoint,
             tolerance=given.tolerance,

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 
 from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.jets import injected_flow
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
@@ -19,7 +20,6 @@ from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.rig.oil_supply import injected_flow
 
 Omissions = Iterator[Omission]
 

@@ -16,21 +16,14 @@ from dynamics.losses.mesh_loss import ToothPath
 from dynamics.losses.oil_jet import JET_ANGLES
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import conditions_of
+from rigdesign.case.jets import jet_velocity
 from rigdesign.case.lubrication import JetOil
 from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.dip import DippedFlanks, flank_law
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import (
-    ChamberOil,
-    OilFeed,
-    gear_feed,
-    gear_oil,
-    jet_velocity,
-    wetted_width,
-    wetting_flow,
-)
+from rigdesign.rig.oil_supply import ChamberOil, OilFeed, gear_feed, gear_oil, wetted_width, wetting_flow
 from thermal.conditions.boundary import Film
 from thermal.films.convection import constant
 from thermal.films.flank import (

@@ -8,13 +8,14 @@ from typing import Protocol
 from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import Loss, ToothPath, mesh_loss, squeeze_loss
-from dynamics.losses.oil_jet import JET_ANGLES, OilJet, oil_acceleration
+from dynamics.losses.oil_jet import oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, Seals
 from rigdesign.case.heat_split import HeatSplit
+from rigdesign.case.jets import mesh_jet
 from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.bearing_heat import body_shares
 from rigdesign.coupling.dip import churning
@@ -24,7 +25,7 @@ from rigdesign.coupling.loads import MeshModel, first_torques
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import gear_feed, gear_oil, injected_flow, jet_velocity
+from rigdesign.rig.oil_supply import gear_feed, gear_oil
 from rigdesign.rig.shaft_seals import ShaftSeal, shaft_seals
 from thermal.films.air import air
 
@@ -279,16 +280,10 @@ def _oil_jets(
     jets = box.jets
     if jets is None:
         return
-    oil = gear_oil(rig, box_name)
+    jet = mesh_jet(box, jets, gear_oil(rig, box_name))
     for mesh_name, mesh in box.meshes.items():
         name = f"{box_name}.{mesh_name}"
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
-        jet = OilJet(
-            flow=injected_flow(box),
-            density=oil.density(jets.inlet_temperature),
-            speed=jet_velocity(box, jets),
-            angle=JET_ANGLES[jets.jet_direction],
-        )
         loss = oil_acceleration(name, jet, omega * pairs[name].working_radii[0])
         yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=jet.power)
 

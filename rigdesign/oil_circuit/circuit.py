@@ -79,6 +79,11 @@ class SupplyLine:
         return math.fsum(consumer.flow for consumer in self.consumers)
 
     @property
+    def jet_power(self) -> float:
+        """Kinetic energy of the jets of all consumers [W]."""
+        return math.fsum(consumer.jet_power for consumer in self.consumers)
+
+    @property
     def volume(self) -> float:
         """Oil in pipes and consumers while the pump runs [m3]."""
         return math.fsum(
@@ -99,7 +104,8 @@ class Circuit:
     room_temperature : round tank, pipes and pump [K]
 
     Raises CaseError for a tank that runs dry with the lines full, for consumers that take more than the pump gives,
-    and where heater and cooler of the tank would work against each other.
+    for jets faster than the pressure of the pump makes them, and where heater and cooler of the tank would work against
+    each other.
     """
 
     name: str
@@ -112,7 +118,7 @@ class Circuit:
     room_temperature: float = 293.15
 
     def __post_init__(self) -> None:
-        faults = [*self._names(), *self._flows(), *self._level(), *self._thermostats()]
+        faults = [*self._names(), *self._flows(), *self._jets(), *self._level(), *self._thermostats()]
         if faults:
             raise CaseError(faults, f"oil circuit {self.name}")
 
@@ -137,8 +143,15 @@ class Circuit:
         return self.running_fill / (self.pump.flow if self.pump else self.flow)
 
     def line_pump_heat(self, line: SupplyLine) -> float:
-        """Heat of the pump in the oil of a line [W], by its share of the flow."""
-        return self.pump.heat_into_oil * line.flow / self.pump.flow if self.pump else 0.0
+        """Heat of the pump in the oil of a line [W], by its share of the flow and less what its jets carry away."""
+        return self.pump.heat_into_oil * line.flow / self.pump.flow - line.jet_power if self.pump else 0.0
+
+    @property
+    def pump_heat(self) -> float:
+        """Heat of the pump in the oil of the circuit [W]: not what the jets carry into the consumers."""
+        return (
+            self.pump.heat_into_oil - math.fsum(line.jet_power for line in self.lines) if self.pump else 0.0
+        )
 
     @property
     def relief_heat(self) -> float:
@@ -167,6 +180,21 @@ class Circuit:
                 f"{6e4 * self.pump.flow:.4g} l/min",
                 f"must be at least the {6e4 * self.flow:.4g} l/min of all consumers",
                 "take a larger pump, or feed less",
+            )
+        ]
+
+    def _jets(self) -> list[Fault]:
+        if self.pump is None:
+            return []
+        needed = max((each.jet_power / each.flow for each in self.consumers), default=0.0)
+        if self.pump.pressure >= needed:
+            return []
+        return [
+            Fault(
+                "pump.pressure",
+                f"{1e-5 * self.pump.pressure:.4g} bar",
+                f"must be at least the {1e-5 * needed:.3g} bar that the velocity of the jets takes (rho v^2 / 2)",
+                "give the pressure of the pump, or the velocity that the jets have with it",
             )
         ]
 

@@ -51,8 +51,9 @@ class Pump:
     efficiency : hydraulic over shaft power [-]
     heat_share : share of the shaft power that ends in the oil [-]; the rest goes to the room
 
-    The hydraulic power is throttled in valves and nozzles and heats the oil as the losses of the pump do. All of
-    it is counted ahead of the supply temperature: 10 bar are 0.6 K.
+    The hydraulic power is throttled in valves and pipes and heats the oil as the losses of the pump do; what the
+    jets of the consumers carry away is heat of the consumers. The rest is counted ahead of the supply temperature:
+    10 bar are 0.6 K.
     """
 
     flow: float
@@ -73,8 +74,13 @@ class Pump:
 
     @property
     def heat_into_oil(self) -> float:
-        """[W]"""
+        """With what the jets carry into the consumers [W]."""
         return self.heat_share * self.shaft_power
+
+    @property
+    def heat_into_room(self) -> float:
+        """[W]"""
+        return self.shaft_power - self.heat_into_oil
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,12 +138,15 @@ class Consumer:
 
     flow : at its supply temperature [m3/s]
     holdup : oil that stands in it and drains back when the pump stops [m3]
+    jet_power : kinetic energy the oil leaves the nozzles with [W]; the pump gives it, it is heat of the consumer
     """
 
     name: str
     flow: float
     holdup: float = 0.0
+    jet_power: float = 0.0
 
     def __post_init__(self) -> None:
         require_above(f"{self.name}.flow", self.flow, "m3/s", "feed the consumer, or leave it out")
         require_at_least(f"{self.name}.holdup", self.holdup, "m3", "give 0 if it drains at once")
+        require_at_least(f"{self.name}.jet_power", self.jet_power, "W", "give 0 without jets")

@@ -310,7 +310,7 @@ def _moved(circuit: Circuit, balance: TankBalance, flows: Mapping[str, float], w
     return Energies(
         heater=weight * balance.heater_power,
         trim_heaters=weight * math.fsum(line.trim_power for line in lines),
-        pump=weight * circuit.pump.heat_into_oil if circuit.pump and any(flows.values()) else 0.0,
+        pump=weight * circuit.pump_heat if any(flows.values()) else 0.0,
         consumers=weight * math.fsum(heat for line in lines for heat in line.heats.values()),
         tank_cooler=weight * balance.cooler_heat,
         line_coolers=weight * math.fsum(line.cooler_heat for line in lines),

@@ -98,8 +98,7 @@ def _result(equation: TankEquation, balance: TankBalance) -> SteadyCircuit:
                 mass_flow=mass_flow,
                 heat=heat,
             )
-    pump_heat = circuit.pump.heat_into_oil if circuit.pump else 0.0
-    pump_to_room = circuit.pump.shaft_power - pump_heat if circuit.pump else 0.0
+    pump_to_room = circuit.pump.heat_into_room if circuit.pump else 0.0
     draft = SteadyCircuit(
         circuit=circuit,
         tank_temperature=balance.temperature,
@@ -109,10 +108,10 @@ def _result(equation: TankEquation, balance: TankBalance) -> SteadyCircuit:
         tank_cooler=_cooler_load(equation, balance),
         line_coolers=line_coolers,
         trim_heaters=trims,
-        pump_heat=pump_heat,
+        pump_heat=circuit.pump_heat,
         room_loss=balance.room_loss + pump_to_room,
         machine_heat=equation.machine_heat,
-        imbalance=_imbalance(equation, balance, pump_heat),
+        imbalance=_imbalance(equation, balance, circuit.pump_heat),
         warnings=(),
     )
     return replace(draft, warnings=steady_warnings(draft))

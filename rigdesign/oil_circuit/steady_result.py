@@ -53,7 +53,7 @@ class SteadyCircuit:
     """Line -> need and capability at the temperature of the tank as it is."""
     trim_heaters: Mapping[str, DeviceLoad]
     pump_heat: float
-    """Into the oil [W]."""
+    """Into the oil of the circuit, without what the jets carry into the consumers [W]."""
     room_loss: float
     """Of tank and pipes, and of the pump what the oil does not take [W]."""
     imbalance: float
@@ -66,7 +66,7 @@ class SteadyCircuit:
     def pump_to_room(self) -> float:
         """Heat of the pump that its oil does not take [W]."""
         pump = self.circuit.pump
-        return pump.shaft_power - self.pump_heat if pump else 0.0
+        return pump.heat_into_room if pump else 0.0
 
     @property
     def wall_loss(self) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.jets import injected_flow
 from rigdesign.case.lubrication import JetOil
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
@@ -124,16 +125,6 @@ def _in_state(oil: Oil, box: Gearbox) -> Oil:
         viscosity_factor=state.viscosity_factor,
         heat_capacity_factor=state.heat_capacity_factor,
     )
-
-
-def injected_flow(box: Gearbox) -> float:
-    """Flow of the jets of one mesh [m3/s]: what is fed less what goes round the meshes; zero without jets."""
-    return 0.0 if box.jets is None else (1.0 - box.oil_paths.bypass) * box.jets.flow
-
-
-def jet_velocity(box: Gearbox, jets: JetOil) -> float:
-    """Velocity of the oil in the jets [m/s]: that of the case with its flow through all of them."""
-    return (1.0 - box.oil_paths.bypass) / (1.0 - jets.blocked_jets) * jets.jet_velocity
 
 
 def wetting_flow(box: Gearbox, jets: JetOil) -> float:

@@ -14,6 +14,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from rigdesign.case.jets import injected_flow
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
@@ -21,7 +22,7 @@ from rigdesign.coupling.housing_fluids import without_oils
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
+from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, wall_flow
 from rigdesign.transient.bearing_nodes import bearing_nodes, seated_bearings, with_nodes
 from rigdesign.transient.still_air import at_least, still
 from thermal.conditions.boundary import Film

@@ -11,13 +11,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.case.jets import injected_flow
 from rigdesign.case.model import Case
 from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.oil import heater_and_cooler, oil_streams
 from rigdesign.coupling.oil_circuits import one_tank
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
+from rigdesign.rig.oil_supply import gear_oil, wall_flow
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil import FEED, HEATER_AND_COOLER, LEAK
 from rigdesign.transient.oil_supply import StreamHeats, SupplyHistory, in_parts

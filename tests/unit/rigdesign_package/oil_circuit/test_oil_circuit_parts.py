@@ -83,6 +83,15 @@ def test_pump_heat_splits_by_flow_and_its_rest_returns_over_the_relief_valve() -
     assert parts == pytest.approx([0.9 * pump.shaft_power * share for share in (15 / 40, 5 / 40, 20 / 40)])
 
 
+def test_a_pump_cannot_make_jets_faster_than_its_pressure_allows() -> None:
+    """15 l/min with 200 W in the jets are 8 bar."""
+    fed = replace(line(), consumers=(Consumer(name="gears", flow=15 * LITRE_A_MINUTE, jet_power=200.0),))
+    pump = Pump(flow=40 * LITRE_A_MINUTE, pressure=7.9e5, efficiency=0.8)
+    with pytest.raises(CaseError, match=r"pump\.pressure.*7\.9 bar.*at least the 8 bar"):
+        circuit(fed, pump=pump)
+    assert circuit(fed, pump=replace(pump, pressure=8.1e5)).pump_heat == pytest.approx(675.0 - 200.0)
+
+
 def test_ten_bar_are_0_6_kelvin() -> None:
     rise = 1e6 / (FVA_3.density(ZERO + 60.0) * FVA_3.heat_capacity(ZERO + 60.0))
     assert rise == pytest.approx(0.57, abs=5e-3)

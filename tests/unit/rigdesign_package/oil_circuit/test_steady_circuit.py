@@ -178,6 +178,15 @@ def test_pump_heat_ends_in_the_oil_and_the_rest_in_the_room() -> None:
     assert found.room_loss == pytest.approx(PUMP.shaft_power)
 
 
+def test_what_the_jets_carry_into_the_gearbox_is_not_heat_of_the_pump_as_well() -> None:
+    """Shaft power of the pump = its heat in oil and room + jets, which are part of the heat of the gears."""
+    jets, friction = 40.0, 500.0
+    fed = replace(line(), consumers=(Consumer(name="gears", flow=15 * LITRE_A_MINUTE, jet_power=jets),))
+    found = steady_circuit(circuit(fed, pump=PUMP), {"gears": friction + jets})
+    assert found.pump_heat + found.pump_to_room + jets == pytest.approx(PUMP.shaft_power)
+    assert found.room_loss == pytest.approx(PUMP.shaft_power + friction)
+
+
 def test_two_consumers_of_a_line_mix_by_their_flows() -> None:
     shared = replace(
         line(),
