@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
+from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import (
@@ -27,7 +28,6 @@ from dynamics.mesh.friction import (
     friction_coefficient,
 )
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
