@@ -20,6 +20,7 @@ from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.drivetrain import build_drivetrain
+from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
@@ -178,6 +179,15 @@ class Rig:
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
         return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
 
+    @cached_property
+    def topographies(self) -> Mapping[str, FlankTopographies]:
+        """Measured front and back flanks by ``gearbox.gear`` of the gears that have any."""
+        return flank_topographies(self.case, self.pairs)
+
+    def topography(self, gear: str) -> FlankTopographies:
+        """Measured front and back flanks of the gear ``gearbox.gear``."""
+        return self.topographies.get(gear, NOT_MEASURED)
+
     @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
@@ -281,7 +291,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     Raises
     ------
     CaseError
-        A shaft that would twist off.
+        A shaft that would twist off, a topography that does not fit its flanks.
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
@@ -298,6 +308,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         pairs=pairs,
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
+    rig.__dict__["topographies"] = flank_topographies(case, pairs)
     return rig
 
 
