@@ -127,7 +127,7 @@ class FlankModification(Part):
     the rear end; removed (metal missing is positive) or deviation (metal standing out is positive); tooth from 0 where
     every tooth was measured. Replaces crownings, reliefs and twist of the gear."""
     back_topography: Text | None = None
-    """The same of the back flanks."""
+    """The same of the back flanks. The analytic mesh law has one table for both and takes the front flanks for it."""
     topography_interpolation: Literal["bilinear", "bicubic"] = "bilinear"
     """Between the places of the topography; bicubic: cubic spline, at least 4 places each way."""
     run_out: Small = 0.0

@@ -17,7 +17,7 @@ import csv
 import io
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -83,7 +83,8 @@ def read_topography(file: Path, key: str, case: Path) -> TopographyGrid:
         columns = _columns(file.name, rows)
         return _grid(file.name, columns, list(_rows(file.name, columns, rows[2:])))
     except _RefusedGridError as error:
-        raise CaseError(error.faults[:MOST_FAULTS], str(case)) from None
+        faults = [replace(fault, path=f"{key}: {fault.path}") for fault in error.faults[:MOST_FAULTS]]
+        raise CaseError(faults, str(case)) from None
 
 
 class _RefusedGridError(Exception):
@@ -219,10 +220,9 @@ def _number(at: str, cell: str) -> tuple[float, list[Fault]]:
     try:
         value = float(cell)
     except ValueError:
-        match = units.number_match(cell)
         if not cell:
             return 0.0, [Fault(at, "", "has no value", "fill the holes of the grid before it is used")]
-        if match is not None and match.group(2):
+        if units.kind_of(cell) is not None:
             remedy = "write bare numbers, all in the unit of the second row"
             return 0.0, [Fault(at, written(cell), "has a unit of its own", remedy)]
         return 0.0, [Fault(at, written(cell), "is no number", "write a number with a decimal point")]
