@@ -6,6 +6,8 @@ the pinion), C_beta1 3 um, C_alpha2 25 um, C_beta2 32 um, twist of the wheel 160
 The twist is read as S_alpha, the difference of the profile slopes at both ends of the face: corners of +-40 um. With
 C_alpha + C_beta = 57 um no corner stands out of the flank then, and two opposite ones are free, as the contact patterns
 of Figure 7 show; read as the amount at the corner, two corners would stand out by 103 um and carry first.
+P1 does not say to which end twist and f_Hbeta count. Here the tip of the wheel is free at its rear end, as its natural
+twist has it, and the pinion at its front end.
 """
 
 from math import radians
