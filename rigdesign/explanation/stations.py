@@ -89,6 +89,16 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.flank": _at(coupling__loads=_WARM),
+    "gearboxes.*.gears.*.flank.topography": _at(
+        rig__flank_topography="grid of the measured flanks, held against form circle, tip circle and face width",
+        coupling__loads=_WARM,
+    ),
+    "gearboxes.*.gears.*.flank.back_topography": _at(
+        rig__flank_topography="grid of the measured back flanks, read and held against the gear",
+    ),
+    "gearboxes.*.gears.*.flank.topography_interpolation": _at(
+        rig__flank_topography="deviations between the places of the grid"
+    ),
     "gearboxes.*.gears.*.flank.pitch_waves.*": _at(
         coupling__loads="pitch deviations of the teeth: orders of the shaft"
     ),

@@ -22,6 +22,7 @@ from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
+from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
@@ -191,6 +192,15 @@ class Rig:
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
         return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
 
+    @cached_property
+    def topographies(self) -> Mapping[str, FlankTopographies]:
+        """Measured front and back flanks by ``gearbox.gear`` of the gears that have any."""
+        return flank_topographies(self.case, self.pairs)
+
+    def topography(self, gear: str) -> FlankTopographies:
+        """Measured front and back flanks of the gear ``gearbox.gear``."""
+        return self.topographies.get(gear, NOT_MEASURED)
+
     @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
@@ -298,7 +308,8 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     Raises
     ------
     CaseError
-        A shaft that would twist off, a machine whose loss map does not hold its speed.
+        A shaft that would twist off, a machine whose loss map does not hold its speed, a topography that does not fit
+        its flanks.
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
@@ -318,6 +329,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     if rig.heat_parts.machines:
         speeds = {stage.name: rig.driven_speed(stage.speed_end) for stage in case.schedule.held()}
         refuse_uncovered_speeds(rig.heat_parts.machines, speeds, str(case.path))
+    rig.__dict__["topographies"] = flank_topographies(case, pairs)
     return rig
 
 
