@@ -69,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 31cf8e21
+# compiled from sources b589267d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
