@@ -31,6 +31,19 @@ def fzg_c() -> GearPair:
     )
 
 
+def exchanged_fzg_c() -> GearPair:
+    """The same two gears, the wheel called pinion."""
+    pair = fzg_c()
+    return GearPair(
+        normal_module=pair.normal_module,
+        teeth=(24, 16),
+        centre_distance=pair.centre_distance,
+        face_widths=pair.face_widths,
+        profile_shifts=pair.profile_shifts[::-1],
+        tip_diameters=pair.tip_diameters[::-1],
+    )
+
+
 def sliced_mesh(pair: GearPair, n_face: int = 11, coupling: float = 0.0, **fields: object) -> LoadedMesh:
     """Loaded mesh on the analytic compliance; ``coupling`` in normal modules."""
     grid = FaceGrid.over(pair.face_width, n_face)
