@@ -35,7 +35,10 @@ class FlankCompliance(Protocol):
         """
 
     def depth(self, roll: Array) -> Array:
-        """Depth under the flank, along its normal, to which the local approach counts, shape of ``roll`` [m]."""
+        """Depth under the flank, along its normal in space, to which the local approach counts, like ``roll`` [m].
+
+        The transverse distance to the tooth axis over cos(beta_b)
+        """
 
 
 class InfluenceNumbers(Protocol):

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.compliance import FlankCompliance
-from dynamics.contact.corner import TipEnd, sharp_tips
+from dynamics.contact.corner import TipEnd
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.local_approach import SOFT_EDGES, EdgeModel, LocalContact, LocalModel
 from dynamics.contact.mesh_cycle import MeshCycle
@@ -79,15 +79,17 @@ class LoadedMesh:
         reach, most = FIRST_REACH * self.pair.normal_module, MOST_REACH * self.pair.normal_module
         while True:
             points = self.points(reach)
-            floor = float(np.min(points.gap))
-            cycle = self._pressed(points, force)
-            if float(np.max(cycle.approach)) - min(floor, 0.0) <= reach:
-                return cycle
-            reach = max(2.0 * reach, 1.2 * (float(np.max(cycle.approach)) - min(floor, 0.0)))
+            needed = np.inf
+            if np.all(np.isfinite(points.gap).any(axis=(1, 2))):
+                cycle = self._pressed(points, force)
+                needed = float(np.max(cycle.approach)) - min(float(np.min(points.gap)), 0.0)
+                if needed <= reach:
+                    return cycle
+            reach = 2.0 * reach if np.isinf(needed) else max(2.0 * reach, 1.2 * needed)
             if reach > most:
                 raise DynamicsNotConverged(
-                    f"mesh force = {force:.4g} N: the teeth approach by {1e6 * float(np.max(cycle.approach)):.0f} um, "
-                    f"limit {1e6 * most:.0f} um; reduce the load or the gap of the flanks"
+                    f"mesh force = {force:.4g} N: the teeth would have to approach by {1e6 * reach:.0f} um, limit "
+                    f"{1e6 * most:.0f} um; reduce the load or the gap of the flanks"
                 )
 
     def points(self, reach: float, n_positions: int | None = None) -> ContactPoints:
@@ -105,7 +107,7 @@ class LoadedMesh:
         model = LocalModel(
             pair=self.pair,
             gears=self.gears,
-            tips=sharp_tips(self.pair) if self.tips is None else self.tips,
+            tips=points.tips,
             edges=self.edges,
             line_load=force / self.grid.face_width,
         )

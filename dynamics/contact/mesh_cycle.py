@@ -141,16 +141,13 @@ class MeshCycle:
         limits = self.points.pair.path
         return 0.5 * (limits.start + limits.end)
 
-    def edge_contact(self, tip_rolls: tuple[float, float]) -> Flags:
-        """Points that carry at a tip corner or within a half width of a tip edge.
-
-        tip_rolls : roll lengths at the ends of both flanks [m]
-        """
+    @property
+    def edge_contact(self) -> Flags:
+        """Points that carry at a tip corner or within a half width of a tip edge."""
         near = self._at_corner
-        for roll, tip, base in zip(
-            self.points.place.roll, tip_rolls, self.points.pair.base_radii, strict=True
-        ):
-            near = near | ((tip**2 - roll**2) / (2.0 * base) < self.half_width)
+        points = self.points
+        for roll, tip, base in zip(points.place.roll, points.tips, points.pair.base_radii, strict=True):
+            near = near | ((tip.roll**2 - roll**2) / (2.0 * base) < self.half_width)
         return np.asarray(near & (self.force > 0.0))
 
     def pattern(self, gear: Literal[0, 1]) -> ContactPattern:

@@ -7,7 +7,7 @@ from math import ceil, cos, floor, tan
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.corner import ContactPlace, TipEnd, contact_places
+from dynamics.contact.corner import ContactPlace, TipEnd, contact_places, sharp_tips
 from dynamics.contact.face import FaceGrid
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
@@ -36,6 +36,8 @@ class ContactPoints:
     place : where and in which direction it touches
     gap : approach at which it touches, flanks included; inf for points out of reach [m]
     weight : closing of the gap along the normal per approach [-]
+    tips : ends of both flanks
+    reach : approach up to which no point is missing [m]
     """
 
     pair: GearPair
@@ -46,7 +48,18 @@ class ContactPoints:
     place: ContactPlace
     gap: Array
     weight: Array
+    tips: tuple[TipEnd, TipEnd]
     reach: float
+
+    @property
+    def sliding(self) -> Array:
+        """Speed of the pinion flank over the wheel's, towards the pinion tip, per speed of the pinion [m].
+
+        Friction on the pinion acts against it, along the tangent of the flanks, normal to the force, with the levers
+        ``place.reach``; at a corner this is the tangent of the mating flank.
+        """
+        first, second = self.place.reach
+        return np.asarray(first - second / self.pair.gear_ratio)
 
 
 def contact_points(
@@ -77,7 +90,8 @@ def contact_points(
     inside = (path >= first) & (path <= last)
     used = np.any(inside, axis=(0, 2))
     pairs, path, inside = pairs[used], path[:, used], inside[:, used]
-    place = contact_places(pair, np.clip(path, first, last), tips)
+    ends = sharp_tips(pair) if tips is None else tips
+    place = contact_places(pair, np.clip(path, first, last), ends)
     numbers = np.broadcast_to(pairs[:, None], path.shape)
     face = np.broadcast_to(grid.position, path.shape)
     added = gap(numbers.ravel(), face.ravel(), path.ravel()).reshape(path.shape)
@@ -94,5 +108,6 @@ def contact_points(
         place=place,
         gap=np.where(inside, total, np.inf),
         weight=weight,
+        tips=ends,
         reach=reach,
     )

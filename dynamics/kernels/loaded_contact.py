@@ -5,7 +5,8 @@
 with the local approach ``h(F) = F (a - c ln F)`` of each point, continued as a straight line where its derivative has
 fallen to half of ``c``. In the unknown ``v``, ``F = h^-1(max(v, 0))``, this is one system of equations whose semismooth
 Newton step is the linear system of the points in contact: quadratic convergence, and the end after finitely many
-steps for a linear ``h`` (Qi and Sun, Math. Programming 58, 1993).
+steps for a linear ``h`` (Qi and Sun, Math. Programming 58, 1993). What is local must not vanish against A: of a purely
+linear problem part of the diagonal of A is counted as ``h``.
 """
 
 import math
@@ -19,6 +20,8 @@ Array = NDArray[np.float64]
 
 CONVERGED, NO_CONVERGENCE, NOT_POSITIVE, NO_FORCE = 0, 1, 2, 3
 MOST_STEPS = 200
+FULL_STEPS = 40
+"""Steps taken in full, a change of the points that touch included; halved after that where the residual grows."""
 RESIDUAL = 1e-12
 LEAST_SLOPE = 0.5
 """Least derivative of h in multiples of c."""
@@ -288,7 +291,7 @@ def press_points(problem: ContactProblem, force: float, approach: float, near: A
             break
         status = NO_CONVERGENCE
         part, merit = 1.0, worst + abs(missing)
-        for _ in range(12):
+        for _ in range(1 if steps < FULL_STEPS else 12):
             trial[:] = closing + part * step
             trial_forces[:] = forces
             _forces(problem, trial, trial_forces)

@@ -62,7 +62,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources b589267d
+# compiled from sources 55b7293d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

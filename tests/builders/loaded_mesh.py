@@ -48,7 +48,8 @@ def sliced_mesh(pair: GearPair, n_face: int = 11, coupling: float = 0.0, **field
     """Loaded mesh on the analytic compliance; ``coupling`` in normal modules."""
     grid = FaceGrid.over(pair.face_width, n_face)
     first, second = (
-        SliceCompliance(pair=pair, index=i, grid=grid, coupling_length=coupling * pair.normal_module) for i in (0, 1)
+        SliceCompliance(pair=pair, index=i, grid=grid, coupling_length=coupling * pair.normal_module)
+        for i in (0, 1)
     )
     return LoadedMesh(pair=pair, gears=(first, second), grid=grid, **fields)  # type: ignore[arg-type]
 

@@ -33,7 +33,9 @@ def modified(pair, first=PLAIN, second=PLAIN, misalignment=0.0, **fields):
     return sliced_mesh(pair, 11 if pair is not HELICAL else 41, coupling=1.5, gap=gap, **fields)
 
 
-@pytest.mark.parametrize("pair", [EQUAL, HELICAL, fzg_c(), spur_pair()], ids=["equal", "helical", "FZG-C", "test"])
+@pytest.mark.parametrize(
+    "pair", [EQUAL, HELICAL, fzg_c(), spur_pair()], ids=["equal", "helical", "FZG-C", "test"]
+)
 def test_forces_equal_the_torque_of_the_wheel(pair):
     cycle = interpolated_mesh(pair).cycle(FORCE)
     assert cycle.torques[1] == pytest.approx(np.full(64, FORCE * pair.base_radii[1]), rel=1e-10)
@@ -103,7 +105,9 @@ def test_slope_and_misalignment_load_the_end_with_less_gap(where):
     cycle = mesh.cycle(FORCE)
     assert cycle.pattern(0).centre[1] < -1e-3 and cycle.pattern(1).centre[1] < -1e-3
     opposite = (
-        modified(EQUAL, Microgeometry(helix_slope=-20e-6)) if where == "slope" else modified(EQUAL, misalignment=-tilt)
+        modified(EQUAL, Microgeometry(helix_slope=-20e-6))
+        if where == "slope"
+        else modified(EQUAL, misalignment=-tilt)
     )
     assert opposite.cycle(FORCE).pattern(0).centre[1] == pytest.approx(-cycle.pattern(0).centre[1], rel=1e-6)
     assert cycle.face_load_factor > 1.2
@@ -111,9 +115,11 @@ def test_slope_and_misalignment_load_the_end_with_less_gap(where):
 
 
 def test_slope_without_elastic_coupling_follows_the_hand_value():
-    """Slices of equal compliance c under a linear gap of total f: K = 1 + f / (2 c w_m); c by the secant of the model."""
+    """Slices of equal compliance c under a linear gap of total f: K = 1 + f / (2 c w_m); c by the tangent."""
     even, tilted = (
-        sliced_mesh(EQUAL, 21, gap=microgeometry_gap(EQUAL, (Microgeometry(helix_slope=f), PLAIN)), n_positions=8)
+        sliced_mesh(
+            EQUAL, 21, gap=microgeometry_gap(EQUAL, (Microgeometry(helix_slope=f), PLAIN)), n_positions=8
+        )
         for f in (0.0, 2e-6)
     )
     cycle = even.cycle(FORCE)
@@ -128,7 +134,9 @@ def test_crowning_draws_the_pattern_to_the_middle():
     flat, crowned = (modified(EQUAL, one).cycle(FORCE) for one in (PLAIN, Microgeometry(lead_crowning=30e-6)))
     edge, middle = crowned.pattern(0).line_load[:, 0].max(), crowned.pattern(0).line_load[:, 5].max()
     assert edge < 0.5 * middle
-    assert flat.pattern(0).line_load[:, 0].max() == pytest.approx(flat.pattern(0).line_load[:, 5].max(), rel=1e-9)
+    assert flat.pattern(0).line_load[:, 0].max() == pytest.approx(
+        flat.pattern(0).line_load[:, 5].max(), rel=1e-9
+    )
 
 
 def test_twist_loads_the_corners_it_leaves_proud():
@@ -148,12 +156,15 @@ def test_twist_loads_the_corners_it_leaves_proud():
 @pytest.mark.parametrize("pair", [EQUAL, HELICAL, fzg_c()], ids=["equal", "helical", "FZG-C"])
 def test_contact_ratio_without_load_is_the_geometric_one(pair):
     mesh = sliced_mesh(pair, 41 if pair is HELICAL else 3)
-    assert unloaded_contact_ratio(mesh.points(1e-4, 2048)) == pytest.approx(pair.total_contact_ratio, abs=3e-4)
+    assert unloaded_contact_ratio(mesh.points(1e-4, 2048)) == pytest.approx(
+        pair.total_contact_ratio, abs=3e-4
+    )
 
 
 def test_contact_ratio_under_vanishing_load_goes_to_the_geometric_one():
     ratios = [
-        sliced_mesh(EQUAL, 1, n_positions=256).cycle(force).contact_ratio for force in (FORCE, 0.01 * FORCE, 1e-4 * FORCE)
+        sliced_mesh(EQUAL, 1, n_positions=256).cycle(force).contact_ratio
+        for force in (FORCE, 0.01 * FORCE, 1e-4 * FORCE)
     ]
     assert ratios[0] > 1.1 * ratios[1] > 1.1 * ratios[2]
     assert ratios[2] == pytest.approx(EQUAL.total_contact_ratio, abs=0.005)
@@ -169,11 +180,12 @@ def test_crowned_profiles_hand_over_from_pair_to_pair_without_load():
 def test_early_contact_is_that_of_the_tip_of_the_wheel():
     cycle = sliced_mesh(spur_pair(), 1).cycle(3900.0)
     assert cycle.early.any() and cycle.late.any()
-    assert np.all(cycle.points.place.corner[cycle.early] == 2) and np.all(cycle.points.place.corner[cycle.late] == 1)
+    assert np.all(cycle.points.place.corner[cycle.early] == 2) and np.all(
+        cycle.points.place.corner[cycle.late] == 1
+    )
     assert np.all(cycle.points.path[cycle.early] < spur_pair().path.tip_start)
-    tips = tuple(gear.roll_length(gear.tip_radius) for gear in spur_pair().gears)
-    assert np.all(cycle.edge_contact(tips)[cycle.early | cycle.late])
-    assert cycle.edge_contact(tips).sum() > (cycle.early | cycle.late).sum()
+    assert np.all(cycle.edge_contact[cycle.early | cycle.late])
+    assert cycle.edge_contact.sum() > (cycle.early | cycle.late).sum()
 
 
 def test_softer_edges_carry_less():
@@ -245,3 +257,43 @@ def test_force_that_cannot_be_and_teeth_that_approach_too_far_are_refused():
         replace(mesh, gap=lambda n, z, s: np.full_like(s, np.nan)).cycle(FORCE)
     with pytest.raises(DynamicsInputError, match="least_radius"):
         EdgeModel(least_radius=0.0)
+
+
+def test_neighbours_stand_behind_the_pinion_flank_and_before_the_wheel_flank():
+    """Pair p + 1 follows: its pinion tooth is the one the loaded flank turns its back to, its wheel tooth the other."""
+    pair = EQUAL
+    gears = tuple(influence_of(pair, index, neighbour=share) for index, share in ((0, 0.05), (1, 0.09)))
+    mesh = LoadedMesh(pair=pair, gears=gears, grid=FaceGrid.over(pair.face_width, 11))
+    points = mesh.points(5e-5)
+    cycle = mesh.cycle(FORCE)
+    k = int(np.argmax((cycle.closing.max(axis=2) > 0.0).sum(axis=1)))
+    within = np.isfinite(points.gap[k])
+    rows, columns = np.nonzero(within)
+    compliance = mesh._problem(points, cycle.local, k, within).compliance
+    first, second = sorted(set(points.pairs[rows]))[:2]
+    i = int(np.flatnonzero((points.pairs[rows] == first) & (columns == 5))[0])
+    j = int(np.flatnonzero((points.pairs[rows] == second) & (columns == 5))[0])
+    expected = 0.0
+    for gear, offset in ((0, 1), (1, -1)):
+        roll, face = points.place.roll[gear][k][within][[i, j]], np.zeros(2)
+        shapes = gears[gear].shapes(roll, face)
+        expected += shapes[0] @ gears[gear].deflection[offset] @ shapes[1]
+    assert compliance[i, j] == pytest.approx(expected, rel=1e-9)
+
+
+def test_sliding_changes_sign_at_the_pitch_point_and_follows_the_mating_flank_at_corners():
+    points = sliced_mesh(fzg_c(), 1).points(1e-4)
+    pair, path = fzg_c(), points.path
+    on_path = points.place.corner == 0
+    expected = path * (1.0 + 1.0 / pair.gear_ratio)
+    assert points.sliding[on_path] == pytest.approx(expected[on_path], abs=1e-12)
+    outside = np.isfinite(points.gap) & ~on_path
+    assert outside.any() and np.all(np.sign(points.sliding[outside]) == np.sign(path[outside]))
+
+
+def test_reach_grows_with_the_gap_and_an_even_gap_only_adds_to_the_approach():
+    plain, apart = (
+        sliced_mesh(EQUAL, 1, gap=lambda n, z, s, g=g: np.full_like(s, g)).cycle(FORCE) for g in (0.0, 3e-4)
+    )
+    assert apart.points.reach > 3e-4 > plain.points.reach
+    assert apart.approach - 3e-4 == pytest.approx(plain.approach, rel=1e-9)

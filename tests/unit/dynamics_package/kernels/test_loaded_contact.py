@@ -38,7 +38,11 @@ def enumerated(problem: ContactProblem, force: float) -> np.ndarray:
         if not len(on):
             continue
         matrix = np.zeros((len(on) + 1,) * 2)
-        matrix[:-1, :-1], matrix[:-1, -1], matrix[-1, :-1] = whole[np.ix_(on, on)], -problem.weight[on], problem.weight[on]
+        matrix[:-1, :-1], matrix[:-1, -1], matrix[-1, :-1] = (
+            whole[np.ix_(on, on)],
+            -problem.weight[on],
+            problem.weight[on],
+        )
         solved = np.linalg.solve(matrix, np.append(-problem.gap[on], force))
         forces = np.zeros(n)
         forces[on] = solved[:-1]
@@ -70,7 +74,11 @@ def test_linear_problem_of_many_points_is_the_least_of_the_quadratic_program(see
         np.full(30, force / problem.weight.sum()),
         jac=lambda at: whole @ at + problem.gap,
         bounds=[(0.0, None)] * 30,
-        constraints={"type": "eq", "fun": lambda at: problem.weight @ at - force, "jac": lambda at: problem.weight},
+        constraints={
+            "type": "eq",
+            "fun": lambda at: problem.weight @ at - force,
+            "jac": lambda at: problem.weight,
+        },
         method="SLSQP",
         options={"ftol": 1e-14, "maxiter": 500},
     )
@@ -85,7 +93,9 @@ def test_conditions_of_the_contact_hold_exactly(seed, linear):
     solution = press_points(problem, force, np.nan, np.zeros(25))
     assert solution.status == CONVERGED and solution.residual <= 1e-12
     left = problem.weight * solution.approach - problem.gap - problem.compliance @ solution.force
-    local = np.array([local_approach(f, a, c) for f, (a, c) in zip(solution.force, problem.local, strict=True)])
+    local = np.array(
+        [local_approach(f, a, c) for f, (a, c) in zip(solution.force, problem.local, strict=True)]
+    )
     on = solution.force > 0.0
     scale = np.abs(solution.closing).max()
     assert left[on] == pytest.approx(local[on], abs=1e-10 * scale)
