@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from dynamics.contact.points import ContactPoints
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Number = TypeVar("Number", np.float64, np.bool_)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -24,6 +25,7 @@ class ContactPattern:
     roll : roll length of the contact on this flank [m]
     pressure : Hertzian, 0 where the flank does not touch [Pa]; half_width : of the contact [m]
     line_load : normal force per length of the contact line [N/m]
+    edge : where a tip edge of either gear carries; the pressure there is that of its radius
     """
 
     path: Array
@@ -32,6 +34,7 @@ class ContactPattern:
     pressure: Array
     half_width: Array
     line_load: Array
+    edge: Flags
 
     @property
     def touched(self) -> Flags:
@@ -122,6 +125,11 @@ class MeshCycle:
         return self.local.pressure(self.force)
 
     @property
+    def flank_pressure(self) -> float:
+        """Largest Hertzian pressure away from tip edges [Pa]; 0 if edges carry everything."""
+        return float(np.where(self.edge_contact, 0.0, self.pressure).max())
+
+    @property
     def early(self) -> Flags:
         """Points that carry ahead of the path of contact, at the tip corner of the wheel."""
         return np.asarray(self._at_corner & (self.points.path < self._middle))
@@ -161,11 +169,12 @@ class MeshCycle:
             pressure=self._in_turn(self.pressure),
             half_width=self._in_turn(self.half_width),
             line_load=self._in_turn(self.line_load),
+            edge=self._in_turn(self.edge_contact),
         )
 
-    def _in_turn(self, table: Array) -> Array:
+    def _in_turn(self, table: NDArray[Number]) -> NDArray[Number]:
         """Values of one tooth pair from entering to leaving, (n_pairs n_positions, n_face)."""
-        return np.asarray(table.swapaxes(0, 1)[::-1].reshape(-1, table.shape[2]))
+        return table.swapaxes(0, 1)[::-1].reshape(-1, table.shape[2])
 
     # -- load factors ------------------------------------------------------------------------------------------
     @property

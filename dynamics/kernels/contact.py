@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 55b7293d
+# compiled from sources 1bee77bb
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

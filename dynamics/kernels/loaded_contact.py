@@ -245,19 +245,14 @@ def _forces(problem: ContactProblem, closing: Array, forces: Array) -> None:
 
 @njit(cache=True)
 def _start(problem: ContactProblem, x: float, near: Array) -> tuple[Array, Array]:
-    """Forces and closings to start from: those given, or points that do not know of each other."""
-    n = len(near)
-    closing, forces = np.empty(n), np.zeros(n)
-    warm = np.max(near) > 0.0
+    """Forces and closings to start from: the forces given, or those of points that do not know of each other."""
+    n, warm = len(near), np.max(near) > 0.0
+    closing, forces = np.empty(n), near.copy()
     for i in range(n):
         a, c = problem.local[i]
         over = problem.weight[i] * x - problem.gap[i]
-        forces[i] = near[i]
-        if not warm and over > 0.0:
-            slope = problem.compliance[i, i] + _local_slope(
-                max(over / (problem.compliance[i, i] + a), 1e-9), a, c
-            )
-            forces[i] = over / slope
+        if not warm:
+            forces[i] = max(over, 0.0) / (problem.compliance[i, i] + a)
         closing[i] = local_approach(forces[i], a, c) if forces[i] > 0.0 else min(over, 0.0)
     return closing, forces
 

@@ -69,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 55b7293d
+# compiled from sources 1bee77bb
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

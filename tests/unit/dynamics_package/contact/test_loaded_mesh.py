@@ -186,6 +186,8 @@ def test_early_contact_is_that_of_the_tip_of_the_wheel():
     assert np.all(cycle.points.path[cycle.early] < spur_pair().path.tip_start)
     assert np.all(cycle.edge_contact[cycle.early | cycle.late])
     assert cycle.edge_contact.sum() > (cycle.early | cycle.late).sum()
+    assert 0.0 < cycle.flank_pressure < 0.5 * cycle.pressure.max()
+    assert cycle.pattern(0).edge.sum() == cycle.edge_contact.sum()
 
 
 def test_softer_edges_carry_less():
