@@ -212,21 +212,18 @@ def _direction(
             step[:] = left
             return 0.0, 0.0, CONVERGED
         return 0.0, 0.0, NO_FORCE
-    matrix, by_rest, by_approach = np.empty((m, m)), np.empty(m), np.empty(m)
+    matrix, weight = np.empty((m, m)), problem.weight[touching]
+    by_rest, by_approach = left[touching], weight.copy()
     for p in range(m):
         i = touching[p]
         for q in range(p, m):
             matrix[q, p] = problem.compliance[touching[q], i]
         matrix[p, p] += _local_slope(forces[i], problem.local[i, 0], problem.local[i, 1])
-        by_rest[p], by_approach[p] = left[i], problem.weight[i]
     if not _factorise(matrix):
         return 0.0, 0.0, NOT_POSITIVE
     _solve(matrix, by_rest)
     _solve(matrix, by_approach)
-    tangent, pressed = 0.0, 0.0
-    for p in range(m):
-        tangent += problem.weight[touching[p]] * by_approach[p]
-        pressed += problem.weight[touching[p]] * by_rest[p]
+    tangent, pressed = np.sum(weight * by_approach), np.sum(weight * by_rest)
     dx = 0.0 if held else (missing - pressed) / tangent
     step[:] = left + problem.weight * dx
     for p in range(m):

@@ -122,3 +122,13 @@ def test_edge_acts_near_the_tip_only():
     tip_soft, tip_hard = (local_at_pitch_point(softer, tip)[0].law[0, 0] for softer in (True, False))
     assert middle_soft == pytest.approx(middle_hard, rel=0.03)
     assert tip_soft > 1.1 * tip_hard
+
+
+def test_approach_goes_on_straight_where_the_contact_is_too_wide_for_the_logarithm():
+    local, _, _ = local_at_pitch_point()
+    a, c = local.law[0]
+    turn = np.exp(a / c - 1.5)
+    assert not local.too_wide(np.array([0.99 * turn]))[0] and local.too_wide(np.array([1.01 * turn]))[0]
+    below, at, above = (local_approach(turn * f, a, c) for f in (0.999, 1.0, 1.001))
+    assert (above - at) == pytest.approx(at - below, rel=1e-2)
+    assert local.half_width(np.array([turn]))[0] > 0.3 * PAIR.normal_module
