@@ -30,6 +30,17 @@ class ThermalOutput:
     gauge_factor: float | None = None
     expansion_mismatch: float = 0.0
 
+    def __post_init__(self) -> None:
+        if not self.coefficients or not np.all(np.isfinite(self.coefficients)):
+            refuse(
+                "thermal_output.coefficients", str(self.coefficients), "must be numbers, one at least",
+                "write those of the package, in strain: 1 um/m is 1e-6",
+            )  # fmt: skip
+        if self.gauge_factor is not None:
+            require_above(
+                "thermal_output.gauge_factor", self.gauge_factor, "", "write that of the data sheet"
+            )
+
     def strain(self, temperature: float | Array, gauge_factor: float) -> Array:
         """Apparent strain [-] at ``temperature`` [K] of a gauge with ``gauge_factor``."""
         celsius = np.asarray(temperature, dtype=float) - ZERO_CELSIUS

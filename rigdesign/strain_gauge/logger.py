@@ -76,6 +76,7 @@ class Amplifier:
         duration : [s]
         seed : of the noise
         """
+        require_above("duration", duration, "s", "write how long is recorded")
         count = int(np.floor(duration * self.sample_rate)) + 1
         factor = self.oversampling if self.low_pass is not None or self.slip_ring_noise else 1
         step = 1.0 / (factor * self.sample_rate)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import Fault, MeasurementError
+from rigdesign.base.number_faults import require_at_least
 
 Array = NDArray[np.float64]
 
@@ -20,8 +21,8 @@ class TurnCurve:
     mean : (m,) mean over the turns
     scatter : (m,) standard deviation of one turn about the mean, NaN of a single turn
     turns : turns averaged; left_out : turns with missing samples
-    by_mating_tooth : (c, m) means of the turns with the same mating tooth, in the order of the recording; c turns
-        until the same teeth meet again; NaN where no turn is
+    by_mating_tooth : (c, m) means of the turns with the same mating tooth; row: turns from angle zero modulo c, the
+        turns until the same teeth meet again; NaN where no turn is
     """
 
     angle: Array
@@ -47,6 +48,10 @@ class AngleGrid:
     points: int
     start: float = 0.0
     same_teeth_after: int = 1
+
+    def __post_init__(self) -> None:
+        for key, count in (("points", self.points), ("same_teeth_after", self.same_teeth_after)):
+            require_at_least(key, count, "", "write a whole number", limit=1.0)
 
 
 def turn_average(angle: Array, values: Array, grid: AngleGrid) -> TurnCurve:

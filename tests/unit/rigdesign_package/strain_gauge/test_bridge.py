@@ -184,6 +184,12 @@ def test_impossible_gauge(changes: dict[str, object], said: str) -> None:
     assert said in str(error.value)
 
 
+@pytest.mark.parametrize("given", [{"coefficients": ()}, {"coefficients": (1e-6,), "gauge_factor": 0.0}])
+def test_impossible_thermal_output(given: dict[str, object]) -> None:
+    with pytest.raises(CaseError, match="thermal_output"):
+        ThermalOutput(**given)
+
+
 @pytest.mark.parametrize("kind", list(ARMS))
 def test_volts_read_as_millivolts_are_no_strain(kind: str) -> None:
     one: Bridge = bridge(kind=kind)

@@ -167,3 +167,12 @@ def test_zero_that_cannot_be() -> None:
     record = StrainRecord(np.arange(10.0), np.zeros(10))
     with pytest.raises(MeasurementError, match="no sample there"):
         UnloadedAngles(3.0, 3.1).readings(record.time, np.linspace(0.0, 1.0, 10), record.ratio)
+
+
+def test_grid_and_duration_that_cannot_be() -> None:
+    with pytest.raises(CaseError, match="points = 0: must be at least 1"):
+        AngleGrid(points=0)
+    with pytest.raises(CaseError, match="same_teeth_after = 0"):
+        AngleGrid(points=9, same_teeth_after=0)
+    with pytest.raises(CaseError, match="duration = 0 s: must be above 0 s"):
+        PLAIN.record(np.zeros_like, 0.0)
