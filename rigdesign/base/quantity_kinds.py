@@ -133,6 +133,8 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
         "linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"
     ),
     QuantityKind("data_size", "byte", {"MB": "megabyte", "GB": "gigabyte", "kB": "kilobyte"}, "500 MB"),
+    QuantityKind("voltage", "V", {"V": "V", "mV": "mV", "uV": "uV"}, "5 V"),
+    QuantityKind("voltage_ratio", "V/V", {"mV/V": "mV/V", "uV/V": "uV/V", "V/V": "V/V"}, "2 mV/V"),
     QuantityKind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
 )
 """Every kind of quantity a case file knows, by name."""
