@@ -1,7 +1,7 @@
 """What the analytic tooth model and ISO 6336-3 say of the same section: quick fidelity of ``dynamics.mesh``."""
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from dynamics.rating.root_stress import root_influence
 from tests.reference.tooth_contact.contact_cases import PAIRS, ContactCase
 
 
-@lru_cache
+@cache
 def law(case: ContactCase) -> MeshLaw:
     """Mesh law of the section as a case builds it, scaled to c_gamma_alpha of ISO 6336-1; one slice."""
     pair = replace(case.pair, face_widths=(case.width, case.width))
@@ -54,5 +54,3 @@ def iso_root_stress(case: ContactCase, index: int) -> float:
     limits = pair.path
     outer = limits.start + pair.base_pitch if index == 0 else limits.end - pair.base_pitch
     return float(root_influence(pair, index, n_path=2001).at(outer)) * case.force / case.width
-
-

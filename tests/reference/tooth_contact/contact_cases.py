@@ -1,8 +1,8 @@
 """The gear pairs of the reference, a pair at a position as two plane bodies, and what is kept of a result."""
 
-from dataclasses import asdict, dataclass, replace
-from functools import lru_cache, partial
-from math import nan, pi
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import pi
 from pathlib import Path
 from typing import Any, Literal
 
@@ -124,7 +124,13 @@ def contact_model(
 
 
 def solve_contact(
-    case: ContactCase, path: float, sizes: EdgeSizes, folder: Path, *, penalty: float = PENALTY, start: float = 20e-6
+    case: ContactCase,
+    path: float,
+    sizes: EdgeSizes,
+    folder: Path,
+    *,
+    penalty: float = PENALTY,
+    start: float = 20e-6,
 ) -> dict[str, Any]:
     """Loaded contact with pair 0 at ``path`` [m]; what is kept of it, SI (see the README of this folder).
 
@@ -185,25 +191,12 @@ def root_stress(model: PlaneModel, result: PlaneResult, body: int, tooth: int) -
     sigma = result.stress[middle + start]
     given = tangent[:, 0] ** 2 * sigma[:, 0] + tangent[:, 1] ** 2 * sigma[:, 1]
     given += 2.0 * tangent[:, 0] * tangent[:, 1] * sigma[:, 3]
-    centre = np.array([body * np.round(_centre(model, body), 9), 0.0])
-    axis = _axis(model, body, tooth, centre)
+    centre = mesh.points[mesh.lines["bore"][:-1:2]].mean(axis=0)
+    tip = mesh.points[mesh.lines[f"tip_{tooth}"]][[0, -1]].mean(axis=0) - centre
+    axis = tip / np.hypot(*tip)
     return {
         "stress": float(stress[top]) * 1e6,
         "extrapolated": float(given.max()) * 1e6,
         "radius": float(np.hypot(*(mesh.points[middle[top]] - centre))) / MM,
         "tangent": float(np.arccos(min(1.0, abs(float(tangent[top] @ axis))))),
     }
-
-
-def _centre(model: PlaneModel, body: int) -> float:
-    return float(model.bodies[body].points[model.bodies[body].lines["bore"][:-1:2]].mean(axis=0)[0])
-
-
-def _axis(model: PlaneModel, body: int, tooth: int, centre: Array) -> Array:
-    """Unit vector of a tooth's axis: both ends of its tip stand evenly about it."""
-    mesh = model.bodies[body]
-    tip = mesh.points[mesh.lines[f"tip_{tooth}"]]
-    axis = tip.mean(axis=0) - centre
-    ends = 0.5 * (tip[0] + tip[-1]) - centre
-    axis = ends if np.isfinite(ends).all() else axis
-    return np.asarray(axis / np.hypot(*axis))

@@ -172,7 +172,11 @@ def _printed(path: Path, names: Sequence[str]) -> tuple[float, dict[str, tuple[A
         if "set DRIVER" in line:
             approach = float(lines[k + 2].split()[1])
         elif "total surface force" in line:
-            name = next(word for word in reversed(lines[:k]) if "slave set" in word).split("set S")[1].split(",")[0]
+            name = (
+                next(word for word in reversed(lines[:k]) if "slave set" in word)
+                .split("set S")[1]
+                .split(",")[0]
+            )
             values = [float(word) for word in lines[k + 2].split()]
             forces[name] = (np.array(values[:2]), values[5])
     assert set(forces) == set(names), f"{path} lacks the forces of {set(names) - set(forces)}"
@@ -181,14 +185,22 @@ def _printed(path: Path, names: Sequence[str]) -> tuple[float, dict[str, tuple[A
 
 def nodal_values(path: Path, block: str, columns: int, n_nodes: int) -> Array:
     """(n_nodes, columns) values of the last block of this name in a result file; nodes beyond are left out."""
-    values, inside = np.full((n_nodes, columns), np.nan), False
+    return nodal_blocks(path, block, columns, n_nodes)[-1]
+
+
+def nodal_blocks(path: Path, block: str, columns: int, n_nodes: int) -> list[Array]:
+    """(n_nodes, columns) values of every block of this name, step after step."""
+    found: list[Array] = []
+    inside = False
     with path.open() as text:
         for line in text:
             if line.startswith(" -4"):
                 inside = line.split()[1] == block
+                if inside:
+                    found.append(np.full((n_nodes, columns), np.nan))
             elif inside and line.startswith(" -1"):
                 node = int(line[3:13]) - 1
                 if node < n_nodes:
-                    values[node] = [float(line[13 + 12 * k : 25 + 12 * k]) for k in range(columns)]
-    assert np.isfinite(values).all(), f"{path} lacks {block} at some nodes"
-    return values
+                    found[-1][node] = [float(line[13 + 12 * k : 25 + 12 * k]) for k in range(columns)]
+    assert found and np.isfinite(found).all(), f"{path} lacks {block} at some nodes"
+    return found

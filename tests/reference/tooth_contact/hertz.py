@@ -48,7 +48,10 @@ def solve_rollers(
         penalty=penalty,
     )
     result = solve(
-        model, folder, first=[0.2 * contact.half_width**2 / min(contact.radii)], force=contact.line_load * thickness
+        model,
+        folder,
+        first=[0.2 * contact.half_width**2 / min(contact.radii)],
+        force=contact.line_load * thickness,
     )
     line = bodies[0].lines["touch"]
     touching = line[result.pressure_at[line] > 0.02 * contact.pressure]

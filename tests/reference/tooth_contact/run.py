@@ -62,7 +62,9 @@ def jobs() -> Iterator[Job]:
     for case in ("uhcf_crowned", "fzg_c", "uhcf"):
         yield from (Job(case, f"sweep_{k}") for k in range(-SWEEP // 2, SWEEP // 2) if k)
     for case in CASES:
-        yield from (Job(case, position, "fine") for position in positions if (case, position) not in FINE_FIRST)
+        yield from (
+            Job(case, position, "fine") for position in positions if (case, position) not in FINE_FIRST
+        )
 
 
 FINE_FIRST = (("uhcf_crowned", "start"), ("fzg_c", "start"))

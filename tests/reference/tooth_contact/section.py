@@ -3,11 +3,12 @@
 Millimetres. Tooth 0 stands on the x axis; its working flank, the right one of ``ToothForm``, looks to negative y.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import ceil, cos, hypot, pi, sin
 
-import gmsh  # noqa: TID251
+import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
@@ -75,23 +76,24 @@ def gear_section(
     teeth: int = 5,
     sizes: EdgeSizes | None = None,
     removed: Callable[[Array], Array] | None = None,
+    flank_nodes: Sequence[float] = (),
 ) -> PlaneMesh:
     """Mesh of ``teeth`` neighbouring teeth on a ring whose rest is smooth at the root circle.
 
-    bore_radius [m]; removed : metal taken off the working flanks along their normal [m] over their roll length [m].
+    bore_radius [m]; removed : metal taken off the working flanks along their normal [m] over their roll length [m];
+    flank_nodes : roll lengths [m] at which the working flanks have a node.
     Names: ``bore``; ``flank_j``, ``fillet_j``, ``tip_j``, ``back_j`` of tooth j, j = 0 in the middle.
     """
     sizes = sizes or EdgeSizes()
     pitch = 2.0 * pi / form.gear.teeth
     half = teeth // 2
     tooth = _tooth_pieces(form, sizes, removed)
+    tooth[1] = replace(tooth[1], places=_with_nodes(form, tooth[1].places, flank_nodes))
     root = form.root_radius * MM
     gap_start = float(np.arctan2(*tooth[-1].curve(np.array([1.0]))[0]))
     pieces: list[Piece] = []
     for j in range(-half, half + 1):
-        pieces += [
-            Piece(_turned(p.curve, j * pitch - 0.5 * pi), p.places, f"{p.name}_{j}") for p in reversed_tooth(tooth)
-        ]
+        pieces += [Piece(_turned(p.curve, j * pitch - 0.5 * pi), p.places, f"{p.name}_{j}") for p in tooth]
         # root land to the next tooth, or the smooth rest of the ring behind the last one
         first = j * pitch - gap_start
         land = pitch + 2.0 * gap_start
@@ -107,9 +109,16 @@ def gear_section(
     return plane_mesh([pieces, [ring]])
 
 
-def reversed_tooth(tooth: list[Piece]) -> list[Piece]:
-    """Pieces from the working side (low angles) over the tip to the back, counter-clockwise."""
-    return tooth
+def _with_nodes(form: ToothForm, places: Array, rolls: Sequence[float]) -> Array:
+    """The places on the flank with the nearest one inside moved to every roll length."""
+    places = places.copy()
+    for roll in rolls:
+        radius = hypot(form.gear.base_radius, roll)
+        wanted = (radius - form.form_radius) / (form.flank_tip_radius - form.form_radius)
+        inside = 1 + int(np.argmin(np.abs(places[1:-1] - wanted)))
+        places[inside] = wanted
+    assert np.all(np.diff(places) > 0.0), f"roll lengths {rolls} lie too close to each other or off the flank"
+    return places
 
 
 def _tooth_pieces(form: ToothForm, sizes: EdgeSizes, removed: Callable[[Array], Array] | None) -> list[Piece]:
@@ -189,8 +198,8 @@ def _turned(curve: Curve, angle: float) -> Curve:
 
 
 def _arc(radius: float, start: float, end: float) -> Curve:
-    return lambda t: radius * np.column_stack(
-        [np.cos(start + t * (end - start)), np.sin(start + t * (end - start))]
+    return lambda t: (
+        radius * np.column_stack([np.cos(start + t * (end - start)), np.sin(start + t * (end - start))])
     )
 
 
@@ -220,7 +229,7 @@ def _triangulate(corners: Array, ends: list[tuple[int, int]]) -> tuple[Array, In
             geo.addPoint(x, y, 0.0, tag=tag)
         for start, end in ends:
             around = [*range(start, end), start]
-            lines = [geo.addLine(a + 1, b + 1) for a, b in zip(around[:-1], around[1:], strict=True)]
+            lines = [geo.addLine(a + 1, b + 1) for a, b in pairwise(around)]
             for line in lines:
                 geo.mesh.setTransfiniteCurve(line, 2)
             loops.append(geo.addCurveLoop(lines))
