@@ -7,7 +7,7 @@ Source: ISO 21771:2007, 5 and annex A; Litvin, Fuentes, Gear Geometry and Applie
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan2, cos, hypot, pi, radians, sin, tan
+from math import atan2, cos, hypot, pi, radians, sin, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,9 @@ class ToothForm:
     def __post_init__(self) -> None:
         gear = self.gear
         if not self.protuberance >= 0.0:
-            raise GearGeometryError(f"protuberance = {self.protuberance} m must not be negative; give 0 for none")
+            raise GearGeometryError(
+                f"protuberance = {self.protuberance} m must not be negative; give 0 for none"
+            )
         if self.flank_tip_radius <= self.form_radius:
             raise GearGeometryError(
                 f"flank from d_Ff = {2e3 * self.form_radius:.3f} mm to {2e3 * self.flank_tip_radius:.3f} mm: nothing is "
@@ -75,7 +77,9 @@ class ToothForm:
     def root_radius(self) -> float:
         """Of the root circle as generated [m]."""
         gear = self.gear
-        return gear.reference_radius - gear.normal_module * (gear.rack.dedendum - gear.generating_profile_shift)
+        return gear.reference_radius - gear.normal_module * (
+            gear.rack.dedendum - gear.generating_profile_shift
+        )
 
     @cached_property
     def flank_tip_roll(self) -> float:
@@ -91,7 +95,9 @@ class ToothForm:
 
         if outside(gear.roll_length(self.form_radius)) > 0.0:
             return 0.0
-        return float(brentq(outside, gear.roll_length(self.form_radius), gear.roll_length(radius), xtol=1e-15))
+        return float(
+            brentq(outside, gear.roll_length(self.form_radius), gear.roll_length(radius), xtol=1e-15)
+        )
 
     @property
     def flank_tip_radius(self) -> float:

@@ -59,7 +59,10 @@ class SectionDivision:
     def finer(self, factor: float) -> "SectionDivision":
         """The same in elements smaller by a factor."""
         return SectionDivision(
-            **{name: max(1, round(factor * getattr(self, name))) for name in ("profile", "thickness", "depth")},
+            **{
+                name: max(1, round(factor * getattr(self, name)))
+                for name in ("profile", "thickness", "depth")
+            },
             fillet=2 * max(1, round(0.5 * factor * self.fillet)),
             teeth=self.teeth,
         )
@@ -185,7 +188,7 @@ class _Drawing:
         fillet = form.fillet(121)
         foot = 60
         qx, qy = fillet[foot].tolist()
-        axis_low = self._polar(float(np.hypot(qx, qy)) , turn)
+        axis_low = self._polar(float(np.hypot(qx, qy)), turn)
         axis_deep = self._polar(self._ring.depth, turn)
         tip = form.tip_points()
         axis_top = self._point(0.0, float(tip[-1, 1]), turn)
@@ -203,10 +206,14 @@ class _Drawing:
             t = self._point(*(mirror * tip[0]).tolist(), turn)
             space = 0.5 * self._pitch
             arc = np.linspace(space, float(np.arctan2(fillet[0, 0], fillet[0, 1])), 5)[:-1]
-            ground = np.concatenate([form.root_radius * np.column_stack([np.sin(arc), np.cos(arc)]), fillet[: foot + 1]])
+            ground = np.concatenate(
+                [form.root_radius * np.column_stack([np.sin(arc), np.cos(arc)]), fillet[: foot + 1]]
+            )
             lower = self._spline(mirror * ground, (root, q), turn, half)
             upper = self._spline(mirror * fillet[foot:], (q, f), turn, half)
-            rolls = np.linspace(form.gear.roll_length(form.form_radius), form.gear.roll_length(form.flank_tip_radius), 61)
+            rolls = np.linspace(
+                form.gear.roll_length(form.form_radius), form.gear.roll_length(form.flank_tip_radius), 61
+            )
             flank = self._spline(mirror * form.flank_point(rolls), (f, t), turn, division.profile)
             top = self._tip(mirror * tip, t, axis_top, turn)
             foot_line = self._arc(axis_low, q, division.thickness)
@@ -250,9 +257,7 @@ class _Drawing:
         loop = geo.addCurveLoop(outer)
         for radius in [ring.bore] if ring.rim is None else [ring.rim, ring.bore]:
             corners = [self._polar(radius, 0.5 * pi * k) for k in range(4)]
-            circle = [
-                geo.addCircleArc(corners[k], self._centre, corners[(k + 1) % 4]) for k in range(4)
-            ]
+            circle = [geo.addCircleArc(corners[k], self._centre, corners[(k + 1) % 4]) for k in range(4)]
             hole = geo.addCurveLoop(circle)
             surface = geo.addPlaneSurface([loop, hole])
             geo.mesh.setRecombine(2, surface)
@@ -270,14 +275,21 @@ class _Drawing:
         growing = field.add("MathEval")
         columns = 2 * self._division.thickness + self._division.fillet
         first = self._pitch * self._ring.depth / columns
-        field.setString(growing, "F", f"Min({first:.9g} + {GROWTH} * F{distance}, {COARSEST * self._ring.root:.9g})")
+        field.setString(
+            growing, "F", f"Min({first:.9g} + {GROWTH} * F{distance}, {COARSEST * self._ring.root:.9g})"
+        )
         field.setAsBackgroundMesh(growing)
 
     def divided(self) -> Section:
         """The mesh of everything drawn."""
         gmsh = self._gmsh
         self._geo.synchronize()
-        for name, value in (("Algorithm", 8), ("RecombinationAlgorithm", 3), ("SecondOrderIncomplete", 1), ("MeshSizeExtendFromBoundary", 0)):
+        for name, value in (
+            ("Algorithm", 8),
+            ("RecombinationAlgorithm", 3),
+            ("SecondOrderIncomplete", 1),
+            ("MeshSizeExtendFromBoundary", 0),
+        ):
             gmsh.option.setNumber(f"Mesh.{name}", value)
         self._grade()
         gmsh.model.mesh.generate(2)

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from dynamics.mesh.microgeometry import Microgeometry
 from numpy.typing import NDArray
 
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.mesh.flank import flank_modification
-from dynamics.mesh.microgeometry import Microgeometry
 from rigdesign.case.loader import load_case
 from rigdesign.rig.model import build_rig
 from tests.reference.tooth_contact.deck import PENALTY, STEEL, ContactPair, PlaneModel, PlaneResult, solve

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from dynamics.mesh.microgeometry import Microgeometry
 
 from dynamics.contact.face import FaceGrid, default_positions
 from dynamics.contact.flank_gap import microgeometry_gap
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.microgeometry import Microgeometry
 from tests.builders.loaded_mesh import equal_gears, sliced_mesh
 from tests.builders.p2_gears import helical_pair
 

@@ -5,6 +5,7 @@ from math import cos, hypot
 
 import numpy as np
 import pytest
+from dynamics.mesh.microgeometry import Microgeometry
 
 from dynamics.contact.contact_ratio import unloaded_contact_ratio
 from dynamics.contact.face import FaceGrid
@@ -12,7 +13,6 @@ from dynamics.contact.flank_gap import microgeometry_gap
 from dynamics.contact.loaded_mesh import LoadedMesh, ideal
 from dynamics.contact.local_approach import EdgeModel
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
-from dynamics.mesh.microgeometry import Microgeometry
 from tests.builders.loaded_mesh import equal_gears, exchanged_fzg_c, fzg_c, influence_of, sliced_mesh
 from tests.builders.p2_gears import helical_pair, spur_pair
 
