@@ -1,32 +1,28 @@
-"""Gap of flanks with micro-geometry and misalignment, as the contact asks for it."""
+"""Gap of flanks with modifications, deviations and misalignment, as the contact asks for it."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.points import FlankGap
-from dynamics.gear.pair import GearPair
-from dynamics.mesh.flank import flank_modification
-from dynamics.mesh.microgeometry import Microgeometry
+from dynamics.mesh.pair_gap import PairGap
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-def microgeometry_gap(
-    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], misalignment: float = 0.0
-) -> FlankGap:
-    """Gap that the modifications of pinion and wheel leave, all teeth alike.
+def flank_gap(gap: PairGap) -> FlankGap:
+    """What flanks, axes and unequal base pitches of a pair leave between its front flanks, every tooth its own."""
 
-    micro : of pinion and wheel, without deviations of single teeth
-    misalignment : gap per face width [rad], growing with z
-    """
+    def of_points(numbers: Integers, face: Array, path: Array) -> Array:
+        return gap.modifications(path, face) + gap.deviations(path, face, numbers)
 
-    def gap(numbers: Integers, face: Array, path: Array) -> Array:
-        total = misalignment * face
-        for position in np.unique(face):
-            here = face == position
-            for index, gear in enumerate(micro):
-                total[here] += flank_modification(pair, gear, index, path[here], position[None])[0]
-        return total
+    return of_points
 
-    return gap
+
+def modified_gap(gap: PairGap) -> FlankGap:
+    """The same without deviations: all teeth alike."""
+
+    def of_points(numbers: Integers, face: Array, path: Array) -> Array:
+        return gap.modifications(path, face)
+
+    return of_points

@@ -10,7 +10,7 @@ force and approach belong together (virtual work) also where a tip corner's forc
 Source: gears.md g; Conry and Seireg, ASME J. Eng. Ind. 95 (1973) 1115.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import nan
 
 import numpy as np
@@ -162,8 +162,3 @@ class LoadedMesh:
                 f"{force:.4g} N: residual {solution.residual:.1e} after {solution.steps} steps, limit 1e-12: "
                 + FAILURES.get(solution.status, "no point can take the force; check gap and reach")
             )
-
-
-def ideal(mesh: LoadedMesh) -> LoadedMesh:
-    """The same pair with involute flanks without deviation."""
-    return replace(mesh, gap=no_gap)

@@ -22,7 +22,7 @@ follows pair p - 1 into mesh; it joins pinion tooth p and wheel tooth p, counted
 
 
 def no_gap(pair: Integers, face: Array, path: Array) -> Array:
-    """Gap of ideal flanks."""
+    """Gap of ideal flanks of equal base pitch."""
     return np.zeros_like(path)
 
 
@@ -75,8 +75,7 @@ def contact_points(
 
     gap : of the flanks, see ``FlankGap``; tips : ends of the flanks, None: sharp on the tip circles
 
-    Gears of unequal base pitch keep the ratio of their teeth; the difference becomes a gap along the path. Raises
-    DynamicsInputError for a reach or number of positions that is not positive, or a gap that is not finite.
+    Raises DynamicsInputError for a reach or number of positions that is not positive, or a gap that is not finite.
     """
     if n_positions < 1 or not reach > 0.0:
         raise DynamicsInputError(f"n_positions = {n_positions} and reach = {reach} m must be positive")
@@ -97,7 +96,7 @@ def contact_points(
     added = gap(numbers.ravel(), face.ravel(), path.ravel()).reshape(path.shape)
     if not np.all(np.isfinite(added[inside])):
         raise DynamicsInputError("gap of the flanks is not finite within reach; let it go on beyond the path")
-    total = place.gap + added + path * pair.base_pitch_difference / pitch
+    total = place.gap + added
     weight = cos(pair.base_helix_angle) * place.lever[1] / pair.base_radii[1]
     return ContactPoints(
         pair=pair,

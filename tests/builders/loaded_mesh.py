@@ -4,9 +4,14 @@ import numpy as np
 
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.face import FaceGrid
+from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
+from dynamics.contact.points import FlankGap
 from dynamics.contact.slice_compliance import SliceCompliance
+from dynamics.flank.axes import AxisMisalignment
+from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
+from dynamics.mesh.pair_gap import PairGap
 
 
 def equal_gears(module: float = 3e-3, teeth: int = 50, width: float = 20e-3) -> GearPair:
@@ -74,3 +79,9 @@ def influence_of(
         deflection={0: own, 1: next_one, -1: next_one.T},
         axis_depth=slices.depth(profile),
     )
+
+
+def gap_of(pair: GearPair, micro: tuple[Microgeometry, Microgeometry], misalignment: float = 0.0) -> FlankGap:
+    """Gap of modified flanks on axes out of line by ``misalignment`` along the line of action."""
+    axes = AxisMisalignment.of_gap(pair, misalignment, misalignment)
+    return flank_gap(PairGap.of_pair(pair, micro, axes))

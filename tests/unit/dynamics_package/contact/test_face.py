@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from dynamics.mesh.microgeometry import Microgeometry
 
 from dynamics.contact.face import FaceGrid, default_positions
-from dynamics.contact.flank_gap import microgeometry_gap
 from dynamics.errors import DynamicsInputError
-from tests.builders.loaded_mesh import equal_gears, sliced_mesh
+from dynamics.flank.microgeometry import Microgeometry
+from tests.builders.loaded_mesh import equal_gears, gap_of, sliced_mesh
 from tests.builders.p2_gears import helical_pair
 
 
@@ -41,7 +40,7 @@ def figures(pair, n, gap, force):
 )
 def test_number_of_positions_is_converged_to_one_per_cent(pair, force):
     micro = (Microgeometry(profile_crowning=5e-6, lead_crowning=5e-6, helix_slope=6e-6),) * 2
-    gap = microgeometry_gap(pair, micro)
+    gap = gap_of(pair, micro)
     n = default_positions(pair, gap_varies=True)
     assert figures(pair, n, gap, force) == pytest.approx(figures(pair, 3 * n - 2, gap, force), rel=1e-2)
 
