@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import cos
 from typing import Protocol
 
 import numpy as np
@@ -40,6 +41,9 @@ class FlankCompliance(Protocol):
         The transverse distance to the tooth axis over cos(beta_b)
         """
 
+    def excess(self, roll: Array) -> Array:
+        """Addition of the tooth to the logarithm of the local approach of a half space, like ``roll`` [-]."""
+
 
 class InfluenceNumbers(Protocol):
     """Influence numbers of one gear; see `InterpolatedCompliance`."""
@@ -57,6 +61,14 @@ class InfluenceNumbers(Protocol):
         """Tooth offset k -> (n_p n_f, n_p n_f), face running faster: displacement of tooth k (rows) per force on
         tooth 0 (columns) [m/N]."""
 
+    @property
+    def axis_depth(self) -> Array:
+        """(n_p,) transverse distance along the normal from flank to tooth axis [m]."""
+
+    @property
+    def local_excess(self) -> Array:
+        """(n_p,) what the tooth adds to the logarithm of the local approach of a half space [-]."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class InterpolatedCompliance:
@@ -67,6 +79,7 @@ class InterpolatedCompliance:
     deflection : tooth offset k -> (n_p n_f, n_p n_f), face running faster: displacement of tooth k (rows) per force on
         tooth 0 (columns) [m/N]; without 1 and -1 the teeth do not know of each other
     axis_depth : (n_p,) depth to which the local approach counts [m]
+    local_excess : (n_p,) addition of the tooth to its logarithm [-]
     beyond : displacement of all teeth further away per force, the share of the body [m/N]
 
     The shape functions of load and displacement are the same, so that the matrix is symmetric and positive where the
@@ -77,14 +90,16 @@ class InterpolatedCompliance:
     face: Array
     deflection: Mapping[int, Array]
     axis_depth: Array
+    local_excess: Array
     beyond: float = 0.0
 
     def __post_init__(self) -> None:
         n_p, n_f = len(self.profile), len(self.face)
-        if n_p < 4 or self.axis_depth.shape != (n_p,) or 0 not in self.deflection:
+        shapes = (self.axis_depth.shape, self.local_excess.shape)
+        if n_p < 4 or shapes != ((n_p,), (n_p,)) or 0 not in self.deflection:
             raise DynamicsInputError(
-                f"influence numbers: {n_p} profile positions, axis_depth {self.axis_depth.shape} and offsets "
-                f"{sorted(self.deflection)} given; four positions, one depth each and offset 0 are needed"
+                f"influence numbers: {n_p} profile positions, axis_depth and local_excess {shapes} and offsets "
+                f"{sorted(self.deflection)} given; four positions, one depth and excess each and offset 0 are needed"
             )
         for name, grid in (("profile", self.profile), ("face", self.face)):
             if not np.all(np.diff(grid) > 0.0):
@@ -106,14 +121,15 @@ class InterpolatedCompliance:
 
     @classmethod
     def of(
-        cls, numbers: InfluenceNumbers, axis_depth: Array, beyond: float = 0.0
+        cls, numbers: InfluenceNumbers, slant: float = 0.0, beyond: float = 0.0
     ) -> "InterpolatedCompliance":
-        """Compliance from influence numbers and the depth (n_p,) of their points [m]."""
+        """Compliance from influence numbers; slant : base helix angle, by which depths in space are longer [rad]."""
         return cls(
             profile=numbers.profile,
             face=numbers.face,
             deflection=numbers.deflection,
-            axis_depth=axis_depth,
+            axis_depth=numbers.axis_depth / cos(slant),
+            local_excess=numbers.local_excess,
             beyond=beyond,
         )
 
@@ -171,3 +187,7 @@ class InterpolatedCompliance:
     def depth(self, roll: Array) -> Array:
         """Depth to which the local approach counts, shape of ``roll`` [m]."""
         return np.asarray(self._depth(np.clip(roll, self.profile[0], self.profile[-1])))
+
+    def excess(self, roll: Array) -> Array:
+        """Addition to the logarithm of the local approach, shape of ``roll`` [-]."""
+        return np.asarray(np.interp(roll, self.profile, self.local_excess))

@@ -53,6 +53,7 @@ class ContactPlace:
     pressure_angle : direction of the force, against the tangent to the pitch circles [rad]
     beyond : how far the flank, carried on, would touch beyond its end; 0 on the path
     corner : 0 flank on flank, 1 corner of the pinion beyond the path, 2 corner of the wheel ahead of it
+    bend : relative curvature that modifications add to that of the involutes [1/m]
     """
 
     gap: Array
@@ -62,6 +63,7 @@ class ContactPlace:
     pressure_angle: Array
     beyond: Array
     corner: NDArray[np.int8]
+    bend: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,5 +172,12 @@ def contact_places(pair: GearPair, path: Array, tips: tuple[TipEnd, TipEnd] | No
         carried_on = np.abs(mesh.reach + own - tip.roll)
         beyond[outside] = carried_on * (tip.roll + 0.5 * carried_on) / mesh.base
     return ContactPlace(
-        gap=gap, roll=rolls, lever=levers, reach=reaches, pressure_angle=angle, beyond=beyond, corner=corner
+        gap=gap,
+        roll=rolls,
+        lever=levers,
+        reach=reaches,
+        pressure_angle=angle,
+        beyond=beyond,
+        corner=corner,
+        bend=zero,
     )

@@ -1,4 +1,8 @@
-"""Gap of flanks with modifications, deviations and misalignment, as the contact asks for it."""
+"""Gap of flanks with modifications, deviations and misalignment, as the contact asks for it.
+
+Beyond the path a tip corner touches the mating flank away from the line of action; the metal removed there is that of
+the places that touch.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,19 +14,28 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-def flank_gap(gap: PairGap) -> FlankGap:
-    """What flanks, axes and unequal base pitches of a pair leave between its front flanks, every tooth its own."""
+def modified_gap(gap: PairGap) -> FlankGap:
+    """What modifications, axes and unequal base pitches of a pair leave between its front flanks, all teeth alike."""
 
-    def of_points(numbers: Integers, face: Array, path: Array) -> Array:
-        return gap.modifications(path, face) + gap.deviations(path, face, numbers)
+    def of_points(pair: Integers, face: Array, path: Array, rolls: tuple[Array, Array]) -> Array:
+        pinion, wheel = gap.flanks
+        return (
+            gap.of_axes(path, face) + pinion.modification(rolls[0], face) + wheel.modification(rolls[1], face)
+        )
 
     return of_points
 
 
-def modified_gap(gap: PairGap) -> FlankGap:
-    """The same without deviations: all teeth alike."""
+def flank_gap(gap: PairGap) -> FlankGap:
+    """The same with the deviations of single teeth."""
+    modified = modified_gap(gap)
 
-    def of_points(numbers: Integers, face: Array, path: Array) -> Array:
-        return gap.modifications(path, face)
+    def of_points(pair: Integers, face: Array, path: Array, rolls: tuple[Array, Array]) -> Array:
+        pinion, wheel = gap.flanks
+        return (
+            modified(pair, face, path, rolls)
+            + pinion.deviation(rolls[0], face, pair)
+            + wheel.deviation(rolls[1], face, pair + wheel.count.tooth_offset_2)
+        )
 
     return of_points

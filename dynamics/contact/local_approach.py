@@ -126,7 +126,8 @@ class LocalModel:
         for index in (0, 1):
             nu, depth = self.pair.poisson_ratios[index], self.gears[index].depth(place.roll[index])
             half_space = np.log(pi * depth**2 / (radius * total)) - nu / (1.0 - nu)
-            bracket += moduli[index] * (half_space + self._edge(index, place, depth, reference))
+            tooth = self.gears[index].excess(place.roll[index]) + self._edge(index, place, depth, reference)
+            bracket += moduli[index] * (half_space + tooth)
         law = np.stack([(bracket + total * np.log(length)) / (pi * length), total / (pi * length)], axis=-1)
         return LocalContact(law=law, radius=radius, length=length, modulus=total)
 
@@ -137,7 +138,7 @@ class LocalModel:
         further from its end than a half-width.
         """
         slant = cos(self.pair.base_helix_angle)
-        curvature = slant * (1.0 / place.roll[0] + 1.0 / place.roll[1])
+        curvature = slant * (1.0 / place.roll[0] + 1.0 / place.roll[1] + place.bend)
         least = self.edges.least_radius or LEAST_EDGE * self.pair.normal_module
         wide = 4.0 * self.line_load * sum(elastic_moduli(self.pair)) / (pi * curvature)
         share = place.beyond**2 / (place.beyond**2 + wide)

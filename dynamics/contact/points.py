@@ -1,27 +1,38 @@
 """Potential contact points of a gear pair over one mesh cycle: tooth pairs x face positions, gaps and directions."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, cos, floor, tan
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.corner import ContactPlace, TipEnd, contact_places, sharp_tips
 from dynamics.contact.face import FaceGrid
+from dynamics.contact.touching import Profiles, settled
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.tip_contact import path_reach
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-FlankGap = Callable[[Integers, Array, Array], Array]
-"""Gap that the flanks add, along the transverse line of action [m], growing with metal removed: of tooth pair (n,),
-face position from mid-face (n,) [m] and path position (n,) [m], which goes beyond the ends of the path. Tooth pair p
-follows pair p - 1 into mesh; it joins pinion tooth p and wheel tooth p, counted as they come into mesh."""
 
 
-def no_gap(pair: Integers, face: Array, path: Array) -> Array:
+class FlankGap(Protocol):
+    """Gap that the flanks add at potential contact points, along the transverse line of action.
+
+    Tooth pair p follows pair p - 1 into mesh; it joins pinion tooth p and wheel tooth p, as they come into mesh.
+    """
+
+    def __call__(self, pair: Integers, face: Array, path: Array, rolls: tuple[Array, Array]) -> Array:
+        """Return the gap, growing with metal removed [m]; all arrays of one shape.
+
+        pair, face, path : tooth pair, position from mid-face and path position, which goes beyond the path [m]
+        rolls : where the point lies on the flanks of pinion and wheel [m]; beyond the path not on the line of action
+        """
+
+
+def no_gap(pair: Integers, face: Array, path: Array, rolls: tuple[Array, Array]) -> Array:
     """Gap of ideal flanks of equal base pitch."""
     return np.zeros_like(path)
 
@@ -93,7 +104,13 @@ def contact_points(
     place = contact_places(pair, np.clip(path, first, last), ends)
     numbers = np.broadcast_to(pairs[:, None], path.shape)
     face = np.broadcast_to(grid.position, path.shape)
-    added = gap(numbers.ravel(), face.ravel(), path.ravel()).reshape(path.shape)
+
+    def removed(rolls: tuple[Array, Array]) -> Array:
+        return gap(numbers, face, path, rolls)
+
+    added = np.zeros_like(path)
+    if gap is not no_gap:
+        place, added = settled(Profiles(pair=pair, place=place, tips=ends), removed)
     if not np.all(np.isfinite(added[inside])):
         raise DynamicsInputError("gap of the flanks is not finite within reach; let it go on beyond the path")
     total = place.gap + added

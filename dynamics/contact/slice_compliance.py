@@ -92,3 +92,7 @@ class SliceCompliance:
         """Depth of the tooth axis under the flank, shape of ``roll`` [m]."""
         table, _, depth = self._table
         return np.asarray(np.interp(roll, table, depth))
+
+    def excess(self, roll: Array) -> Array:
+        """None: Weber's half space is all of the local approach."""
+        return np.zeros_like(roll)

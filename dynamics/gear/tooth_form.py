@@ -64,8 +64,8 @@ class ToothForm:
             )
         if self.flank_tip_radius <= self.form_radius:
             raise GearGeometryError(
-                f"flank from d_Ff = {2e3 * self.form_radius:.3f} mm to {2e3 * self.flank_tip_radius:.3f} mm: nothing is "
-                "left of it; reduce protuberance or tip edge, or raise the tip diameter"
+                f"flank from d_Ff = {2e3 * self.form_radius:.3f} mm to {2e3 * self.flank_tip_radius:.3f} mm: "
+                "nothing is left of it; reduce protuberance or tip edge, or raise the tip diameter"
             )
         if gear.tip_thickness <= 0.0:
             raise GearGeometryError(
@@ -127,7 +127,7 @@ class ToothForm:
     def fillet_point(self, tool_angle: float, beyond: float = 0.0) -> tuple[float, float]:
         """Point (x, y) [m] that the tip of the tool leaves.
 
-        tool_angle : place on its tip arc [rad]; pi/2 gives the root circle, the angle of the flank that joins it the end
+        tool_angle : place on its tip arc [rad]; pi/2 gives the root circle, the angle of the adjoining flank the end
         beyond : distance up that flank from there [m]
         """
         gear = self.gear
@@ -142,7 +142,10 @@ class ToothForm:
         return -(x * cos(angle) + y * sin(angle)), y * cos(angle) - x * sin(angle)
 
     def _traced(self, place: float) -> tuple[float, float]:
-        """Fillet point (x, y) [m]; place : 0 on the root circle, 1 at the end of the tip arc, 2 beyond the protuberance."""
+        """Fillet point (x, y) [m].
+
+        place : 0 on the root circle, 1 at the end of the tip arc, 2 beyond the protuberance
+        """
         start = self._flank_angle
         if place <= 1.0:
             return self.fillet_point(0.5 * pi + place * (start - 0.5 * pi))
@@ -165,7 +168,7 @@ class ToothForm:
         return 1.0
 
     def _outside(self, place: float) -> float:
-        """Angle by which the fillet stands outside of the involute at the same radius [rad]; 1 below the base circle."""
+        """Angle by which the fillet stands outside of the involute at one radius [rad]; 1 below the base circle."""
         x, y = self._traced(place)
         radius = hypot(x, y)
         return atan2(x, y) - self.half_angle(radius) if radius >= self.gear.base_radius else 1.0

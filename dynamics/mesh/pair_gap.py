@@ -72,12 +72,16 @@ class PairGap:
         Gears of unequal thermal expansion keep the ratio of their tooth numbers; the difference of their base pitches
         becomes a gap along the path.
         """
-        front, back = self.axes.gap_slope(self.pair)
-        gap = np.asarray(path) * self.pair.base_pitch_difference / self.pair.base_pitch
-        gap = gap + (front if flank == "front" else back) * np.asarray(face)
+        gap = self.of_axes(path, face, flank)
         for gear in self.flanks:
             gap = gap + gear.modification(gear.roll(path), face, flank)
         return np.asarray(gap)
+
+    def of_axes(self, path: ArrayLike, face: ArrayLike, flank: Flank = "front") -> Array:
+        """Misalignment and difference of base pitches [m]."""
+        front, back = self.axes.gap_slope(self.pair)
+        gap = np.asarray(path) * self.pair.base_pitch_difference / self.pair.base_pitch
+        return np.asarray(gap + (front if flank == "front" else back) * np.asarray(face))
 
     def deviations(
         self, path: ArrayLike, face: ArrayLike, pair_number: ArrayLike, flank: Flank = "front"

@@ -78,6 +78,7 @@ def influence_of(
         face=grid.position,
         deflection={0: own, 1: next_one, -1: next_one.T},
         axis_depth=slices.depth(profile),
+        local_excess=np.zeros(n_profile),
     )
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from dynamics.mesh.microgeometry import Microgeometry
 from numpy.typing import NDArray
 
+from dynamics.flank.field import FlankField
+from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.mesh.flank import flank_modification
 from rigdesign.case.loader import load_case
 from rigdesign.rig.model import build_rig
 from tests.reference.tooth_contact.deck import PENALTY, STEEL, ContactPair, PlaneModel, PlaneResult, solve
@@ -80,11 +80,10 @@ def contact_case(name: str) -> ContactCase:
 def gear_mesh(case: ContactCase, index: int, sizes: EdgeSizes) -> PlaneMesh:
     """Section of gear ``index`` with its tooth 0 on the x axis."""
     pair = case.pair
-    reach = pair.rolling_radii[index]
+    flank = FlankField(pair=pair, index=index, micro=case.micro[index])
 
     def removed(roll: Array) -> Array:
-        path = roll - reach if index == 0 else reach - roll
-        return flank_modification(pair, case.micro[index], index, path, np.zeros(1))[0]
+        return flank.modification(roll, 0.0)
 
     cut = removed if case.profile_crowning[index] else None
     bore = 0.5 * pair.bore_diameters[index]

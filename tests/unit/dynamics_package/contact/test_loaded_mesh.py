@@ -196,13 +196,13 @@ def test_softer_edges_carry_less():
 
 
 def test_pitch_deviation_takes_load_from_one_pair_and_raises_k_h_alpha():
-    def gap(pairs, face, path):
+    def gap(pairs, face, path, rolls):
         return 8e-6 * (pairs % 2)
 
     relief = Microgeometry(tip_relief=40e-6, tip_relief_length=1.0e-3)
     shape = gap_of(EQUAL, (relief, relief))
     clean = sliced_mesh(EQUAL, 1, gap=shape)
-    deviating = replace(clean, gap=lambda n, z, s: shape(n, z, s) + gap(n, z, s))
+    deviating = replace(clean, gap=lambda *at: shape(*at) + gap(*at))
     loaded, reference = deviating.cycle(FORCE), clean.cycle(FORCE)
     odd = loaded.points.pairs % 2 == 1
     assert loaded.load_share[:, odd].sum() < reference.load_share[:, odd].sum() - 5.0
