@@ -24,7 +24,7 @@ Removed = Callable[[tuple[Array, Array]], Array]
 
 SCAN = 17
 """Places over the profile that are looked at first."""
-REFINED = 4
+REFINED = 6
 """Parabolas through three places, after which the place moves by less than a thousandth of a step of the scan."""
 FLATTEST, SHARPEST = 0.25, 4.0
 """Limits of the relative curvature with what is removed against that of the involutes."""

@@ -85,7 +85,7 @@ def test_exchanged_gears_are_the_same_contact():
     relieved = Microgeometry(tip_relief=60e-6, tip_relief_length=5e-3)
     loads, approaches = [], []
     for pair in (fzg_c(), exchanged_fzg_c()):
-        mesh = sliced_mesh(pair, 3, gap=gap_of(pair, (relieved, relieved)), n_positions=1024)
+        mesh = sliced_mesh(pair, 3, gap=gap_of(pair, (relieved, relieved)), n_positions=4096)
         cycle = mesh.cycle(0.3 * FORCE)
         assert not (cycle.early.any() or cycle.late.any())
         loads.append((cycle.pattern(0).path, cycle.pattern(0).line_load[:, 1]))
@@ -252,7 +252,7 @@ def test_force_that_cannot_be_and_teeth_that_approach_too_far_are_refused():
     with pytest.raises(DynamicsNotConverged, match="approach"):
         mesh.cycle(1e6 * FORCE)
     with pytest.raises(DynamicsInputError, match="finite"):
-        replace(mesh, gap=lambda n, z, s: np.full_like(s, np.nan)).cycle(FORCE)
+        replace(mesh, gap=lambda n, z, s, _: np.full_like(s, np.nan)).cycle(FORCE)
     with pytest.raises(DynamicsInputError, match="least_radius"):
         EdgeModel(least_radius=0.0)
 
@@ -291,7 +291,7 @@ def test_sliding_changes_sign_at_the_pitch_point_and_follows_the_mating_flank_at
 
 def test_reach_grows_with_the_gap_and_an_even_gap_only_adds_to_the_approach():
     plain, apart = (
-        sliced_mesh(EQUAL, 1, gap=lambda n, z, s, g=g: np.full_like(s, g)).cycle(FORCE) for g in (0.0, 3e-4)
+        sliced_mesh(EQUAL, 1, gap=lambda n, z, s, _, g=g: np.full_like(s, g)).cycle(FORCE) for g in (0.0, 3e-4)
     )
     assert apart.points.reach > 3e-4 > plain.points.reach
     assert apart.approach - 3e-4 == pytest.approx(plain.approach, rel=1e-9)
