@@ -20,7 +20,7 @@ class GearModel:
     """Cold gear that influence numbers are wanted of.
 
     form : outline of its teeth; body : under them; material : of the gear
-    face_width : that carries [m]; n_face : positions over it
+    face_width : that carries [m]; n_face : positions over it, planes between layers of bricks
     division : elements of the section
     plane_strain : a slice far from the ends, one layer thick, alike over the face: for quick work
     """

@@ -31,10 +31,12 @@ class SegmentReading:
         section = segment.section
         corners = section.points[section.flanks[0]][::2]
         self.rolls = np.array([gear.roll_length(radius) for radius in np.hypot(*corners.T).tolist()])
-        self._planes = range(len(segment.face))
+        self._face = model.face
+        self._hats = range(len(model.face))
+        self._positions = model.face.tolist()
 
     def _strip(self, curves: Mapping[Place, IndexArray], key: Place) -> Strip:
-        return Strip(segment=self._segment, curve=curves[key])
+        return Strip(segment=self._segment, curve=curves[key], face=self._face)
 
     def _inwards(self, roll: float, tooth: int) -> Array:
         """(3,) normal of the right flank of a tooth into it, at mid-face."""
@@ -47,7 +49,7 @@ class SegmentReading:
         found = []
         for number, roll in enumerate(self.rolls.tolist()):
             place = (number, 0.0) if number < flank.n_elements else (number - 1, 1.0)
-            found += [displacement_row(flank, place, plane, self._inwards(roll, 0)) for plane in self._planes]
+            found += [displacement_row(flank, place, hat, self._inwards(roll, 0)) for hat in self._hats]
         return found
 
     def axis(self, tooth: int) -> list[Entry]:
@@ -58,9 +60,7 @@ class SegmentReading:
         for roll in self.rolls.tolist():
             point = self._form.flank_point(roll) - self._form.axis_depth(roll) * self._form.flank_normal(roll)
             place = _element_at(height, float(point[1]))
-            found += [
-                displacement_row(axis, place, plane, self._inwards(roll, tooth)) for plane in self._planes
-            ]
+            found += [displacement_row(axis, place, hat, self._inwards(roll, tooth)) for hat in self._hats]
         return found
 
     def carried(self, tooth: int) -> list[Entry]:
@@ -84,10 +84,10 @@ class SegmentReading:
             turning = lever * np.append(upwards, 0.0)
             found += [
                 _joined(
-                    displacement_row(*ends[0], plane, 0.5 * normal - turning),
-                    displacement_row(*ends[1], plane, 0.5 * normal + turning),
+                    displacement_row(*ends[0], hat, 0.5 * normal - turning),
+                    displacement_row(*ends[1], hat, 0.5 * normal + turning),
                 )
-                for plane in self._planes
+                for hat in self._hats
             ]
         return found
 
@@ -108,15 +108,17 @@ class SegmentReading:
         own = _gauss_points(strip.n_elements)
         if tooth == 0:
             return [
-                stress_row(strip, *place, plane, self._poisson) for place in own for plane in self._planes
+                stress_row(strip, place, position, self._poisson)
+                for place in own
+                for position in self._positions
             ]
         arcs = _arcs(strip)[1]
         found = []
         for arc in self.fillet.arc.tolist():
             at = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
             share = float(np.clip((arc - arcs[at - 1]) / (arcs[at] - arcs[at - 1]), 0.0, 1.0))
-            for plane in self._planes:
-                pair = [stress_row(strip, *own[k], plane, self._poisson) for k in (at - 1, at)]
+            for position in self._positions:
+                pair = [stress_row(strip, own[k], position, self._poisson) for k in (at - 1, at)]
                 found.append(_mixed(pair, share))
         return found
 

@@ -7,7 +7,7 @@ on the root circle there.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import ceil, cos, log, pi, sin
+from math import ceil, cos, log, pi, radians, sin
 from types import ModuleType
 
 import numpy as np
@@ -21,8 +21,12 @@ Array = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
 QUAD_8 = 16
 """gmsh's number of the element."""
-GROWTH = 1.8
+GROWTH = 2.2
 """Size of an element of the body against its neighbour nearer to the teeth, about."""
+FAR = 3.0
+"""The same along the root circle, away from the teeth."""
+WIDEST = radians(30.0)
+"""Widest element round the gear [rad]."""
 FOOT = 25
 """Point of the fillet, of 121 from the root circle up, above which the mesh is that of the tooth."""
 RING = 0.5
@@ -47,7 +51,7 @@ class GearBody:
 class SectionDivision:
     """Elements of the section.
 
-    profile : over the flank; thickness : over half the tooth; fillet : over each fillet, a multiple of 4
+    profile : over the flank; thickness : over half the tooth; fillet : over each fillet with the ground beside it, a multiple of 4
     depth : between root circle and free mesh
     grading : size of an element against the next one inwards from the surface
     neighbours : elements over flank, half the tooth and fillet of the teeth beside the loaded one
@@ -61,7 +65,7 @@ class SectionDivision:
     fillet: int = 12
     depth: int = 2
     grading: float = 0.5
-    neighbours: tuple[int, int, int] = (4, 2, 8)
+    neighbours: tuple[int, int, int] = (3, 1, 4)
 
     def finer(self, factor: int) -> "SectionDivision":
         """The same in elements smaller by a factor."""
@@ -166,9 +170,21 @@ class _Arc:
         return _Arc(-self.curve, self.last, self.first, self.angles[::-1], self.n, 1.0 / self.ratio)
 
 
-def _growing(length: float, first: float) -> int:
+def _growing(length: float, first: float, growth: float) -> int:
     """Elements over a length that start with a size and grow."""
-    return max(1, ceil(log(1.0 + (GROWTH - 1.0) * length / first) / log(GROWTH)))
+    return max(1, ceil(log(1.0 + (growth - 1.0) * length / first) / log(growth)))
+
+
+def _far_parts(start: float, first: float) -> list[tuple[float, int, float]]:
+    """Parts of the half circle from an angle on: where each ends [rad], its elements and how they grow.
+
+    Elements grow from a first angle up to the widest, which then stays.
+    """
+    n = max(1, ceil(log(WIDEST / first) / log(FAR)))
+    end = start + first * (FAR**n - 1.0) / (FAR - 1.0)
+    if end > pi - 0.5 * WIDEST:
+        return [(pi, _growing(pi - start, first, FAR), FAR)]
+    return [(end, n, FAR), (pi, ceil((pi - end) / WIDEST), 1.0)]
 
 
 class _Drawing:
@@ -224,8 +240,7 @@ class _Drawing:
         for place in range(-n, n + 2):
             angle = (place - 0.5) * self._pitch
             ends.append((self._polar(self._ring.root, angle), self._polar(self._ring.depth, angle)))
-        depth, grading = self._division.depth, self._division.grading
-        sides = [self._counted(self._geo.addLine(low, high), depth, grading) for high, low in ends]
+        sides = [self._wall(high, low) for high, low in ends]
         under: list[_Arc] = []
         for number, tooth in enumerate(TEETH):
             under += self._tooth(tooth, (ends[number], ends[number + 1]), (sides[number], sides[number + 1]))
@@ -237,14 +252,15 @@ class _Drawing:
         """One tooth with its ring, from space to space; the arcs on the inner circle of the ring, left to right."""
         form, division, turn = self._form, self._division, tooth * self._pitch
         profile, thickness, n_fillet = division.of_tooth(tooth)
-        half = n_fillet // 2
+        low_part = n_fillet // 4
+        high_part = n_fillet - low_part
         fillet = form.fillet(121)
         qx, qy = fillet[FOOT].tolist()
         axis_low = self._polar(float(np.hypot(qx, qy)), turn)
         axis_deep = self._polar(self._ring.depth, turn)
         tip = form.tip_points()
         axis_top = self._point(0.0, float(tip[-1, 1]), turn)
-        rows = half + profile
+        rows = high_part + profile
         stem = self._line(axis_low, axis_top, rows)
         deep = self._counted(self._geo.addLine(axis_deep, axis_low), division.depth, division.grading)
         self._curves[f"axis {tooth}"] = [deep, stem]
@@ -261,8 +277,8 @@ class _Drawing:
             ground = np.concatenate(
                 [form.root_radius * np.column_stack([np.sin(arc), np.cos(arc)]), fillet[: FOOT + 1]]
             )
-            lower = self._spline(mirror * ground, (root, q), turn, half)
-            upper = self._spline(mirror * fillet[FOOT:], (q, f), turn, half)
+            lower = self._spline(mirror * ground, (root, q), turn, low_part)
+            upper = self._spline(mirror * fillet[FOOT:], (q, f), turn, high_part)
             rolls = np.linspace(
                 form.gear.roll_length(form.form_radius), form.gear.roll_length(form.flank_tip_radius), 61
             )
@@ -271,7 +287,7 @@ class _Drawing:
             foot_line = self._arc(axis_low, q, thickness, division.grading)
             column = self._counted(self._geo.addLine(c, q), division.depth, division.grading)
             under_tooth = self._arc(axis_deep, c, thickness, division.grading)
-            under_root = self._arc(c, low, half)
+            under_root = self._arc(c, low, low_part)
             self._curves[f"flank {tooth} {side}"] = [flank]
             self._curves[f"fillet {tooth} {side}"] = [lower, upper]
             self._patch([foot_line, upper, flank, *top, -stem], [axis_low, q, t, axis_top])
@@ -281,7 +297,7 @@ class _Drawing:
                 under_tooth, axis_deep, c, (turn, turn + side * foot_angle), thickness, division.grading
             )
             outer = _Arc(
-                under_root, c, low, (turn + side * foot_angle, turn + side * 0.5 * self._pitch), half
+                under_root, c, low, (turn + side * foot_angle, turn + side * 0.5 * self._pitch), low_part
             )
             under = [*under, inner, outer] if side > 0 else [outer.turned(), inner.turned()]
         return under
@@ -305,29 +321,36 @@ class _Drawing:
         ring, division = self._ring, self._division
         last = 0.5 * len(TEETH) * self._pitch
         _, thickness, fillet = division.neighbours
-        n = _growing(pi - last, self._pitch / (2 * thickness + fillet))
-        far = (self._polar(ring.root, pi), self._polar(ring.depth, pi))
-        wall = self._counted(self._geo.addLine(far[1], far[0]), division.depth, division.grading)
+        parts = _far_parts(last, self._pitch / (2 * thickness + fillet // 2))
+        opposite = (self._polar(ring.root, pi), self._polar(ring.depth, pi))
+        across = self._wall(*opposite)
         found = []
-        for side, (root, low), edge in ((1, ends[1], sides[1]), (-1, ends[0], sides[0])):
-            inner, outer = (
-                self._arc(start, end, n, GROWTH) for start, end in ((low, far[1]), (root, far[0]))
-            )
-            self._patch([inner, wall, -outer, -edge], [low, far[1], far[0], root])
-            self._curves[f"rim {side}"] = [outer]
-            arc = _Arc(inner, low, far[1], (side * last, side * pi), n, GROWTH)
-            found.append(arc if side > 0 else arc.turned())
+        for side, (root, low), wall in ((1, ends[1], sides[1]), (-1, ends[0], sides[0])):
+            arcs, rim, angle = [], [], last
+            for number, (end, n, ratio) in enumerate(parts):
+                further = (self._polar(ring.root, side * end), self._polar(ring.depth, side * end))
+                next_wall = self._wall(*further) if number < len(parts) - 1 else across
+                further = further if number < len(parts) - 1 else opposite
+                outer, inner = self._arc(root, further[0], n, ratio), self._arc(low, further[1], n, ratio)
+                self._patch([inner, next_wall, -outer, -wall], [low, further[1], further[0], root])
+                arcs.append(_Arc(inner, low, further[1], (side * angle, side * end), n, ratio))
+                rim.append(outer)
+                (root, low), wall, angle = further, next_wall, end
+            self._curves[f"rim {side}"] = rim
+            found += arcs if side > 0 else [arc.turned() for arc in reversed(arcs)]
         return found
+
+    def _wall(self, root: int, low: int) -> int:
+        """Line across the ring, from its inner circle to the root circle."""
+        return self._counted(self._geo.addLine(low, root), self._division.depth, self._division.grading)
 
     def _body(self, outer: "list[_Arc]") -> None:
         """What is inside of the ring, rim and web or solid, in rows from arc to arc of a closed circle."""
-        ring, size = (
-            self._ring,
-            self._pitch * self._ring.depth / (2 * self._division.thickness + self._division.fillet),
-        )
+        ring = self._ring
+        size = ring.root - ring.depth
         upper = ring.depth
         for radius in [ring.bore] if ring.rim is None else [ring.rim, ring.bore]:
-            n = _growing(upper - radius, size)
+            n = _growing(upper - radius, size, GROWTH)
             points = [self._polar(radius, arc.angles[0]) for arc in outer]
             spokes = [
                 self._counted(self._geo.addLine(arc.first, point), n, GROWTH)

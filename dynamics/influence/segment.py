@@ -25,7 +25,7 @@ class GearSegment:
     """Bricks of 20 nodes and where a node of the section lies in space.
 
     section : transverse, teeth upwards along y
-    face : (n_planes,) positions of the planes between layers, growing [m]
+    heights : (n_planes,) positions of the planes between layers over the face, growing [m]
     lead : turn of the section per z, clockwise positive [rad/m]: tan(beta) / r
     points : (n, 3) [m]; cells : (n_cells, 20)
     planes : (n_planes, n_section) node of a section node in a plane
@@ -33,7 +33,7 @@ class GearSegment:
     """
 
     section: Section
-    face: Array
+    heights: Array
     lead: float
     points: Array
     cells: IndexArray
@@ -42,18 +42,18 @@ class GearSegment:
 
     @classmethod
     def of(
-        cls, section: Section, face: Array, lead: float = 0.0, body: GearBody | None = None
+        cls, section: Section, heights: Array, lead: float = 0.0, body: GearBody | None = None
     ) -> "GearSegment":
         """Draw a section out over the face.
 
-        face : (n_planes,) growing [m], at least two
+        heights : (n_planes,) growing [m], at least two
         body : the rim of a gear with a web reaches over the whole face, the web over its own width only
 
         Raises DynamicsInputError for a web that holds no layer.
         """
-        if len(face) < 2 or not np.all(np.diff(face) > 0.0):
-            raise DynamicsInputError(f"face = {face}: needs at least two growing positions")
-        n, layers = len(section.points), len(face) - 1
+        if len(heights) < 2 or not np.all(np.diff(heights) > 0.0):
+            raise DynamicsInputError(f"heights = {heights}: needs at least two growing positions")
+        n, layers = len(section.points), len(heights) - 1
         corner = np.zeros(n, dtype=bool)
         corner[section.cells[:, :4]] = True
         whole = np.arange((layers + 1) * n, dtype=np.int32).reshape(layers + 1, n)
@@ -70,25 +70,35 @@ class GearSegment:
             ],
             axis=2,
         )  # fmt: skip
-        kept = _kept_layers(section, face, body)
+        kept = _kept_layers(section, heights, body)
         cells = bricks[kept]
-        heights = np.concatenate([np.repeat(face, n), np.repeat(0.5 * (face[:-1] + face[1:]), corner.sum())])
+        over_face = np.concatenate(
+            [np.repeat(heights, n), np.repeat(0.5 * (heights[:-1] + heights[1:]), corner.sum())]
+        )
         flat = np.concatenate(
             [np.tile(section.points, (layers + 1, 1)), np.tile(section.points[corner], (layers, 1))]
         )
-        points = np.column_stack([turned(flat, lead * heights), heights])
+        points = np.column_stack([turned(flat, lead * over_face), over_face])
         used = np.unique(cells)
         number = np.full(len(points), NOWHERE, dtype=np.int32)
         number[used] = np.arange(len(used), dtype=np.int32)
         return cls(
             section=section,
-            face=face,
+            heights=heights,
             lead=lead,
             points=points[used],
             cells=number[cells],
             planes=number[whole],
             middles=np.where(between == NOWHERE, NOWHERE, number[between]),
         )
+
+    def layers_at(self, position: float) -> list[tuple[int, float]]:
+        """Layers that hold a position over the face and the place in each, 0 to 1; both that meet in a plane."""
+        span = float(self.heights[-1] - self.heights[0])
+        places = (position - self.heights[:-1]) / np.diff(self.heights)
+        slack = 1e-9 * span / np.diff(self.heights)
+        held = np.flatnonzero((places >= -slack) & (places <= 1.0 + slack))
+        return [(int(layer), float(np.clip(places[layer], 0.0, 1.0))) for layer in held]
 
     @cached_property
     def bore(self) -> IndexArray:
@@ -105,18 +115,18 @@ def turned(points: Array, angle: Array) -> Array:
     return np.column_stack([x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)])
 
 
-def _kept_layers(section: Section, face: Array, body: GearBody | None) -> NDArray[np.bool_]:
+def _kept_layers(section: Section, heights: Array, body: GearBody | None) -> NDArray[np.bool_]:
     """(n_layers, n_quads) which bricks are there."""
-    layers, quads = len(face) - 1, len(section.cells)
+    layers, quads = len(heights) - 1, len(section.cells)
     kept = np.ones((layers, quads), dtype=bool)
     if body is None or body.web_thickness is None:
         return kept
-    middle = 0.5 * (face[:-1] + face[1:])
+    middle = 0.5 * (heights[:-1] + heights[1:])
     off = np.abs(middle) > 0.5 * body.web_thickness
     if off.all():
         raise DynamicsInputError(
             f"web_thickness = {1e3 * body.web_thickness:.3f} mm is thinner than a layer of "
-            f"{1e3 * np.diff(face).min():.3f} mm; divide the face finer"
+            f"{1e3 * np.diff(heights).min():.3f} mm; divide the face finer"
         )
     kept[np.ix_(off, section.web)] = False
     return kept

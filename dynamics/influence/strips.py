@@ -1,7 +1,8 @@
 """Loads on lines over the face of a segment, and what is read on them: rows that multiply the displacements.
 
 A strip is drawn out over the face from a curve of the section. Between planes its sides are quadrilaterals of eight
-nodes. A hat function over the face is 1 in a plane and 0 in its neighbours.
+nodes. A hat function over the face is 1 at a position and 0 at its neighbours, each of which lies in a plane or within a
+layer.
 """
 
 from collections.abc import Sequence
@@ -30,10 +31,12 @@ class Strip:
     """Strip over a curve of the section.
 
     curve : nodes of the section along it, corners and middles in turn
+    face : (n_face,) positions of the hat functions over the face, every plane among them [m]
     """
 
     segment: GearSegment
     curve: IndexArray
+    face: Array
 
     @property
     def n_elements(self) -> int:
@@ -60,36 +63,26 @@ class Strip:
             self.segment.planes[layer + 1],
             self.segment.middles[layer],
         )
-        return np.array(
-            [
-                low[first],
-                low[last],
-                high[last],
-                high[first],
-                low[middle],
-                between[last],
-                high[middle],
-                between[first],
-            ]
-        )
+        corners = [low[first], low[last], high[last], high[first]]
+        return np.array([*corners, low[middle], between[last], high[middle], between[first]])
 
-    def shares(self, element: int, along: float, plane: int) -> list[tuple[float, IndexArray, Array]]:
-        """Quadrature of a place on the curve under the hat of a plane: position over the face [m], nodes and shares.
+    def shares(self, element: int, along: float, hat: int) -> list[tuple[float, IndexArray, Array]]:
+        """Quadrature of a place on the curve under a hat: position over the face [m], nodes and shares.
 
         The shares sum to one over the list.
         """
-        face = self.segment.face
         found, width = [], 0.0
-        for layer, rising in ((plane - 1, True), (plane, False)):
-            if not 0 <= layer < len(face) - 1:
+        for first, rising in ((hat - 1, True), (hat, False)):
+            if not 0 <= first < len(self.face) - 1:
                 continue
-            length = face[layer + 1] - face[layer]
-            width += 0.5 * length
-            nodes = self.nodes(element, layer)
-            for across, weight in zip(GAUSS, GAUSS_WEIGHTS, strict=True):
-                hat = across if rising else 1.0 - across
+            low, high = self.face[first], self.face[first + 1]
+            width += 0.5 * (high - low)
+            for part, weight in zip(GAUSS, GAUSS_WEIGHTS, strict=True):
+                position = low + part * (high - low)
+                layer, across = self.segment.layers_at(position)[0]
                 shape = QUAD_8.values(np.array([[along, across]]))[0]
-                found.append((face[layer] + across * length, nodes, weight * length * hat * shape))
+                share = weight * (high - low) * (part if rising else 1.0 - part)
+                found.append((position, self.nodes(element, layer), share * shape))
         return [(position, nodes, shares / width) for position, nodes, shares in found]
 
 
@@ -97,14 +90,14 @@ Entry = tuple[IndexArray, Array]
 """Unknowns (n,) and their weights in one row."""
 
 
-def displacement_row(strip: Strip, place: tuple[int, float], plane: int, normal: Array) -> Entry:
-    """Row of the displacement along a normal under the hat of a plane, or the load of a unit force along it.
+def displacement_row(strip: Strip, place: tuple[int, float], hat: int, normal: Array) -> Entry:
+    """Row of the displacement along a normal under a hat, or the load of a unit force along it.
 
     place : element along the curve and position in it, 0 to 1
     normal : (3,) in the section [-]; it turns with the helix
     """
     unknowns, weights = [], []
-    for position, nodes, shares in strip.shares(*place, plane):
+    for position, nodes, shares in strip.shares(*place, hat):
         turn = np.array([strip.segment.lead * position])
         direction = np.append(turned(normal[None, :2], turn)[0], normal[2])
         unknowns.append((3 * nodes[:, None] + np.arange(3)).ravel())
@@ -112,17 +105,19 @@ def displacement_row(strip: Strip, place: tuple[int, float], plane: int, normal:
     return np.concatenate(unknowns), np.concatenate(weights)
 
 
-def stress_row(strip: Strip, element: int, along: float, plane: int, poisson: float) -> Entry:
-    """Row of the stress across the tooth at the free surface, over E / (1 - nu^2), in a plane.
+def stress_row(strip: Strip, place: tuple[int, float], position: float, poisson: float) -> Entry:
+    """Row of the stress across the tooth at the free surface, over E / (1 - nu^2), at a position over the face [m].
 
-    Plane stress in the surface: strain across the helix line plus nu times strain along it. Mean of both layers that
-    meet in the plane.
+    Plane stress in the surface: strain across the helix line plus nu times strain along it, in a plane the mean of both
+    layers that meet there. On the ends of the face there is no stress along the helix line: (1 - nu^2) times the strain
+    across, which is E times it.
     """
-    layers = [layer for layer in (plane - 1, plane) if 0 <= layer < len(strip.segment.face) - 1]
+    element, along = place
+    layers = strip.segment.layers_at(position)
+    at_end = position in (strip.face[0], strip.face[-1])
     unknowns, weights = [], []
-    for layer in layers:
+    for layer, across in layers:
         nodes = strip.nodes(element, layer)
-        across = 0.0 if layer == plane else 1.0
         slopes = QUAD_8.gradients(np.array([[along, across]]))[0]  # (8, 2)
         points = strip.segment.points[nodes]
         by_curve, by_face = slopes.T @ points  # (3,) each
@@ -133,7 +128,9 @@ def stress_row(strip: Strip, element: int, along: float, plane: int, poisson: fl
         tangent = rest / size
         along_helix = slopes[:, 1] / np.linalg.norm(by_face)
         along_tangent = (slopes[:, 0] - part * along_helix) / size
-        row = along_tangent[:, None] * tangent + poisson * along_helix[:, None] * helix
+        row = (1.0 - poisson**2 if at_end else 1.0) * along_tangent[:, None] * tangent
+        if not at_end:
+            row = row + poisson * along_helix[:, None] * helix
         unknowns.append((3 * nodes[:, None] + np.arange(3)).ravel())
         weights.append(row.ravel() / len(layers))
     return np.concatenate(unknowns), np.concatenate(weights)

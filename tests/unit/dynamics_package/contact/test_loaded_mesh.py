@@ -291,7 +291,8 @@ def test_sliding_changes_sign_at_the_pitch_point_and_follows_the_mating_flank_at
 
 def test_reach_grows_with_the_gap_and_an_even_gap_only_adds_to_the_approach():
     plain, apart = (
-        sliced_mesh(EQUAL, 1, gap=lambda n, z, s, _, g=g: np.full_like(s, g)).cycle(FORCE) for g in (0.0, 3e-4)
+        sliced_mesh(EQUAL, 1, gap=lambda n, z, s, _, g=g: np.full_like(s, g)).cycle(FORCE)
+        for g in (0.0, 3e-4)
     )
     assert apart.points.reach > 3e-4 > plain.points.reach
     assert apart.approach - 3e-4 == pytest.approx(plain.approach, rel=1e-9)
