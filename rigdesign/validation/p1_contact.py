@@ -6,7 +6,7 @@ the face whose root stays without load.
 """
 
 from dataclasses import dataclass
-from math import cos
+from math import tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,11 +96,10 @@ class CornerLoad:
 
 
 def corner_load(pair: GearPair, pattern: ContactPattern) -> CornerLoad:
-    """Where the corners of the pinion flank carry; ``pattern`` : of the pinion."""
-    reach = pair.rolling_radii[0]
-    along = (pattern.roll - reach - pair.path.start) / pair.path.length
+    """Where the corners of the pinion flank carry, flank on flank; ``pattern`` : of the pinion."""
+    path = pattern.path[:, None] - pattern.face * tan(pair.base_helix_angle)
+    along = (path - pair.path.start) / pair.path.length
     across = np.broadcast_to(pattern.face / pair.face_width + 0.5, along.shape)
-    # a roll length is passed once by every face position: where corners carry, the roll length stands still
     root, tip = (along >= 0.0) & (along <= CORNER), (along <= 1.0) & (along >= 1.0 - CORNER)
     front, rear = across <= CORNER, across >= 1.0 - CORNER
 
@@ -114,8 +113,3 @@ def corner_load(pair: GearPair, pattern: ContactPattern) -> CornerLoad:
         tip_rear=share(tip & rear),
         centre=pattern.centre[1],
     )
-
-
-def mean_line_load(pair: GearPair, torque: float) -> float:
-    """Normal force over the face width under a pinion torque [N/m]."""
-    return torque / (pair.base_radii[0] * cos(pair.base_helix_angle) * pair.face_width)
