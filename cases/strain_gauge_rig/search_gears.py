@@ -53,7 +53,9 @@ SHOWN = [0, 1, 3, 4]
 MAXIMA_WITHIN = 0.1
 """Rolling angle in which the maxima of Figure 9 lie, 0.3 to 0.4 rad."""
 TEETH = (15, 16, 17, 18, 19, 20)
-HELICES = np.arange(2.0, 35.01, 0.5)
+OTHER_PRESSURE_ANGLES = (18.0, 22.5)
+"""Normal pressure angles [deg] besides 20."""
+HELICES = np.arange(0.5, 35.01, 0.5)
 """Helix angles looked at [deg]."""
 
 
@@ -222,11 +224,11 @@ def figures(gears: GearSet) -> Figures:
     )
 
 
-def helices_of(teeth: int, reading: Reading, wanted: float = LOADED_RATIO) -> Iterator[float]:
-    """Helix angles [deg] at which a tooth number meets the contact ratio at 238 N m."""
+def helices_of(gears: GearSet, wanted: float = LOADED_RATIO) -> Iterator[float]:
+    """Helix angles [deg] at which a set, whose own is not looked at, meets the contact ratio at 238 N m."""
 
     def miss(helix: float) -> float:
-        return GearSet(teeth=teeth, helix=helix, reading=reading).loaded_ratio() - wanted
+        return replace(gears, helix=helix).loaded_ratio() - wanted
 
     before: tuple[float, float] | None = None
     for helix in HELICES.tolist():
@@ -286,15 +288,20 @@ def row(name: str, gears: GearSet) -> str:
 def print_fits() -> None:
     """Table 2."""
     print(HEAD.format("reading, z1 = z2"))
-    for reading in READINGS:
+    readings = [(reading.name, reading, 20.0) for reading in READINGS]
+    readings[1:1] = [
+        (f"the same, alpha_n {angle:g} deg", READINGS[0], angle) for angle in OTHER_PRESSURE_ANGLES
+    ]
+    for name, reading, angle in readings:
         none = []
         for teeth in TEETH:
-            helices = list(helices_of(teeth, reading))
+            gears = GearSet(teeth=teeth, helix=0.0, reading=reading, pressure_angle=angle)
+            helices = list(helices_of(gears))
             for helix in helices:
-                print(row(f"{reading.name}, {teeth}", GearSet(teeth=teeth, helix=helix, reading=reading)))
+                print(row(f"{name}, {teeth}", replace(gears, helix=helix)))
             if not helices:
                 none.append(str(teeth))
-        print(f"| {reading.name}, {', '.join(none)} | none |" + " |" * 9)
+        print(f"| {name}, {', '.join(none)} | none |" + " |" * 9)
 
 
 def chosen_set() -> GearSet:

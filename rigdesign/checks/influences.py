@@ -34,6 +34,7 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
         "drivetrain.couplings.*.angle_maximum",
         "gearboxes.*.bearings.*.radial_stiffness",
         "gearboxes.*.bearings.*.radial_damping",
+        "gearboxes.*.gears.*.strain_gauges",
         "gearboxes.{bare}.heat_split",
         "gearboxes.{bare}.bearings.*.locating",
     ): (),
