@@ -15,6 +15,8 @@ Influence = Literal[
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
+MOVE_NO_CHECK = ("gearboxes.*.gears.*.strain_gauges",)
+"""Inputs of what is measured, not of the rig."""
 INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("limits.bearing.start_torque_limit",): ("start torque",),
     ("limits.ramp",): ("ramp limits",),
@@ -34,7 +36,6 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
         "drivetrain.couplings.*.angle_maximum",
         "gearboxes.*.bearings.*.radial_stiffness",
         "gearboxes.*.bearings.*.radial_damping",
-        "gearboxes.*.gears.*.strain_gauges",
         "gearboxes.{bare}.heat_split",
         "gearboxes.{bare}.bearings.*.locating",
     ): (),

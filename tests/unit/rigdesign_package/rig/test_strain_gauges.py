@@ -9,6 +9,7 @@ from dynamics.gear.root_arc import root_arc
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case.shipped import case_folder
+from rigdesign.checks.assumptions import influences_of
 from rigdesign.rig.model import build_rig
 
 CASE = load_case(case_folder("strain_gauge_rig"))
@@ -86,3 +87,8 @@ def test_an_impossible_bridge_is_named_with_the_faults_of_all_gauges() -> None:
     assert kind.startswith("i.bridge.kind = ")
     (arms,) = faults(i__bridge={"kind": "half", "supply_voltage": "5 V", "arms": (1.0, 1.0)})
     assert arms.startswith("i.bridge.arms = ") and "the arms cancel" in arms
+
+
+def test_gauges_move_no_check() -> None:
+    assert influences_of(CASE, "gearboxes.test.gears.pinion.strain_gauges.ii.face_position") == ()
+    assert influences_of(CASE, "gearboxes.test.gears.pinion.teeth") is None
