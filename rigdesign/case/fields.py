@@ -146,6 +146,8 @@ TorsionalDamping = Annotated[float, Quantity("torsional_damping", at_least="0 N 
 LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]
 LinearDamping = Annotated[float, Quantity("linear_damping", at_least="0 N s/m")]
 Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="100000 kg m2")]
+Voltage = Annotated[float, Quantity("voltage", above="0 V", at_most="100 V")]
+Resistance = Annotated[float, Quantity("resistance", at_least="0 ohm", at_most="100 kohm")]
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 """A part of a whole, 0 to 1."""

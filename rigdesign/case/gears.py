@@ -1,5 +1,6 @@
 """Gears and meshes of a gearbox."""
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -26,6 +27,7 @@ from rigdesign.case.fields import (
     TorsionalStiffness,
     fault,
 )
+from rigdesign.case.strain_gauges import StrainGaugeInput
 
 ReliefExponent = Annotated[float, Field(ge=0.5, le=6.0)]
 
@@ -178,6 +180,8 @@ class Gear(Part):
     """Times the inertia, stated or of the disc."""
     spline: Spline | None = None
     """Connection with the shaft; a gear without one is rigid with its shaft."""
+    strain_gauges: Mapping[Name, StrainGaugeInput] = {}
+    """Strain gauges in the root of its teeth, by name."""
 
 
 class GearMesh(Part):

@@ -105,6 +105,18 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.gears.*.flank.weak_tooth": _at(
         coupling__loads="stiffness of the pairs of one tooth: orders of the shaft"
     ),
+    "gearboxes.*.gears.*.strain_gauges.*": _at(
+        rig__strain_gauges="place in the tooth root, held against face width and fillet"
+    ),
+    "gearboxes.*.gears.*.strain_gauges.*.gauge_factor": _at(strain_gauge__bridge="strain to bridge voltage"),
+    "gearboxes.*.gears.*.strain_gauges.*.resistance": _at(strain_gauge__bridge="strain to bridge voltage"),
+    "gearboxes.*.gears.*.strain_gauges.*.transverse_sensitivity": _at(
+        strain_gauge__gauge="strain that the gauge indicates"
+    ),
+    "gearboxes.*.gears.*.strain_gauges.*.stress_state": _at(
+        rig__strain_gauges="strain to stress by Hooke's law"
+    ),
+    "gearboxes.*.gears.*.strain_gauges.*.bridge": _at(strain_gauge__bridge="strain to bridge voltage"),
     "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
     "gearboxes.*.meshes.*": _at(
         rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"

@@ -29,6 +29,7 @@ from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
 from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
+from rigdesign.rig.strain_gauges import RootGauge, root_gauges
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
 from thermal.expansion.expansion import ExpansionSetup
@@ -201,6 +202,11 @@ class Rig:
         """Measured front and back flanks of the gear ``gearbox.gear``."""
         return self.topographies.get(gear, NOT_MEASURED)
 
+    @cached_property
+    def strain_gauges(self) -> Mapping[str, RootGauge]:
+        """Strain gauges in tooth roots by ``gearbox.gear.gauge``."""
+        return root_gauges(self.case, self.pairs, self.materials)
+
     @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
@@ -309,7 +315,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     ------
     CaseError
         A shaft that would twist off, a machine whose loss map does not hold its speed, a topography that does not fit
-        its flanks.
+        its flanks, a strain gauge that does not fit its root.
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
@@ -329,7 +335,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     if rig.heat_parts.machines:
         speeds = {stage.name: rig.driven_speed(stage.speed_end) for stage in case.schedule.held()}
         refuse_uncovered_speeds(rig.heat_parts.machines, speeds, str(case.path))
-    _ = rig.topographies  # read now: what does not fit the flanks is a fault of the case
+    _ = rig.topographies, rig.strain_gauges  # now: what does not fit the teeth is a fault of the case
     return rig
 
 

@@ -81,6 +81,12 @@ def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
             f"{at}.flank.weak_tooth.tooth", str(flank.weak_tooth.tooth),
             f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
         )  # fmt: skip
+    for name, gauge in gear.strain_gauges.items():
+        if gauge.tooth >= gear.teeth:
+            yield Fault(
+                f"{at}.strain_gauges.{name}.tooth", str(gauge.tooth),
+                f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
+            )  # fmt: skip
     yield from _modifications(at, gear)
     for index, wave in enumerate(flank.pitch_waves):
         if 2 * wave.order > gear.teeth:
