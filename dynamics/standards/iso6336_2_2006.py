@@ -7,7 +7,7 @@ example 1 (`tests/verification/test_flank_rating.py`). Z_W and Z_X are from memo
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, log, pi, radians, sin, sqrt, tan
+from math import cos, log, pi, radians, sin, sqrt
 
 from dynamics.errors import DynamicsInputError
 from dynamics.standards.iso6336_1_2006 import RunIn
@@ -153,9 +153,3 @@ class PermissibleFactors:
     def product(self) -> float:
         """sigma_HG / sigma_Hlim."""
         return self.Z_NT * self.Z_L * self.Z_v * self.Z_R * self.Z_W * self.Z_X
-
-
-def M_12(roll_B: float, roll_B_mate: float, alpha_wt: float, d_b1: float, d_b2: float) -> float:
-    """M_1 or M_2 (clause 6.3) from the roll lengths of both gears at the point of single contact [mm]."""
-    ratio = tan(radians(alpha_wt))
-    return ratio / sqrt(2.0 * roll_B / d_b1 * 2.0 * roll_B_mate / d_b2)
