@@ -229,11 +229,10 @@ def _scuffing(ratings: Ratings) -> Iterator[tuple[float, str]]:
             contact = rating.contact
             yield (
                 rating.scuffing_safety,
-                f"contact {contact.highest - ZERO:.0f} degC at {1e3 * contact.hottest:.2f} mm from the pitch point "
-                f"(bulk {contact.bulk - ZERO:.0f} degC, {rating.bulk_basis}; flash "
-                f"{contact.highest - contact.bulk:.0f} K, friction {contact.friction:.3f}), "
-                f"oil {rating.oil_temperature - ZERO:.0f} degC, scuffing at "
-                f"{rating.scuffing_temperature - ZERO:.0f} degC, stage {rating.stage}",
+                f"contact {contact.highest - ZERO:.0f} degC, scuffing at "
+                f"{rating.scuffing_temperature - ZERO:.0f} degC, stage {rating.stage}; bulk {contact.bulk - ZERO:.0f} degC ({rating.bulk_basis}), flash "
+                f"{contact.highest - contact.bulk:.0f} K at {1e3 * contact.hottest:.2f} mm from the pitch point, "
+                f"friction {contact.friction:.3f}, oil {rating.oil_temperature - ZERO:.0f} degC",
             )
 
 
@@ -244,9 +243,9 @@ def _films(ratings: Ratings) -> Iterator[tuple[float, str]]:
             at = films.points.index(films.thinnest)
             yield (
                 films.least,
-                f"film {UM * films.film[at]:.3f} um at {films.thinnest}, {MPA * films.pressure[at]:.0f} MPa, contact "
-                f"{films.contact_temperature[at] - ZERO:.0f} degC, teeth {rating.bulk_temperature - ZERO:.0f} degC "
-                f"({rating.bulk_basis}), stage {rating.stage}",
+                f"film {UM * films.film[at]:.3f} um at {films.thinnest}, contact "
+                f"{films.contact_temperature[at] - ZERO:.0f} degC, stage {rating.stage}; "
+                f"{MPA * films.pressure[at]:.0f} MPa, teeth {rating.bulk_temperature - ZERO:.0f} degC ({rating.bulk_basis})",
             )
 
 
