@@ -230,7 +230,8 @@ def _scuffing(ratings: Ratings) -> Iterator[tuple[float, str]]:
             yield (
                 rating.scuffing_safety,
                 f"contact {contact.highest - ZERO:.0f} degC, scuffing at "
-                f"{rating.scuffing_temperature - ZERO:.0f} degC, stage {rating.stage}; bulk {contact.bulk - ZERO:.0f} degC ({rating.bulk_basis}), flash "
+                f"{rating.scuffing_temperature - ZERO:.0f} degC, stage {rating.stage}; "
+                f"bulk {contact.bulk - ZERO:.0f} degC ({rating.bulk_basis}), flash "
                 f"{contact.highest - contact.bulk:.0f} K at {1e3 * contact.hottest:.2f} mm from the pitch point, "
                 f"friction {contact.friction:.3f}, oil {rating.oil_temperature - ZERO:.0f} degC",
             )
@@ -245,7 +246,8 @@ def _films(ratings: Ratings) -> Iterator[tuple[float, str]]:
                 films.least,
                 f"film {UM * films.film[at]:.3f} um at {films.thinnest}, contact "
                 f"{films.contact_temperature[at] - ZERO:.0f} degC, stage {rating.stage}; "
-                f"{MPA * films.pressure[at]:.0f} MPa, teeth {rating.bulk_temperature - ZERO:.0f} degC ({rating.bulk_basis})",
+                f"{MPA * films.pressure[at]:.0f} MPa, teeth {rating.bulk_temperature - ZERO:.0f} degC "
+                f"({rating.bulk_basis})",
             )
 
 
