@@ -110,6 +110,12 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
         {"J/(kg K)": "J/(kg*K)", "J/kgK": "J/(kg*K)", "kJ/(kg K)": "kJ/(kg*K)", "kJ/kgK": "kJ/(kg*K)"},
         "2000 J/(kg K)",
     ),
+    QuantityKind(
+        "pressure_viscosity",
+        "1/Pa",
+        {"1/GPa": "1/GPa", "mm2/N": "mm**2/N", "m2/N": "m**2/N", "1/Pa": "1/Pa"},
+        "18 1/GPa",
+    ),
     QuantityKind("conductance", "W/K", {"W/K": "W/K", "kW/K": "kW/K"}, "20 W/K"),
     QuantityKind("body_heat_capacity", "J/K", {"J/K": "J/K", "kJ/K": "kJ/K"}, "20 kJ/K"),
     QuantityKind("conductivity", "W/(m*K)", {"W/(m K)": "W/(m*K)", "W/mK": "W/(m*K)"}, "45 W/(m K)"),

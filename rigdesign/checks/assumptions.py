@@ -33,7 +33,7 @@ def depends(case: Case, check: Check, path: str) -> bool:
 
 def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) -> bool:
     """Whether an influence of an input moves a check."""
-    if influence in OF_ONE_GEARBOX:
+    if influence in OF_ONE_GEARBOX and not family.across_gearboxes:
         box = path.split(".")[1]
         if not check.id.startswith(f"{family.key}.{box}."):
             return False

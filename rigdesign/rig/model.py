@@ -360,6 +360,7 @@ def _custom_material(case: Case, name: str) -> Material:
         density=entry.density,
         root_strength=entry.root_strength,
         flank_strength=entry.flank_strength,
+        scuffing_factor=entry.scuffing_factor,
         treatment=entry.treatment,
         tempering_temperature=entry.tempering_temperature,
     )
