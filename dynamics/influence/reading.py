@@ -31,7 +31,7 @@ class SegmentReading:
         section = segment.section
         corners = section.points[section.flanks[0]][::2]
         self.rolls = np.array([gear.roll_length(radius) for radius in np.hypot(*corners.T).tolist()])
-        self._face = model.face
+        self._face, self._free_ends = model.face, not model.plane_strain
         self._hats = range(len(model.face))
         self._positions = model.face.tolist()
 
@@ -102,23 +102,22 @@ class SegmentReading:
         return strip, _element_at(angle, min(abs(place) * self._pitch, pi))
 
     # -- root ---------------------------------------------------------------------------------------------------
+    def _stress(self, strip: Strip, place: tuple[int, float], position: float) -> Entry:
+        return stress_row(strip, place, position, self._poisson, free_ends=self._free_ends)
+
     def root(self, tooth: int, side: int) -> list[Entry]:
         """Stress at the points of a fillet over the face; that of a neighbour between its own points."""
         strip = self._strip(self._segment.section.fillets, (tooth, side))
         own = _gauss_points(strip.n_elements)
         if tooth == 0:
-            return [
-                stress_row(strip, place, position, self._poisson)
-                for place in own
-                for position in self._positions
-            ]
+            return [self._stress(strip, place, position) for place in own for position in self._positions]
         arcs = _arcs(strip)[1]
         found = []
         for arc in self.fillet.arc.tolist():
             at = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
             share = float(np.clip((arc - arcs[at - 1]) / (arcs[at] - arcs[at - 1]), 0.0, 1.0))
             for position in self._positions:
-                pair = [stress_row(strip, own[k], position, self._poisson) for k in (at - 1, at)]
+                pair = [self._stress(strip, own[k], position) for k in (at - 1, at)]
                 found.append(_mixed(pair, share))
         return found
 

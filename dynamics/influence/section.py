@@ -51,7 +51,8 @@ class GearBody:
 class SectionDivision:
     """Elements of the section.
 
-    profile : over the flank; thickness : over half the tooth; fillet : over each fillet with the ground beside it, a multiple of 4
+    profile : over the flank; thickness : over half the tooth; fillet : over each fillet and the ground beside it, a
+        multiple of 4
     depth : between root circle and free mesh
     grading : size of an element against the next one inwards from the surface
     neighbours : elements over flank, half the tooth and fillet of the teeth beside the loaded one

@@ -1,8 +1,7 @@
 """Loads on lines over the face of a segment, and what is read on them: rows that multiply the displacements.
 
 A strip is drawn out over the face from a curve of the section. Between planes its sides are quadrilaterals of eight
-nodes. A hat function over the face is 1 at a position and 0 at its neighbours, each of which lies in a plane or within a
-layer.
+nodes. A hat function over the face is 1 at a position and 0 at its neighbours, which lie in planes or within layers.
 """
 
 from collections.abc import Sequence
@@ -105,16 +104,18 @@ def displacement_row(strip: Strip, place: tuple[int, float], hat: int, normal: A
     return np.concatenate(unknowns), np.concatenate(weights)
 
 
-def stress_row(strip: Strip, place: tuple[int, float], position: float, poisson: float) -> Entry:
+def stress_row(
+    strip: Strip, place: tuple[int, float], position: float, poisson: float, *, free_ends: bool
+) -> Entry:
     """Row of the stress across the tooth at the free surface, over E / (1 - nu^2), at a position over the face [m].
 
     Plane stress in the surface: strain across the helix line plus nu times strain along it, in a plane the mean of both
-    layers that meet there. On the ends of the face there is no stress along the helix line: (1 - nu^2) times the strain
-    across, which is E times it.
+    layers that meet there. On free ends of the face there is no stress along the helix line, which leaves E times the
+    strain across.
     """
     element, along = place
     layers = strip.segment.layers_at(position)
-    at_end = position in (strip.face[0], strip.face[-1])
+    at_end = free_ends and position in (strip.face[0], strip.face[-1])
     unknowns, weights = [], []
     for layer, across in layers:
         nodes = strip.nodes(element, layer)

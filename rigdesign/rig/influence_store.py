@@ -1,7 +1,7 @@
 """Influence numbers kept on disk by the cold gear they belong to.
 
-A file is named after the hash of the gear model; inside stands the hash of what it holds. A file that is damaged, cut off
-or of another gear is not used: its numbers are computed again and replace it. Deleting the folder loses time only.
+A file is named after the hash of the gear model; inside stands the hash of what it holds. A file that is damaged, cut
+off or of another gear is not used: its numbers are computed again and replace it. Deleting the folder loses time only.
 """
 
 import hashlib
@@ -144,7 +144,7 @@ def _write(file: Path, key: str, numbers: InfluenceNumbers) -> None:
     handle, name = tempfile.mkstemp(dir=file.parent, suffix=".part")
     try:
         with os.fdopen(handle, "wb") as stream:
-            np.savez(stream, **entries, **{SEAL: np.array(_seal(key, entries))})
+            np.savez(stream, allow_pickle=False, **entries, **{SEAL: np.array(_seal(key, entries))})
         Path(name).replace(file)
     except BaseException:
         Path(name).unlink(missing_ok=True)
