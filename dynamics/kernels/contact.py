@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources c4c1687b
+# compiled from sources a2b2fcaf
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

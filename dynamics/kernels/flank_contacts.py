@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources c4c1687b
+# compiled from sources a2b2fcaf
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

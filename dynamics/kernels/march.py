@@ -29,6 +29,7 @@ from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, 
 from dynamics.kernels.mesh_solve import (
     LEAST_GUARD,
     ListedContacts,
+    behind_body,
     can_touch,
     choose_contacts,
     chosen_flank,
@@ -41,6 +42,7 @@ from dynamics.kernels.mesh_solve import (
 )
 from dynamics.kernels.mesh_tables import (
     BACKLASH,
+    BODY,
     FLOOR,
     INDIVIDUAL,
     MOST,
@@ -69,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources c4c1687b
+# compiled from sources a2b2fcaf
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -95,6 +97,8 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
         table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.listed.contacts
         at = m * N_SPACE
         reach, rate = space[at + REACH], space[at + RATE]
+        if space[at + BODY] > 0.0:
+            reach = behind_body(space, at, meshes, m, reach, work.listed).approach
         lost, damped, pull = 0.0, 0.0, 0.0
         for side in range(2):
             if not can_touch(space, at, side):

@@ -22,8 +22,10 @@ from dynamics.kernels.flank_contacts import (
 )
 from dynamics.kernels.mesh_tables import (
     BACKLASH,
+    BODY,
     DAMP_TIME,
     INDIVIDUAL,
+    JAMMED,
     LEAST_GAP,
     N_PHASE,
     POSITIVE,
@@ -42,6 +44,7 @@ from dynamics.kernels.mesh_workspace import (
     CHOSEN_ANGLE,
     CHOSEN_REACH,
     CURVED,
+    GIVEN,
     GUARD,
     INVERSE,
     KINKED,
@@ -59,10 +62,12 @@ from dynamics.kernels.mesh_workspace import (
     TANGENT_V,
     TANGENT_X,
     TAU,
+    TOOTH_SHARE,
     TURN,
 )
+from dynamics.kernels.shared_body import Flanks, ToothApproach, no_contacts, tooth_approach
 
-# compiled from sources c4c1687b
+# compiled from sources a2b2fcaf
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -112,10 +117,16 @@ def list_individual(meshes: PackedMeshes, space: Array, m: int, listed: ListedCo
 
 
 @inlined
+def _within(space: Array, at: int, side: int) -> float:
+    """Return the reach up to which contacts of a flank are looked for in this step."""
+    within = (1.0 - 2.0 * side) * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
+    return float(within + space[at + JAMMED])
+
+
+@inlined
 def can_touch(space: Array, at: int, side: int) -> bool:
     """Return whether a flank comes within reach of its least gap in this step."""
-    within = (1.0 - 2.0 * side) * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
-    return bool(within > space[at + LEAST_GAP])
+    return bool(_within(space, at, side) > space[at + LEAST_GAP])
 
 
 @inlined
@@ -126,8 +137,7 @@ def chosen_flank(
     sign = 1.0 - 2.0 * side
     omega_1, omega_2 = space[at + CHOSEN_1], space[at + CHOSEN_2]
     if meshes.counts[m, INDIVIDUAL] == 0:
-        within = sign * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
-        state = ContactState(sign, within, space[at + CHOSEN_ANGLE], omega_1, omega_2)
+        state = ContactState(sign, _within(space, at, side), space[at + CHOSEN_ANGLE], omega_1, omega_2)
         return flank_in_phase(space, at, meshes, m, state)
     stride = listed.contacts.shape[0] // (2 * N_PHASE * meshes.counts.shape[0])
     table = ContactTable(listed.contacts, (2 * m + side) * N_PHASE * stride, stride, listed.no_pairs)
@@ -135,35 +145,70 @@ def chosen_flank(
 
 
 @inlined
-def _press_side(
-    space: Array, at: int, meshes: PackedMeshes, m: int, side: int, listed: ListedContacts
-) -> Pressed:
+def _press_side(space: Array, at: int, side: int, table: Array, flank: Flank) -> Pressed:
     """Sum the contacts of one flank where the mesh was last looked at."""
     sign = 1.0 - 2.0 * side
-    flank = chosen_flank(space, at, meshes, m, side, listed)
-    reach = sign * space[at + AT_REACH] - side * space[at + BACKLASH]
+    reach = sign * (space[at + AT_REACH] - space[at + GIVEN]) - side * space[at + BACKLASH]
     pressing = Pressing(sign, reach, sign * space[at + AT_RATE], space[at + SPEED])
-    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
     return press_flank(table, flank, space, at, pressing, space[at + GUARD])
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _add_back(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedContacts) -> None:
-    """Add the back flank to a reaction where both flanks can touch."""
+def behind_body(
+    space: Array, at: int, meshes: PackedMeshes, m: int, reach: float, listed: ListedContacts
+) -> ToothApproach:
+    """Return what the teeth see of a reach of the gears, from the contacts chosen for this step."""
+    front, back = no_contacts(), no_contacts()
+    if can_touch(space, at, 0):
+        front = chosen_flank(space, at, meshes, m, 0, listed)
+    if can_touch(space, at, 1):
+        back = chosen_flank(space, at, meshes, m, 1, listed)
+    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
+    return tooth_approach(table, Flanks(front, back), space, at, reach, reach - space[at + GIVEN])
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def _react_on_both(space: Array, at: int, table: Array, front: Flank, back: Flank) -> None:
+    """Set the reaction of a mesh where both flanks can touch."""
+    _react_on(space, at, table, 0, front, back)
     wheel = at + PORT
-    sums = _press_side(space, at, meshes, m, 1, listed)
+    sums = _press_side(space, at, 1, table, back)
     r_1, r_2 = space[at + R1], space[at + R2]
     space[at + REACTION] += r_1 * sums.a_1
     space[wheel + REACTION] -= r_2 * sums.a_2
-    space[at + TANGENT_X] -= r_1 * sums.a_1_x
-    space[wheel + TANGENT_X] += r_2 * sums.a_2_x
+    share = space[at + TOOTH_SHARE]
+    space[at + TANGENT_X] -= r_1 * share * sums.a_1_x
+    space[wheel + TANGENT_X] += r_2 * share * sums.a_2_x
     space[at + TANGENT_V] -= r_1 * sums.a_1_v
     space[wheel + TANGENT_V] += r_2 * sums.a_2_v
     space[at + NET] -= sums.force
-    space[at + NET_X] += sums.force_x
+    space[at + NET_X] += share * sums.force_x
     space[at + NET_V] += sums.force_v
     space[at + KINKED] += sums.kinked
     space[at + CURVED] += sums.curved
+
+
+@inlined
+def _react_on(space: Array, at: int, table: Array, side: int, flank: Flank, other: Flank) -> None:
+    """Set the reaction of a mesh of which one flank presses; the other flank counts for the body only."""
+    wheel = at + PORT
+    sign = 1.0 - 2.0 * side
+    share = 1.0
+    if space[at + BODY] > 0.0:
+        flanks = Flanks(flank, other) if side == 0 else Flanks(other, flank)
+        reach = space[at + AT_REACH]
+        teeth = tooth_approach(table, flanks, space, at, reach, reach - space[at + GIVEN])
+        share, space[at + GIVEN] = teeth.share, reach - teeth.approach
+    space[at + TOOTH_SHARE] = share
+    sums = _press_side(space, at, side, table, flank)
+    r_1, r_2 = space[at + R1], space[at + R2]
+    space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
+    space[at + TANGENT_X] = -r_1 * share * sums.a_1_x
+    space[wheel + TANGENT_X] = r_2 * share * sums.a_2_x
+    space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
+    space[at + NET], space[at + NET_X] = sign * sums.force, share * sums.force_x
+    space[at + NET_V] = sums.force_v
+    space[at + KINKED], space[at + CURVED] = sums.kinked, sums.curved
 
 
 @inlined
@@ -177,17 +222,13 @@ def react(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedCon
         space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
         space[at + KINKED], space[at + CURVED] = 0.0, 0.0
         return
+    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
     side = 0 if front else 1
-    sign = 1.0 - 2.0 * side
-    sums = _press_side(space, at, meshes, m, side, listed)
-    r_1, r_2 = space[at + R1], space[at + R2]
-    space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
-    space[at + TANGENT_X], space[wheel + TANGENT_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
-    space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
-    space[at + NET], space[at + NET_X], space[at + NET_V] = sign * sums.force, sums.force_x, sums.force_v
-    space[at + KINKED], space[at + CURVED] = sums.kinked, sums.curved
+    flank = chosen_flank(space, at, meshes, m, side, listed)
     if front and back:
-        _add_back(space, at, meshes, m, listed)
+        _react_on_both(space, at, table, flank, chosen_flank(space, at, meshes, m, 1, listed))
+    else:
+        _react_on(space, at, table, side, flank, no_contacts())
 
 
 @inlined

@@ -6,7 +6,7 @@ that were just written in registers. A last row belongs to the place holder for 
 
 from dynamics.kernels.mesh_tables import N_VALUES
 
-# compiled from sources c4c1687b
+# compiled from sources a2b2fcaf
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -28,8 +28,10 @@ from dynamics.kernels.mesh_tables import N_VALUES
     NET_V,
     KINKED,  # bounds of what the derivatives leave out, see kernels.contact.Pressed
     CURVED,
+    GIVEN,  # part of the reach that the shared body gave where the contacts were last summed [m]
+    TOOTH_SHARE,  # part of a change of the reach that the teeth took there [-]
     INVERSE,  # of the Newton matrix, four numbers
-) = range(N_VALUES, N_VALUES + 20)
+) = range(N_VALUES, N_VALUES + 22)
 # of both ports, the pinion's first and the wheel's PORT further
 PORT = 9
 (

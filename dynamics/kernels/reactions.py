@@ -25,10 +25,12 @@ from dynamics.kernels.flank_contacts import (
 )
 from dynamics.kernels.mesh_tables import (
     BACKLASH,
+    BODY,
     CLOSING,
     DAMP_TIME,
     DERIVATIVE,
     INDIVIDUAL,
+    JAMMED,
     LEAST_GAP,
     MOST,
     MU_1,
@@ -43,8 +45,9 @@ from dynamics.kernels.mesh_tables import (
     ROW_K,
     PackedMeshes,
 )
+from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources c4c1687b
+# compiled from sources a2b2fcaf
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -62,10 +65,12 @@ class MeshStates(NamedTuple):
 
 
 @inlined
-def _path_slopes(table: Array, flank: Flank, law: Array, pressing: Pressing) -> tuple[float, float, float]:
-    """Return (da_1/ds, da_2/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
+def _path_slopes(
+    table: Array, flank: Flank, law: Array, pressing: Pressing
+) -> tuple[float, float, float, float]:
+    """Return (da_1/ds, da_2/ds, dP/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
     sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
-    slope_1, slope_2, energy = 0.0, 0.0, 0.0
+    slope_1, slope_2, slope, energy = 0.0, 0.0, 0.0, 0.0
     f = flank.place
     damp_time, per_depth = law[DAMP_TIME], law[PER_DEPTH]
     path_speed = law[CLOSING] * sign * law[R1] * omega_1
@@ -96,23 +101,59 @@ def _path_slopes(table: Array, flank: Flank, law: Array, pressing: Pressing) -> 
         de = stiffness_slope * depth - k * gap_slope
         slope_1 += df * m_1 + (df - de) * rotation * gap_slope - stiffness_slope * depth * gap_slope
         slope_2 += df * m_2
-    return slope_1, slope_2, energy
+        slope += de
+    return slope_1, slope_2, slope, energy
+
+
+class MeshState(NamedTuple):
+    """One of them."""
+
+    theta_1: float
+    reach: float
+    omega_1: float
+    omega_2: float
+
+
+@inlined
+def _listed_flank(
+    meshes: PackedMeshes, state: MeshState, side: int, contacts: Array, pairs: Integers
+) -> Flank:
+    """List the contacts of a flank of the first mesh in its half of ``contacts``."""
+    law, stride = meshes.values[0], meshes.counts[0, MOST]
+    table = ContactTable(contacts, side * N_PHASE * stride, stride, pairs)
+    found = list_on_path(law, 0, meshes, 0, 1.0 - 2.0 * side, state.theta_1, table)
+    return flank_on_path(law, 0, table, found, state.omega_1, state.omega_2)
+
+
+@inlined
+def _flank_at(meshes: PackedMeshes, state: MeshState, side: int, contacts: Array, pairs: Integers) -> Flank:
+    """Return the contacts of a flank of the first mesh; those of individual teeth are listed in ``contacts``."""
+    law, counts, sign = meshes.values[0], meshes.counts, 1.0 - 2.0 * side
+    within = sign * state.reach - side * law[BACKLASH] + law[JAMMED]
+    flank = no_contacts()
+    if within > law[LEAST_GAP]:
+        if counts[0, INDIVIDUAL] == 0:
+            chosen = ContactState(sign, within, state.theta_1, state.omega_1, state.omega_2)
+            flank = flank_in_phase(law, 0, meshes, 0, chosen)
+        else:
+            flank = _listed_flank(meshes, state, side, contacts, pairs)
+    return flank
 
 
 def mesh_reactions(meshes: PackedMeshes, states: MeshStates, out: Array) -> None:
-    """Evaluate the first mesh at many states; ``out`` (n, 13) in the order of ``MeshReaction``."""
-    contacts = np.zeros(int(meshes.counts[0, MOST]) * N_PHASE)
+    """Evaluate the first mesh at many states; ``out`` (n, 14) in the order of ``MeshReaction``."""
+    contacts = np.zeros(2 * int(meshes.counts[0, MOST]) * N_PHASE)
     _mesh_reactions(meshes, states, contacts, np.empty((2, 0), np.int64), out)
 
 
 @inlined
-def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pressing, out: Array) -> None:
-    """Add what one flank of the first mesh answers to the row ``out`` (13,)."""
+def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pressing, out: Array) -> float:
+    """Add what one flank of the first mesh answers to the row ``out`` (14,); return its elastic force per path."""
     sign = pressing.sign
     r_1, r_2 = law[R1], law[R2]
     sums = press_flank(table, flank, law, 0, pressing, 0.0)
     friction_power, damping_power, _ = flank_powers(table, flank, law, 0, pressing)
-    slope_1, slope_2, energy = _path_slopes(table, flank, law, pressing)
+    slope_1, slope_2, slope, energy = _path_slopes(table, flank, law, pressing)
     out[0] -= sign * r_1 * sums.a_1
     out[1] += sign * r_2 * sums.a_2
     out[2 + side] += sums.force
@@ -125,34 +166,42 @@ def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pres
     out[10] += friction_power
     out[11] += damping_power
     out[12] += energy
+    return slope
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _mesh_reactions(
     meshes: PackedMeshes, states: MeshStates, contacts: Array, no_pairs: Integers, out: Array
 ) -> None:
-    """Do what ``mesh_reactions`` says, ``contacts`` being room for a table."""
+    """Do what ``mesh_reactions`` says, ``contacts`` being room for the tables of both flanks."""
     theta_1, reach, omega_1, omega_2 = states.theta_1, states.reach, states.omega_1, states.omega_2
     law, counts = meshes.values[0], meshes.counts
-    stride = counts[0, MOST]
+    individual = counts[0, INDIVIDUAL] != 0
+    table = contacts if individual else meshes.phase_data
     for n in range(theta_1.shape[0]):
         out[n] = 0.0
-        for side in range(2):
-            sign = 1.0 - 2.0 * side
-            within = sign * reach[n] - side * law[BACKLASH]
-            if within <= law[LEAST_GAP]:
-                continue
-            rate = sign * (law[R1] * omega_1[n] - law[R2] * omega_2[n])
-            pressing = Pressing(sign, within, rate, omega_1[n])
-            if counts[0, INDIVIDUAL] == 0:
-                state = ContactState(sign, within, theta_1[n], omega_1[n], omega_2[n])
-                alike = flank_in_phase(law, 0, meshes, 0, state)
-                _add_flank(meshes.phase_data, alike, law, side, pressing, out[n])
-            else:
-                table = ContactTable(contacts, 0, stride, no_pairs)
-                found = list_on_path(law, 0, meshes, 0, sign, theta_1[n], table)
-                single = flank_on_path(law, 0, table, found, omega_1[n], omega_2[n])
-                _add_flank(contacts, single, law, side, pressing, out[n])
+        one = MeshState(theta_1[n], reach[n], omega_1[n], omega_2[n])
+        front = _flank_at(meshes, one, 0, contacts, no_pairs)
+        back = _flank_at(meshes, one, 1, contacts, no_pairs)
+        teeth, share = reach[n], 1.0
+        if law[BODY] > 0.0:
+            teeth, share = tooth_approach(table, Flanks(front, back), law, 0, teeth, teeth)
+        rate = law[R1] * omega_1[n] - law[R2] * omega_2[n]
+        per_path = 0.0
+        if front.n:
+            per_path += _add_flank(table, front, law, 0, Pressing(1.0, teeth, rate, omega_1[n]), out[n])
+        if back.n:
+            pressing = Pressing(-1.0, -teeth - law[BACKLASH], -rate, omega_1[n])
+            per_path += _add_flank(table, back, law, 1, pressing, out[n])
+        # at a fixed approach of the gears the path turns the body as well
+        turned = -law[BODY] * share * law[R1] * per_path
+        out[n, 8] += out[n, 4] * turned
+        out[n, 9] += out[n, 5] * turned
+        out[n, 4] *= share
+        out[n, 5] *= share
+        if law[BODY] > 0.0:
+            out[n, 12] += 0.5 * (reach[n] - teeth) ** 2 / law[BODY]
+        out[n, 13] = teeth
 
 
 @njit(cache=True, fastmath=LOOSE)
@@ -161,12 +210,18 @@ def tooth_pair_forces(meshes: PackedMeshes, states: MeshStates, lowest: Integers
     theta_1, reach, omega_1, omega_2 = states.theta_1, states.reach, states.omega_1, states.omega_2
     law, counts = meshes.values[0], meshes.counts
     stride = counts[0, MOST]
-    contacts = np.empty(stride * N_PHASE)
+    contacts = np.empty(2 * stride * N_PHASE)
     pairs = np.empty((2, stride), np.int64)
     for n in range(theta_1.shape[0]):
+        teeth = reach[n]
+        if law[BODY] > 0.0:
+            one = MeshState(theta_1[n], reach[n], omega_1[n], omega_2[n])
+            front = _listed_flank(meshes, one, 0, contacts, pairs)
+            back = _listed_flank(meshes, one, 1, contacts, pairs)
+            teeth = tooth_approach(contacts, Flanks(front, back), law, 0, teeth, teeth).approach
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * law[BACKLASH]
+            pressed = sign * teeth - side * law[BACKLASH]
             if pressed <= law[LEAST_GAP]:
                 continue
             table = ContactTable(contacts, 0, stride, pairs)

@@ -85,6 +85,24 @@ class ContactDiscretisation:
             )
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PairSprings:
+    """Tooth pairs of a mesh as springs over the path, all teeth alike.
+
+    path : (n_path,) uniform grid [m]; face : (n_slices,) middles of the slices from mid-face [m]
+    stiffness, gap : (n_slices, n_path) of one pair in one slice [N/m], [m]
+    mean_stiffness : of the mesh over one base pitch, shared bodies included [N/m]
+    body_compliance : that all pairs share, in series with them [m/N]
+    """
+
+    path: Array
+    face: Array
+    stiffness: Array
+    gap: Array
+    mean_stiffness: float
+    body_compliance: float = 0.0
+
+
 NOMINAL_POSITION = MeshPosition()
 LOSSLESS = MeshDissipation()
 DEFAULT_CONTACT = ContactDiscretisation()
@@ -114,29 +132,62 @@ def mesh_law(
 
     Raises DynamicsInputError for arrays of another length than the tooth number or numbers below their limit.
     """
-    misalignment = position.misalignment
+    flanks = law_flanks(pair, micro, position)
+    face, path = contact_grid(pair, micro, position, discretisation)
+    n_slices, engagement = len(face), discretisation.engagement
+    gap = (
+        tip_separation(pair, path)
+        if engagement == "corner"
+        else _ramp(pair, path, _reach(pair, discretisation))
+    )
+    scales = [float(np.mean(gear.tooth_stiffness or (1.0,))) for gear in micro]
+    springs = PairSprings(
+        path=path,
+        face=face,
+        stiffness=np.tile(stiffness.at(path) * pair.face_width / n_slices, (n_slices, 1)),
+        gap=gap + flanks.modifications(path, face[:, None]),
+        mean_stiffness=stiffness.mesh_mean * pair.face_width * scales[0] * scales[1],
+    )
+    return law_of_springs(springs, flanks, position, dissipation)
+
+
+def law_flanks(
+    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], position: MeshPosition = NOMINAL_POSITION
+) -> PairGap:
+    """Flanks of a pair as they stand to each other.
+
+    Raises DynamicsInputError for arrays of another length than the tooth number.
+    """
     count = TeethInMesh(phase=position.phase, tooth_offset_2=position.tooth_offset_2)
-    flanks = PairGap(
+    misalignment = position.misalignment
+    return PairGap(
         pair=pair,
         flanks=flank_fields(pair, micro, count),
         axes=AxisMisalignment.of_gap(pair, misalignment, misalignment),
     )
-    n_slices, n_path = discretisation.n_slices, discretisation.n_path
-    engagement = discretisation.engagement
-    slices = default_slices(pair, micro, misalignment) if n_slices is None else n_slices
-    width = pair.face_width
-    face = ((np.arange(slices) + 0.5) / slices - 0.5) * width
-    wanted = (
-        min(max(0.15 * pair.normal_module, 1e-4), 3e-4)
-        if discretisation.reach is None
-        else discretisation.reach
-    )
-    first, last = _grid_ends(pair, wanted, engagement)
-    path = np.linspace(first, last, n_path)
-    gap = tip_separation(pair, path) if engagement == "corner" else _ramp(pair, path, wanted)
-    gap = gap + flanks.modifications(path, face[:, None])
+
+
+def contact_grid(
+    pair: GearPair,
+    micro: tuple[Microgeometry, Microgeometry],
+    position: MeshPosition,
+    discretisation: ContactDiscretisation,
+) -> tuple[Array, Array]:
+    """Middles of the slices from mid-face (n_slices,) and uniform places over the path (n_path,) [m]."""
+    slices = discretisation.n_slices or default_slices(pair, micro, position.misalignment)
+    face = ((np.arange(slices) + 0.5) / slices - 0.5) * pair.face_width
+    first, last = _grid_ends(pair, _reach(pair, discretisation), discretisation.engagement)
+    return face, np.linspace(first, last, discretisation.n_path)
+
+
+def law_of_springs(
+    springs: PairSprings, flanks: PairGap, position: MeshPosition, dissipation: MeshDissipation
+) -> MeshLaw:
+    """Mesh law of tooth pairs whose stiffness and gap are known, with the deviations of their teeth."""
+    pair, path, face = flanks.pair, springs.path, springs.face
+    count = flanks.flanks[0].count
     deviations = [_deviations(flank, path, face) for flank in flanks.flanks]
-    scales = [np.array(gear.tooth_stiffness or (1.0,)) for gear in micro]
+    scales = [np.array(flank.micro.tooth_stiffness or (1.0,)) for flank in flanks.flanks]
     return MeshLaw(
         base_radius_1=flanks.flanks[0].base_radius,
         base_radius_2=flanks.flanks[1].base_radius,
@@ -144,10 +195,10 @@ def mesh_law(
         teeth_1=pair.teeth[0],
         teeth_2=pair.teeth[1],
         tooth_offset_2=position.tooth_offset_2,
-        path_start=first,
-        path_step=(last - first) / (n_path - 1),
-        stiffness=np.tile(stiffness.at(path) * width / slices, (slices, 1)),
-        gap=gap,
+        path_start=float(path[0]),
+        path_step=float(path[-1] - path[0]) / (len(path) - 1),
+        stiffness=springs.stiffness,
+        gap=springs.gap,
         slice_shift=face * tan(pair.base_helix_angle),
         deviation_1=deviations[0][0],
         deviation_2=deviations[1][0],
@@ -159,13 +210,14 @@ def mesh_law(
         back_phase=back_phase(pair, count),
         damping=dissipation.damping,
         damping_acts_on=dissipation.damping_acts_on,
-        mean_stiffness=stiffness.mesh_mean * width * float(scales[0].mean() * scales[1].mean()),
+        mean_stiffness=springs.mean_stiffness,
         friction=dissipation.friction,
         rolling_radius_1=pair.rolling_radii[0],
         rolling_radius_2=pair.rolling_radii[1],
         friction_reversal_speed=dissipation.friction_reversal_speed,
         back_deviation_1=deviations[0][1],
         back_deviation_2=deviations[1][1],
+        body_compliance=springs.body_compliance,
     )
 
 
@@ -208,6 +260,12 @@ def reach_beyond(law: MeshLaw, approach: Array) -> str:
         f"approach of the teeth = {1e6 * deepest:.0f} um, limit {1e6 * limit:.0f} um of the tables: early contact of "
         "further teeth is lost, the mesh is stiffer than computed; lower the torque or widen the reach of the law"
     )
+
+
+def _reach(pair: GearPair, discretisation: ContactDiscretisation) -> float:
+    """Tip separation at the ends of the grid [m]."""
+    usual = min(max(0.15 * pair.normal_module, 1e-4), 3e-4)
+    return usual if discretisation.reach is None else discretisation.reach
 
 
 def _grid_ends(pair: GearPair, reach: float, engagement: Engagement) -> tuple[float, float]:

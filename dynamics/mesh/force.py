@@ -45,7 +45,9 @@ class MeshReaction(NamedTuple):
     damping_power: Array
     """Power lost by mesh damping, >= 0 [W]."""
     energy: Array
-    """Elastic energy of the tooth contacts [J]."""
+    """Elastic energy of the tooth contacts and of the shared bodies [J]."""
+    tooth_approach: Array
+    """Approach that the tooth pairs see: that of the gears less what the shared bodies give [m]."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,19 +14,23 @@ the face width sees ``s_p - slice_shift[i]`` in front and, the helix being mirro
 position plus ``slice_shift[i]``. Pair ``p`` joins pinion tooth p in front with wheel tooth p + tooth_offset_2,
 on the back with the one that follows it, since the pinion tooth stands between the two. A tooth that stands ahead
 narrows the gap in front and widens it on the back, a thick one narrows both: each flank has deviations of its own.
-The penetration is ``x - gap`` in front and ``-x - backlash - gap`` on the back, and all forces and torques follow
-from the one potential
+The gear bodies under the teeth are shared by all pairs: under the elastic force P, front less back, they give by
+c_b P, and the teeth see the approach y = x - c_b P. A loaded tooth so carries its neighbours along, and a pair that
+comes in is met late. The penetration is ``y - gap`` in front and ``-y - backlash - gap`` on the back, and all forces
+and torques follow from the one potential
 
-    W = sum over flanks, pairs and slices of  k(s) max(0, penetration)^2 / 2                          [J]
+    W = (x - y)^2 / (2 c_b) + sum over flanks, pairs and slices of  k(s) max(0, penetration)^2 / 2    [J]
 
-so that an angle-dependent stiffness neither creates nor destroys energy (ASME JMD 2005, Oh/Grosh/Barber).
+which is least over y, so that its derivatives are those of the sum at a fixed y, and an angle-dependent stiffness
+neither creates nor destroys energy (ASME JMD 2005, Oh/Grosh/Barber). With c_b = 0, y is x.
 Damping acts in contact only and grows over the first micrometre of it, each contact force is clipped at
 zero, friction follows the sliding direction.
 
 The damper of a contact acts on the relative rotation, the approach rate r_b1 omega_1 - r_b2 omega_2, as a damper
 parallel to the mesh spring does (Kahraman and Singh, J. Sound Vib. 142, 1990, 49); or on the closing rate of the
 contact itself, to which the gap of a tip corner that comes in adds its slope times the path speed. The latter takes
-power from flanks that pass under steady load: as much as friction does where teeth meet early at 12,000 rpm.
+power from flanks that pass under steady load: as much as friction does where teeth meet early at 12,000 rpm. In both
+it spans teeth and bodies: its rate is that of x, and the bodies give to the elastic force alone.
 """
 
 from typing import Literal, NamedTuple, get_args
@@ -82,9 +86,9 @@ class MeshLaw(NamedTuple):
     back_phase: float
     """Back-flank path position of pair 0 at theta_1 = 0 [m]."""
     damping: float
-    """Damping of the mesh at its mean stiffness [N s/m]; a contact takes the share k / mean_stiffness."""
+    """Damping of the mesh at its mean stiffness [N s/m]; a contact takes the share of its k in that of all pairs."""
     mean_stiffness: float
-    """Mean stiffness of the mesh over one base pitch [N/m]."""
+    """Mean stiffness of the mesh over one base pitch, teeth and shared bodies in series [N/m]."""
     friction: float
     """Friction coefficient of the tooth contact [-]."""
     rolling_radius_1: float
@@ -102,6 +106,8 @@ class MeshLaw(NamedTuple):
     """The same for the wheel, shape as ``deviation_2`` [m]."""
     damping_acts_on: DampedRate = "relative_rotation"
     """Rate that the damper of a contact answers to."""
+    body_compliance: float = 0.0
+    """Compliance of both gear bodies that all tooth pairs share [m/N]; 0: every pair deflects alone."""
 
 
 def back_deviations(law: MeshLaw) -> tuple[Array, Array]:
@@ -130,6 +136,7 @@ def check_mesh_law(law: MeshLaw) -> None:
             raise DynamicsInputError(f"mesh law: {name} = {value} must be positive and finite")
     not_negative = {
         "backlash": law.backlash,
+        "body_compliance": law.body_compliance,
         "damping": law.damping,
         "friction": law.friction,
         "friction_reversal_speed": law.friction_reversal_speed,
@@ -140,6 +147,11 @@ def check_mesh_law(law: MeshLaw) -> None:
     for name, value in not_negative.items():
         if not (value >= 0.0 and np.isfinite(value)):
             raise DynamicsInputError(f"mesh law: {name} = {value} must not be negative")
+    if law.body_compliance * law.mean_stiffness >= 1.0:
+        raise DynamicsInputError(
+            f"mesh law: body_compliance = {law.body_compliance:.3g} m/N must be below the compliance of the mesh, "
+            f"{1.0 / law.mean_stiffness:.3g} m/N; the mean stiffness is that of teeth and bodies together"
+        )
     if law.damping_acts_on not in get_args(DampedRate):
         raise DynamicsInputError(
             f"mesh law: damping_acts_on = {law.damping_acts_on!r} must be {' or '.join(get_args(DampedRate))}"

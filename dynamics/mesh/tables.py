@@ -139,14 +139,17 @@ def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
     front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
     least_gap = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
     reversal = max(law.friction_reversal_speed, 1e-9)
+    teeth = law.mean_stiffness / (1.0 - law.body_compliance * law.mean_stiffness)
+    # both flanks pressed at once: the body can bring one into contact that the gears alone would not
+    jammed = law.body_compliance > 0.0 and law.backlash + 2.0 * least_gap < 0.0
     return (
         law.base_radius_1, law.base_radius_2, law.base_pitch, law.phase, law.back_phase, law.backlash,
-        law.path_start, 1.0 / law.path_step, law.damping / law.mean_stiffness, law.friction,
+        law.path_start, 1.0 / law.path_step, law.damping / teeth, law.friction,
         law.rolling_radius_1, law.rolling_radius_2, 1.0 / reversal, least_gap, float(derivative_torques),
         1e-12 * law.mean_stiffness * law.base_radius_1, 1.0 / law.base_pitch,
         law.friction / law.base_radius_1, law.friction / law.base_radius_2, law.base_pitch / phase_count(law),
         phase_count(law) / law.base_pitch, law.damping_depth, 1.0 / law.damping_depth,
-        float(law.damping_acts_on == "contact_closing_rate"),
+        float(law.damping_acts_on == "contact_closing_rate"), law.body_compliance, np.inf if jammed else 0.0,
     )  # fmt: skip
 
 

@@ -5,7 +5,8 @@ relative change ``q_j`` of its stiffness change each torque ``a`` (pinion, wheel
 
     sum over pairs p and slices i of  a_e e_j(s_pi) + a_e' e_j'(s_pi) + a_q q_j
 
-The contacts are those of ``dynamics.kernels.contact``, whose formulas are differentiated here.
+The contacts are those of ``dynamics.kernels.contact``, whose formulas are differentiated here. Where the pairs share a
+body, what a tooth deviates changes the force on it and so the approach that all pairs see.
 """
 
 from typing import NamedTuple
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from dynamics.kernels.mesh_tables import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
+from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]
@@ -58,9 +60,14 @@ def pair_sensitivity(
 
     law : with all teeth alike (``alike_teeth``); packed : the same, ``pack_meshes([law])``
     """
-    found = _contacts(law, packed, motion, -1.0 if back else 1.0)
+    sign = -1.0 if back else 1.0
+    if law.body_compliance > 0.0:
+        motion = motion._replace(approach=evaluate_mesh(packed, *motion).tooth_approach)
+    found = _contacts(law, packed, motion, sign)
     if found is None or not found.pair.size:
         return None
+    if law.body_compliance > 0.0:
+        found = _through_body(law, found, _contacts(law, packed, motion, -sign), sign)
     n, n_path = motion.angle.size, law.stiffness.shape[1]
     first = int(found.pair.min())
     pairs = int(found.pair.max()) - first + 1
@@ -137,9 +144,24 @@ class _Contacts(NamedTuple):
     pair: Integers
     cell: Integers
     fraction: Array
+    stiffness: Array
+    depth: Array
     per_gap: Array
     per_gap_slope: Array
     per_scale: Array
+
+
+def _through_body(law: MeshLaw, own: _Contacts, other: _Contacts | None, sign: float) -> _Contacts:
+    """The contacts of one flank with what their deviations do to all others by way of the shared body."""
+    n = int(max(one.at.max(initial=-1) for one in (own, other) if one is not None)) + 1
+    per_approach, stiffness = np.zeros((OUTPUTS, n)), np.zeros(n)
+    for flank, side in ((own, sign), (other, -sign)):
+        if flank is not None:
+            stiffness += np.bincount(flank.at, flank.stiffness, n)
+            per_approach -= side * np.array([np.bincount(flank.at, one, n) for one in flank.per_gap])
+    given = law.body_compliance * per_approach / (1.0 + law.body_compliance * stiffness)
+    moved = sign * given[:, own.at] * own.stiffness
+    return own._replace(per_gap=own.per_gap + moved, per_scale=own.per_scale - moved * own.depth)
 
 
 def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -> _Contacts | None:
@@ -202,7 +224,7 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     r_1, r_2 = -sign * law.base_radius_1, sign * law.base_radius_2
     none = np.zeros_like(force)
     return _Contacts(
-        at, pair, cell, f,
+        at, pair, cell, f, stiffness, depth,
         np.array([
             r_1 * (force_gap * lever_1 + damped_gap * lever - stiffness_slope * depth), r_2 * force_gap * lever_2,
             -r_1 * force_gap,
