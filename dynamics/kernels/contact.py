@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources a2b2fcaf
+# compiled from sources b9e97a4a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources a2b2fcaf
+# compiled from sources b9e97a4a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -67,7 +67,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.shared_body import Flanks, ToothApproach, no_contacts, tooth_approach
 
-# compiled from sources a2b2fcaf
+# compiled from sources b9e97a4a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -164,7 +164,9 @@ def behind_body(
     if can_touch(space, at, 1):
         back = chosen_flank(space, at, meshes, m, 1, listed)
     table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
-    return tooth_approach(table, Flanks(front, back), space, at, reach, reach - space[at + GIVEN])
+    start = reach - space[at + GIVEN]
+    teeth: ToothApproach = tooth_approach(table, Flanks(front, back), space, at, reach, start)
+    return teeth
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
