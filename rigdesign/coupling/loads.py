@@ -16,7 +16,6 @@ from dynamics.mesh.flank import (
     MeshPosition,
     alike_teeth,
     default_slices,
-    mesh_law,
 )
 from dynamics.mesh.friction import (
     Doleschel,
@@ -28,13 +27,13 @@ from dynamics.mesh.friction import (
     friction_coefficient,
 )
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
-from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from dynamics.mesh.stiffness import PairStiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.case.gears import Gear
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.tooth_springs import StiffnessKind, WarmMesh, springs_of, stiffness_kind
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies
 from rigdesign.rig.model import Rig
@@ -56,11 +55,11 @@ class MeshModel:
 
 
 def mesh_models(
-    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, stiffness: str | None = None
+    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, stiffness: StiffnessKind | None = None
 ) -> tuple[MeshModel, ...]:
     """Warm gears and mesh laws of the whole rig.
 
-    stiffness : ``iso_6336_scaled`` or ``weber_banaschek_0.8``; that of the case when left out
+    stiffness : tooth model; that of the case when left out
     """
     return tuple(mesh_model(rig, name, point, coupling_state, stiffness) for name in rig.mesh_names)
 
@@ -83,30 +82,23 @@ def warm_pair(rig: Rig, name: str, speed: float, coupling_state: CouplingState) 
 
 
 def mesh_model(
-    rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState, stiffness: str | None = None
+    rig: Rig,
+    name: str,
+    point: OperatingPoint,
+    coupling_state: CouplingState,
+    stiffness: StiffnessKind | None = None,
 ) -> MeshModel:
     """One warm mesh and its law; ``stiffness`` as in `mesh_models`."""
-    kind = stiffness or (rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else "iso_6336_scaled")
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     pair = warm_pair(rig, name, point.speed, coupling_state)
-    torque = max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE)
     friction = mesh_friction(rig, name, pair, point, coupling_state)
-    shape = pair_stiffness(pair, torque / pair.base_radii[0] / pair.face_width)
-    if kind == "iso_6336_scaled":
-        options = RatingOptions(
-            application_factor=entry.application_factor, low_load_factor=entry.low_load_factor
-        )
-        shape = shape.scaled_to(mesh_stiffness(rig.pairs[name], torque, options))
-    else:
-        shape = shape.scaled(0.8)
-    if entry.stiffness_factor != 1.0:
-        shape = shape.scaled(entry.stiffness_factor)
     micro = mesh_microgeometry(rig, name, pair)
-    law = mesh_law(
-        pair,
-        shape,
+    warm = WarmMesh(
+        name=name,
+        pair=pair,
+        torque=max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
         micro=micro,
         position=MeshPosition(
             offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
@@ -120,6 +112,7 @@ def mesh_model(
         ),
         discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro)),
     )
+    shape, law = springs_of(rig, warm, stiffness_kind(rig, stiffness))
     law = law._replace(damping=mesh_damping(rig, name, law))
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
 

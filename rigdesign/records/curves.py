@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.tooth_springs import StiffnessKind
 from rigdesign.results.dynamics import DynamicFactorPoint
 from rigdesign.rig.model import Rig
 
@@ -30,7 +32,7 @@ BEYOND = 1.25
 HARDNESS = ("case_hardened", "nitrided", "through_hardened")
 """Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
 DEFAULT = RatingOptions()
-VARIANT = "weber_banaschek_0.8"
+VARIANT: Final = "weber_banaschek_0.8"
 """The other reading of the mesh stiffness, shown for comparison."""
 
 
@@ -86,7 +88,7 @@ def plan_curves(rig: Rig, warm: IterationResult, *, variants: bool = True) -> Cu
         torque: partial(solve, torque, grid(rig, *limits)) for torque, limits in speed_ranges(rig).items()
     }
     shipped = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
-    other = "iso_6336_scaled" if shipped == VARIANT else VARIANT
+    other: StiffnessKind = "iso_6336_scaled" if shipped == VARIANT else VARIANT
     if variants and rig.fidelity != "quick":
         models = mesh_models(rig, warm.point, warm.coupling_state, other)
         own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)
