@@ -1,21 +1,23 @@
 """Mesh law of a gear pair from the influence numbers of its gears.
 
 The law knows tooth pairs as springs in parallel, slice by slice, on gear bodies that all of them share. Its tables
-come from the loaded contact (`loaded_mesh`) under an even line load:
+are those of the loaded contact (`loaded_mesh`) about a mean load:
 
 - body_compliance c_b: what the force on one tooth pair moves another, mean over all pairs that stand on the path
-  together, over a mesh cycle;
-- stiffness: the displacement of a slice under the even load on all pairs, less c_b times their force, plus the tangent
-  of the local approach at the mean line load of the loaded pairs. The tangent is what small motions about the load
-  feel; the part of the approach that it leaves out, 1 um at most, goes into the gap. The secant takes the approach
-  from zero load instead: it is 3 % softer under motion and shares 0.01 of the force differently;
+  together, over a mesh cycle, under an even load;
+- stiffness: the displacement of a slice under the loads of all slices, less c_b times their force, plus the tangent of
+  the local approach at the mean line load. The loads are those of the law itself, found in a few corrections from an
+  even one, so that a short contact line of a helical gear is held by the free rest of its teeth. The tangent is what
+  small motions about the load feel (within 1 % of the loaded contact for spur gears, 2 % for helical ones); the part of
+  the approach that it leaves out, 1 um, goes into the gap. The secant, which takes the approach from zero load, is 2 to
+  4 % softer under motion;
 - gap: where the modified flanks touch (`touching`), beyond the path from the tip corner inwards.
 
-Slices of a helical gear carry where their place on the path has come into contact, so that a short contact line is
-held by the free rest of its teeth. What single teeth deviate stays with the law.
+What single teeth deviate stays with the law.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import ceil, cos
 from typing import Literal
 
@@ -23,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.corner import contact_places, sharp_tips
+from dynamics.contact.corner import ContactPlace, contact_places, sharp_tips
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import modified_gap
 from dynamics.contact.local_approach import SOFT_EDGES, LocalModel
@@ -91,31 +93,47 @@ def influence_law(
     position: MeshPosition = NOMINAL_POSITION,
     dissipation: MeshDissipation = LOSSLESS,
     discretisation: ContactDiscretisation = DEFAULT_CONTACT,
+    lines: "ContactLines | None" = None,
 ) -> MeshLaw:
     """Mesh law of a pair from its influence numbers; other arguments as in `dynamics.mesh.flank.mesh_law`.
+
+    lines : of the cold pair, where its law is asked for at many temperatures; None: of this pair
 
     Raises DynamicsInputError for an engagement other than ``corner``, or numbers that leave a pair no compliance of
     its own.
     """
-    if discretisation.engagement != "corner":
-        raise DynamicsInputError(
-            f'engagement = "{discretisation.engagement}" must be "corner": influence numbers know the path beyond its '
-            "ends; leave it out"
-        )
     flanks = law_flanks(elastic.pair, micro, position)
     grid = _Grid(flanks, *contact_grid(elastic.pair, micro, position, discretisation))
-    lines = _ContactLines(elastic, grid)
+    if lines is None:
+        lines = contact_lines(elastic.pair, elastic.gears, micro, position, discretisation)
     force, line_load = lines.even, elastic.force / (grid.width * len(grid.face))
+    body = lines.body
     for _ in range(LOAD_STEPS):
-        body = lines.body(force)
-        springs = _springs(elastic, grid, lines.own(force, body), body, line_load)
+        springs = _springs(elastic, grid, lines.own(force, body, grid.path), body, line_load)
         law = law_of_springs(springs, flanks, position, dissipation)
         cycle = static_cycle(_alike(law), elastic.force, CYCLE, lines.start)
         force, line_load = lines.loaded(cycle), cycle.mean_slice_force / grid.width
     return law._replace(mean_stiffness=float(cycle.tangent_stiffness.mean()))
 
 
-@dataclass(frozen=True, kw_only=False, eq=False)
+def contact_lines(
+    pair: GearPair,
+    gears: tuple[InterpolatedCompliance, InterpolatedCompliance],
+    micro: tuple[Microgeometry, Microgeometry] = FLAWLESS,
+    position: MeshPosition = NOMINAL_POSITION,
+    discretisation: ContactDiscretisation = DEFAULT_CONTACT,
+) -> "ContactLines":
+    """What the influence numbers of a pair say of its tooth pairs at all positions; arguments as in `influence_law`."""
+    if discretisation.engagement != "corner":
+        raise DynamicsInputError(
+            f'engagement = "{discretisation.engagement}" must be "corner": influence numbers know the path beyond its '
+            "ends; leave it out"
+        )
+    flanks = law_flanks(pair, micro, position)
+    return ContactLines(_Grid(flanks, *contact_grid(pair, micro, position, discretisation)), gears)
+
+
+@dataclass(frozen=True, eq=False)
 class _Grid:
     """Flanks of a pair, and the grid of their law: middles of the slices (n_slices,), places (n_path,) [m]."""
 
@@ -128,74 +146,80 @@ class _Grid:
         """Width of a slice [m]."""
         return self.flanks.pair.face_width / len(self.face)
 
+    @cached_property
+    def touching(self) -> tuple[ContactPlace, Array]:
+        """Where the modified flanks touch (n_slices, n_path), and the metal removed of them there [m]."""
+        pair, shape = self.flanks.pair, (len(self.face), len(self.path))
+        path, face = np.broadcast_to(self.path, shape), np.broadcast_to(self.face[:, None], shape)
+        number, tips, gap = np.zeros(shape, np.int64), sharp_tips(pair), modified_gap(self.flanks)
 
-class _ContactLines:
+        def removed(rolls: tuple[Array, Array]) -> Array:
+            return gap(number, face, path, rolls)
+
+        return settled(Profiles(pair=pair, place=contact_places(pair, path, tips), tips=tips), removed)
+
+
+class ContactLines:
     """All tooth pairs of a mesh cycle in slices, and what forces on the slices do to them.
 
     Arrays (CYCLE, n_pairs, n_slices); forces and displacements in the transverse line of action.
     even : the same force on all slices on the path, none beyond it; start : first position of pair 0 [m]
     """
 
-    def __init__(self, elastic: ElasticPair, grid: _Grid) -> None:
-        pair, slices = elastic.pair, len(grid.face)
-        alike = all(len(gear.face) == 1 for gear in elastic.gears)
+    def __init__(self, grid: _Grid, gears: tuple[InterpolatedCompliance, InterpolatedCompliance]) -> None:
+        pair, slices = grid.flanks.pair, len(grid.face)
+        alike = all(len(gear.face) == 1 for gear in gears)
         within = 1 if alike else max(1, ceil(FACE_POINTS / slices))
         n = within * slices
         middles = ((np.arange(n) + 0.5) / n - 0.5) * pair.face_width
-        reach = float(contact_places(pair, grid.path[[0, -1]]).gap.max())
         points = contact_points(
             pair,
             FaceGrid(position=middles, width=np.full(n, pair.face_width / n)),
             gap=modified_gap(grid.flanks),
             n_positions=CYCLE,
-            reach=reach,
+            reach=float(contact_places(pair, grid.path[[0, -1]]).gap.max()),
         )
-        self.start, self.pitch = float(points.position[0]), pair.base_pitch
-        self.grid, self.pairs = grid, points.pairs
-        self.shape = (CYCLE, len(points.pairs), slices)
-        self.path = points.path.reshape(*self.shape, within).mean(axis=3)
-        self.opening = contact_places(pair, self.path).gap
-        self.even = np.where(self.opening <= ALIKE, 1.0, 0.0)
-        self.number = np.repeat(np.arange(len(points.pairs)), slices)
-        self.matrices = [_sliced(elastic, points, k, within) for k in range(CYCLE)]
+        self.start, self.pitch, self.pairs = float(points.position[0]), pair.base_pitch, points.pairs
+        shape = (CYCLE, len(points.pairs), slices)
+        self.path = points.path.reshape(*shape, within).mean(axis=3)
+        opening = contact_places(pair, self.path).gap
+        self.even = np.where(opening <= ALIKE, 1.0, 0.0)
         if not np.any(self.even.any(axis=2).sum(axis=1) > 1):
             raise DynamicsInputError(
                 f"contact ratio = {pair.transverse_contact_ratio:.3f} of the pair: no two tooth pairs stand on the "
                 "path together, and the influence numbers have no body to share; use the analytic mesh law"
             )
+        # displacement of every slice by every other, and of those of one pair by each other
+        self.all = np.stack([_sliced(gears, points, k, within) for k in range(CYCLE)])
+        blocks = self.all.reshape(CYCLE, *shape[1:], *shape[1:])
+        self.of_pair = np.einsum("kpipj->kpij", blocks).copy()
+        self.no_later = opening[:, :, None, :] <= opening[:, :, :, None] + ALIKE
 
-    def body(self, force: Array) -> float:
-        """Compliance that the pairs share: displacement of one by another, mean weighted by both forces [m/N]."""
-        other = self.number[:, None] != self.number
-        moved, forces = 0.0, 0.0
-        for matrix, of_cycle in zip(self.matrices, force.reshape(CYCLE, -1), strict=True):
-            product = np.outer(of_cycle, of_cycle) * other
-            moved += float((product * matrix).sum())
-            forces += float(product.sum())
-        return moved / forces
+    @cached_property
+    def body(self) -> float:
+        """Compliance that the pairs share: displacement of one by another, mean over all that are on the path [m/N]."""
+        force = self.even
+        moved = (force * (self._by_all(force) - self._by_pair(force))).sum()
+        of_pairs = force.sum(axis=2)
+        return float(moved / (of_pairs.sum(axis=1) ** 2 - (of_pairs**2).sum(axis=1)).sum())
 
-    def own(self, force: Array, body: float) -> Array:
+    def own(self, force: Array, body: float, path: Array) -> Array:
         """Compliance of a slice (n_slices, n_path) under these forces, less the shared body [m/N].
 
         Where it carries next to nothing it is that under the least force, on all slices of its pair that open no later.
         """
         least = LEAST_SHARE * float((force**2).sum() / force.sum())
-        same = self.number[:, None] == self.number
-        found = np.empty((CYCLE, self.number.size))
-        for k, matrix in enumerate(self.matrices):
-            acting, opening = force[k].ravel(), self.opening[k].ravel()
-            raised = np.maximum(acting, np.where(opening <= opening[:, None] + ALIKE, least, 0.0))
-            beyond = matrix - body
-            own = np.diagonal(raised)
-            by_others = np.where(same, 0.0, beyond) @ acting
-            found[k] = ((np.where(same, beyond, 0.0) * raised).sum(axis=1) + by_others * acting / own) / own
-        values, places = found.reshape(self.shape), self.path
-        result = np.empty((self.shape[2], len(self.grid.path)))
-        for i in range(self.shape[2]):
-            order = np.argsort(places[:, :, i], axis=None)
-            result[i] = np.interp(
-                self.grid.path, places[:, :, i].ravel()[order], values[:, :, i].ravel()[order]
-            )
+        others = self._by_all(force) - self._by_pair(force)
+        of_pairs = force.sum(axis=2, keepdims=True)
+        others = others - body * (of_pairs.sum(axis=1, keepdims=True) - of_pairs)
+        raised = np.maximum(force[:, :, None, :], least * self.no_later)
+        acting = np.einsum("kpii->kpi", raised)
+        found = (((self.of_pair - body) * raised).sum(axis=3) + others * force / acting) / acting
+        slices = found.shape[2]
+        result = np.empty((slices, len(path)))
+        for i in range(slices):
+            order = np.argsort(self.path[:, :, i], axis=None)
+            result[i] = np.interp(path, self.path[:, :, i].ravel()[order], found[:, :, i].ravel()[order])
         return result
 
     def loaded(self, cycle: StaticCycle) -> Array:
@@ -206,13 +230,23 @@ class _ContactLines:
         force = cycle.slice_force[np.arange(CYCLE)[:, None], np.where(listed, column, 0)]
         return np.where(listed[:, :, None], force, 0.0)
 
+    def _by_all(self, force: Array) -> Array:
+        """Displacement of every slice by all forces [m]."""
+        return np.asarray((self.all @ force.reshape(CYCLE, -1, 1)).reshape(force.shape))
 
-def _sliced(elastic: ElasticPair, points: ContactPoints, k: int, within: int) -> Array:
+    def _by_pair(self, force: Array) -> Array:
+        """Displacement of every slice by the forces on its own pair [m]."""
+        return np.asarray((self.of_pair @ force[..., None])[..., 0])
+
+
+def _sliced(
+    gears: tuple[InterpolatedCompliance, InterpolatedCompliance], points: ContactPoints, k: int, within: int
+) -> Array:
     """Displacement of slices by forces spread over slices at position k, along the transverse line of action [m/N]."""
     shape = points.path.shape[1:]
     number, face = np.repeat(points.pairs, shape[1]), np.tile(points.grid.position, shape[0])
     first, second = (roll[k].ravel() for roll in points.place.roll)
-    matrix = elastic.gears[0].matrix(first, face, -number) + elastic.gears[1].matrix(second, face, number)
+    matrix = gears[0].matrix(first, face, -number) + gears[1].matrix(second, face, number)
     weight = 1.0 / points.weight[k].ravel()
     n = number.size // within
     spread = (weight[:, None] * matrix * weight).reshape(n, within, n, within)
@@ -221,19 +255,12 @@ def _sliced(elastic: ElasticPair, points: ContactPoints, k: int, within: int) ->
 
 def _springs(elastic: ElasticPair, grid: _Grid, tooth: Array, body: float, line_load: float) -> PairSprings:
     """Springs of slices with their compliance (n_slices, n_path) [m/N] at a mean transverse load per face [N/m]."""
-    pair, face, path, shape = elastic.pair, grid.face, grid.path, tooth.shape
-    places, across = np.broadcast_to(path, shape), np.broadcast_to(face[:, None], shape)
-    number, tips = np.zeros(shape, np.int64), sharp_tips(pair)
-    removed_at = modified_gap(grid.flanks)
-
-    def removed(rolls: tuple[Array, Array]) -> Array:
-        return removed_at(number, across, places, rolls)
-
-    profiles = Profiles(pair=pair, place=contact_places(pair, places, tips), tips=tips)
-    place, removed_there = settled(profiles, removed)
+    pair, place, removed = elastic.pair, *grid.touching
     slant = cos(pair.base_helix_angle)
-    model = LocalModel(pair=pair, gears=elastic.gears, tips=tips, edges=SOFT_EDGES, line_load=line_load)
-    local = model.at(place, np.full(shape, grid.width))
+    model = LocalModel(
+        pair=pair, gears=elastic.gears, tips=sharp_tips(pair), edges=SOFT_EDGES, line_load=line_load
+    )
+    local = model.at(place, np.full(tooth.shape, grid.width))
     weight = slant * place.lever[1] / pair.base_radii[1]
     normal = line_load * grid.width / weight
     a, c = local.law[..., 0], local.law[..., 1]
@@ -246,10 +273,10 @@ def _springs(elastic: ElasticPair, grid: _Grid, tooth: Array, body: float, line_
             "build them anew"
         )
     return PairSprings(
-        path=path,
-        face=face,
+        path=grid.path,
+        face=grid.face,
         stiffness=1.0 / own,
-        gap=place.gap + removed_there + (c * normal / weight if tangent else 0.0),
+        gap=place.gap + removed + (c * normal / weight if tangent else 0.0),
         # refined by the loaded cycle; here of one pair
         mean_stiffness=1.0 / (body + float((1.0 / (1.0 / own).sum(axis=0)).mean())),
         body_compliance=body,

@@ -100,6 +100,7 @@ def mesh_model(
         pair=pair,
         torque=max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
         micro=micro,
+        cold_micro=mesh_microgeometry(rig, name, rig.pairs[name]),
         position=MeshPosition(
             offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
             + flank_expansion(rig.pairs[name], pair),

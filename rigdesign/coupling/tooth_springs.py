@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.influence_law import ElasticPair, influence_law
+from dynamics.contact.influence_law import ContactLines, ElasticPair, contact_lines, influence_law
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, mesh_law
@@ -25,12 +25,14 @@ class WarmMesh:
     """A warm gear pair, how it stands and what it is asked with.
 
     torque : on the pinion [N m], above 0
+    micro, cold_micro : modifications and deviations of the flanks of the warm and of the cold pair
     """
 
     name: str
     pair: GearPair
     torque: float
     micro: tuple[Microgeometry, Microgeometry]
+    cold_micro: tuple[Microgeometry, Microgeometry]
     position: MeshPosition
     dissipation: MeshDissipation
     discretisation: ContactDiscretisation
@@ -77,14 +79,14 @@ def _analytic(rig: Rig, mesh: WarmMesh, kind: StiffnessKind) -> PairStiffness:
 def _from_influence(rig: Rig, mesh: WarmMesh, factor: float) -> tuple[PairStiffness, MeshLaw]:
     """Teeth as drawn and cold; thermal expansion is in their gaps and centre distance."""
     pair = mesh.pair
+    cold = rig.pairs[mesh.name]
     law = influence_law(
-        ElasticPair(
-            pair=pair, gears=_compliances(rig.pairs[mesh.name]), force=mesh.torque / pair.base_radii[0]
-        ),
+        ElasticPair(pair=pair, gears=_compliances(cold), force=mesh.torque / pair.base_radii[0]),
         mesh.micro,
         position=mesh.position,
         dissipation=mesh.dissipation,
         discretisation=mesh.discretisation,
+        lines=_lines(cold, mesh.cold_micro, mesh.discretisation),
     )
     law = law._replace(
         stiffness=factor * law.stiffness,
@@ -105,3 +107,11 @@ def _from_influence(rig: Rig, mesh: WarmMesh, factor: float) -> tuple[PairStiffn
 def _compliances(pair: GearPair) -> tuple[InterpolatedCompliance, InterpolatedCompliance]:
     """Compliance of the cold gears of a pair as drawn."""
     return ToothInfluence().compliances(pair)
+
+
+@lru_cache(maxsize=8)
+def _lines(
+    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], discretisation: ContactDiscretisation
+) -> ContactLines:
+    """Contact lines of a cold pair: the displacements of its slices, the same at every temperature."""
+    return contact_lines(pair, _compliances(pair), micro, discretisation=discretisation)

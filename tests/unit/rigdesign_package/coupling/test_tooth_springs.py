@@ -1,5 +1,7 @@
 """Mesh laws of a rig from influence numbers: asked for by the case, of the cold gears, scaled as the case says."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -17,7 +19,7 @@ CASE, MESH, TORQUE = load_case("cases/fzg"), "test.main", 302.0
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[GearPair]:
+def asked(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[GearPair]]:
     """Analytic influence numbers in place of finite elements; the pairs they are asked for."""
     pairs = []
 
@@ -26,7 +28,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[GearPair]:
         return influence_of(pair, 0, neighbour=0.4), influence_of(pair, 1, neighbour=0.4)
 
     monkeypatch.setattr(tooth_springs, "_compliances", compliances)
-    return pairs
+    tooth_springs._lines.cache_clear()
+    yield pairs
+    tooth_springs._lines.cache_clear()
 
 
 def model(rig: Rig, kind: tooth_springs.StiffnessKind | None = "influence_numbers") -> MeshModel:
@@ -37,7 +41,7 @@ def model(rig: Rig, kind: tooth_springs.StiffnessKind | None = "influence_number
 def test_pairs_share_the_bodies_of_the_cold_gears(asked: list[GearPair]) -> None:
     rig = build_rig(CASE, "standard")
     found = model(rig)
-    assert asked == [rig.pairs[MESH]]
+    assert set(asked) == {rig.pairs[MESH]}
     assert found.law.body_compliance > 0.0
     force = TORQUE / found.pair.base_radii[0]
     cycle = static_cycle(found.law._replace(damping=0.0), force)
