@@ -250,6 +250,7 @@ def _with_means(law: MeshLaw, front: Array, back: Array | None, scale: Array) ->
 def reach_beyond(law: MeshLaw, approach: Array) -> str:
     """What to say of an approach (n,) [m] beyond the tables of a mesh law; empty within them.
 
+    It is that of the teeth, without what bodies shared by the pairs give.
     Past the ends of the grid tooth pairs carry nothing: what the tips of deflected teeth would carry there is lost.
     """
     limit = float(np.minimum(law.gap[:, 0], law.gap[:, -1]).min())

@@ -80,8 +80,10 @@ def _gears(solved: SolvedRig) -> Iterator[str]:
             for text in model.stiffness.warnings:
                 yield f"{model.name}: {text}"
         if point.last.response is not None:
-            for model, approach in zip(point.last.models, point.last.response.wave.approach):
-                if text := reach_beyond(model.law, approach):
+            wave = point.last.response.wave
+            for model, approach, torque in zip(point.last.models, wave.approach, wave.torque):
+                by_body = model.law.body_compliance / model.law.base_radius_1 * torque
+                if text := reach_beyond(model.law, approach - by_body):
                     yield f"{model.name}, stage {point.point.stage}: {text}"
 
 
