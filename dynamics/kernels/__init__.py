@@ -1,6 +1,7 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
 ``mesh_tables`` names the packed tables, ``flank_contacts`` chooses the contacts of a flank, ``contact`` sums them,
+``shared_body`` finds what the teeth see behind bodies that all pairs share,
 ``reactions`` evaluates meshes at given states, ``linear_step`` takes
 the modes over one step, ``mesh_solve`` the meshes, ``drag`` the drag torques, ``march`` joins them; ``mesh_workspace``
 is the state of the meshes that the last four share. The disk cache of a compiled function is keyed by the content of

@@ -121,6 +121,23 @@ def test_shipped_law_on_the_prototype() -> None:
     )
 
 
+def test_shared_body_on_the_prototype() -> None:
+    """The same mesh stiffness with 40 % of the compliance in bodies that the pairs share, against none."""
+    system, laws = rig(), shipped_laws()
+    shared = [
+        law._replace(stiffness=law.stiffness / 0.6, body_compliance=0.4 / law.mean_stiffness) for law in laws
+    ]
+    times: dict[bool, float] = {False: np.inf, True: np.inf}
+    for _ in range(4):
+        for body, of in ((False, laws), (True, shared)):
+            start, _, _ = wound_state(system, of, speed=SPEED, load=LoopLoad(torque=TORQUE))
+            times[body] = min(times[body], march_time(system, of, start, 8, 2000))
+    print(
+        f"\nshared body: {1e-6 / times[True]:.2f} million steps/s, {times[True] / times[False]:.2f} times "
+        "the time of pairs that deflect alone (wanted 1.5)"
+    )
+
+
 def forces_of_march(
     system: LinearSystem, start: DriveState, drive: float, substeps: int, samples: int
 ) -> np.ndarray:
