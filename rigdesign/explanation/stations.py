@@ -141,7 +141,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.meshes.*.damping_acts_on": _at(
         coupling__loads="damper of the mesh in the response", coupling__losses="work of the damper"
     ),
-    "gearboxes.*.meshes.*.stiffness_factor": _at(coupling__loads="stiffness of the tooth pairs"),
+    "gearboxes.*.meshes.*.stiffness_factor": _at(coupling__tooth_springs="stiffness of the tooth pairs"),
     "gearboxes.*.meshes.*.friction_factor": _at(
         coupling__loads="friction coefficient: drag in the loop and heat of the mesh"
     ),
@@ -373,7 +373,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "drivetrain.motor.ripple.*": _at(rig__drivetrain="alternating torque of the drive"),
     "drivetrain.bracing": _at(coupling__loads="how the torque is locked in: what is held while parts expand"),
     "drivetrain.torque_at": _at(rig__model="gear at which torque and speed of the schedule count"),
-    "drivetrain.mesh_stiffness": _at(coupling__loads="analytic mesh stiffness"),
+    "drivetrain.mesh_stiffness": _at(coupling__tooth_springs="tooth model of the mesh law"),
     "losses": _at(coupling__losses="which losses are computed"),
     "losses.chamber_density": _at(
         coupling__losses="windage and seal losses", coupling__boundary="films in oil mist"
