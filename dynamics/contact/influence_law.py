@@ -113,7 +113,9 @@ def influence_law(
         law = law_of_springs(springs, flanks, position, dissipation)
         cycle = static_cycle(_alike(law), elastic.force, CYCLE, lines.start)
         force, line_load = lines.loaded(cycle), cycle.mean_slice_force / grid.width
-    return law._replace(mean_stiffness=float(cycle.tangent_stiffness.mean()))
+    scale = float(law.scale_1.mean() * law.scale_2.mean())
+    of_teeth = (1.0 / float(cycle.tangent_stiffness.mean()) - body) / scale
+    return law._replace(mean_stiffness=1.0 / (of_teeth + body))
 
 
 def contact_lines(
