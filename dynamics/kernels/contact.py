@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 31cf8e21
+# compiled from sources c4c1687b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

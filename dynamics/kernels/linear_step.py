@@ -15,7 +15,7 @@ from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources 31cf8e21
+# compiled from sources c4c1687b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import ListedContacts
 
-# compiled from sources 31cf8e21
+# compiled from sources c4c1687b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -62,7 +62,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 31cf8e21
+# compiled from sources c4c1687b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -1,16 +1,19 @@
 """Mesh law of a gear pair from its geometry, the micro-geometry of its flanks and its stiffness."""
 
 from dataclasses import dataclass
-from math import ceil, pi, tan
+from math import ceil, tan
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
+from dynamics.flank.axes import AxisMisalignment
+from dynamics.flank.field import FlankField, TeethInMesh, back_phase
+from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.law import DampedRate, MeshLaw
-from dynamics.mesh.microgeometry import Microgeometry, check_microgeometry
+from dynamics.mesh.pair_gap import FLAWLESS, PairGap, flank_fields
 from dynamics.mesh.stiffness import PairStiffness
 from dynamics.mesh.tip_contact import path_reach, tip_separation
 
@@ -82,7 +85,6 @@ class ContactDiscretisation:
             )
 
 
-IDEAL = (Microgeometry(), Microgeometry())
 NOMINAL_POSITION = MeshPosition()
 LOSSLESS = MeshDissipation()
 DEFAULT_CONTACT = ContactDiscretisation()
@@ -91,7 +93,7 @@ DEFAULT_CONTACT = ContactDiscretisation()
 def mesh_law(
     pair: GearPair,
     stiffness: PairStiffness,
-    micro: tuple[Microgeometry, Microgeometry] = IDEAL,
+    micro: tuple[Microgeometry, Microgeometry] = FLAWLESS,
     *,
     position: MeshPosition = NOMINAL_POSITION,
     dissipation: MeshDissipation = LOSSLESS,
@@ -107,15 +109,18 @@ def mesh_law(
     dissipation : damping and friction
     discretisation : grid over face width and path
 
-    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal thermal
-    expansion keep the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the
-    path.
+    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. The one table of gaps serves both
+    flanks: modifications and topography of the front flanks count on the back as well.
 
     Raises DynamicsInputError for arrays of another length than the tooth number or numbers below their limit.
     """
-    for gear, teeth in zip(micro, pair.teeth, strict=True):
-        check_microgeometry(gear, teeth)
-    misalignment, phase = position.misalignment, position.phase
+    misalignment = position.misalignment
+    count = TeethInMesh(phase=position.phase, tooth_offset_2=position.tooth_offset_2)
+    flanks = PairGap(
+        pair=pair,
+        flanks=flank_fields(pair, micro, count),
+        axes=AxisMisalignment.of_gap(pair, misalignment, misalignment),
+    )
     n_slices, n_path = discretisation.n_slices, discretisation.n_path
     engagement = discretisation.engagement
     slices = default_slices(pair, micro, misalignment) if n_slices is None else n_slices
@@ -129,19 +134,12 @@ def mesh_law(
     first, last = _grid_ends(pair, wanted, engagement)
     path = np.linspace(first, last, n_path)
     gap = tip_separation(pair, path) if engagement == "corner" else _ramp(pair, path, wanted)
-    gap = gap + path * pair.base_pitch_difference / pair.base_pitch
-    gap = gap + misalignment * face[:, None]
-    for index, gear in enumerate(micro):
-        gap = gap + flank_modification(pair, gear, index, path, face)
-    back_phase = pair.working_thicknesses[0] * pair.base_radii[0] / pair.working_radii[0] - phase
-    deviations = [
-        _deviations(pair, gear, index, path, (phase, back_phase), first)
-        for gear, index, first in ((micro[0], 0, 0), (micro[1], 1, position.tooth_offset_2))
-    ]
+    gap = gap + flanks.modifications(path, face[:, None])
+    deviations = [_deviations(flank, path, face) for flank in flanks.flanks]
     scales = [np.array(gear.tooth_stiffness or (1.0,)) for gear in micro]
     return MeshLaw(
-        base_radius_1=_law_radius(pair, 0),
-        base_radius_2=_law_radius(pair, 1),
+        base_radius_1=flanks.flanks[0].base_radius,
+        base_radius_2=flanks.flanks[1].base_radius,
         base_pitch=pair.base_pitch,
         teeth_1=pair.teeth[0],
         teeth_2=pair.teeth[1],
@@ -157,8 +155,8 @@ def mesh_law(
         scale_2=scales[1],
         backlash=max(pair.backlash_along_path, 0.0),
         offset=position.offset,
-        phase=phase,
-        back_phase=back_phase,
+        phase=count.phase,
+        back_phase=back_phase(pair, count),
         damping=dissipation.damping,
         damping_acts_on=dissipation.damping_acts_on,
         mean_stiffness=stiffness.mesh_mean * width * float(scales[0].mean() * scales[1].mean()),
@@ -169,35 +167,6 @@ def mesh_law(
         back_deviation_1=deviations[0][1],
         back_deviation_2=deviations[1][1],
     )
-
-
-def flank_modification(pair: GearPair, gear: Microgeometry, index: int, path: Array, face: Array) -> Array:
-    """Metal removed from the flank of gear ``index`` (0 pinion), shape (len(face), len(path)) [m].
-
-    ``path`` [m] from the pitch point, ``face`` [m] from mid-face. Beyond the active path the value of its
-    end stays, since it is the corner that touches there.
-    """
-    limits = pair.path
-    inside = np.clip(path, limits.start, limits.end)
-    profile = _along_profile(pair, index, path)
-    removed = gear.profile_crowning * profile**2
-    if gear.profile_slope:
-        removed = removed - 0.5 * gear.profile_slope * profile
-    if gear.tip_relief:
-        to_tip = limits.end - inside if index == 0 else inside - limits.start
-        share = np.maximum(1.0 - to_tip / gear.tip_relief_length, 0.0)
-        removed = removed + gear.tip_relief * share**gear.tip_relief_exponent
-    lead = 2.0 * face[:, None] / pair.face_widths[index]
-    across = gear.lead_crowning * lead**2 + 0.5 * gear.helix_slope * lead
-    return np.asarray(removed[None, :] + across + gear.profile_twist * lead * profile[None, :])
-
-
-def _along_profile(pair: GearPair, index: int, path: Array) -> Array:
-    """Place on the active profile of gear ``index`` for places on the path: -1 at its root, 1 at its tip."""
-    limits = pair.path
-    towards_tip = 1.0 if index == 0 else -1.0
-    inside = np.clip(path, limits.start, limits.end)
-    return np.asarray(towards_tip * (inside - 0.5 * (limits.start + limits.end)) / (0.5 * limits.length))
 
 
 def alike_teeth(law: MeshLaw, pinion: bool = True, wheel: bool = True) -> MeshLaw:
@@ -254,43 +223,23 @@ def _ramp(pair: GearPair, path: Array, reach: float) -> Array:
     return np.asarray(reach * (outside / (RAMP_LENGTH * pair.base_pitch)) ** 2)
 
 
-def _law_radius(pair: GearPair, index: int) -> float:
-    """Base radius [m] with the mean base pitch, so that the radii keep the ratio of the tooth numbers."""
-    return pair.base_pitch * pair.teeth[index] / (2.0 * pi)
+def _deviations(flank: FlankField, path: Array, face: Array) -> tuple[Array, Array | None]:
+    """Gap added by each tooth of a gear in front and on the back, (teeth, n_path) or (1, n_path) [m].
 
-
-def _deviations(
-    pair: GearPair,
-    gear: Microgeometry,
-    index: int,
-    path: Array,
-    phases: tuple[float, float],
-    first_tooth: int,
-) -> tuple[Array, Array | None]:
-    """Gap added by each tooth of gear ``index`` in front and on the back, (teeth, n_path) or (1, n_path) [m].
-
-    phases : path position of pair 0 at rotation zero, front and back; first_tooth : the one in pair 0 in front
-
-    None for the back where it has the same. On the lines of action n = (sin alpha_wt, +-cos alpha_wt), front and
-    back, from the centre of the gear, an eccentricity that turns with the gear stands out by e cos(rotation - phase)
-    in front and by -e cos(rotation - phase -+ 2 alpha_wt), pinion and wheel, on the back: together 2 sin alpha_wt
-    times its part towards the other gear, by which it takes away from the backlash.
+    None for the back where it has the same. A topography of every tooth counts with its mean over the face.
     """
-    teeth = pair.teeth[index]
-    if not gear.pitch_deviations and not gear.run_out and not gear.profile_slopes:
+    micro = flank.micro
+    measured = [own for own in (micro.topography, micro.back_topography) if own is not None and own.teeth > 1]
+    moved = bool(micro.pitch_deviations) or bool(micro.run_out)
+    if not moved and not micro.profile_slopes and not measured:
         return np.zeros((1, len(path))), None
-    place = np.array(gear.pitch_deviations or (0.0,) * teeth)[:, None]
-    tilt = 0.5 * np.array(gear.profile_slopes or (0.0,) * teeth)[:, None] * _along_profile(pair, index, path)
-    tooth = (np.arange(teeth) - first_tooth)[:, None]
-    per_turn = pair.base_pitch / (2.0 * pi)
-    rotation = ((path - phases[0]) / per_turn + 2.0 * pi * tooth) / teeth
-    front = -place - gear.run_out * np.cos(rotation - gear.run_out_phase) - tilt
-    if not gear.pitch_deviations and not gear.run_out:
-        return front, None
-    pair_of_tooth = tooth - index  # a tooth of the wheel is on the back in the pair before
-    rotation = ((phases[1] - path) / per_turn + 2.0 * pi * pair_of_tooth) / teeth
-    later = gear.run_out_phase + (2.0 - 4.0 * index) * pair.working_pressure_angle
-    return front, place + gear.run_out * np.cos(rotation - later) - tilt
+    roll, tooth = flank.roll(path), np.arange(flank.teeth)[:, None]
+    if measured:
+        across = face[:, None, None]
+        front, back = (flank.deviation(roll, across, tooth, side).mean(axis=0) for side in ("front", "back"))
+        return front, back
+    front = flank.deviation(roll, 0.0, tooth)
+    return front, flank.deviation(roll, 0.0, tooth, "back") if moved else None
 
 
 def default_slices(
@@ -302,9 +251,7 @@ def default_slices(
     along the path, whose steps excite the mesh unless they are short against a base pitch. A face whose gap varies
     needs some whatever its helix. One slice is exact for a spur gear flat over its face.
     """
-    flat = misalignment == 0.0 and all(
-        gear.lead_crowning == gear.helix_slope == gear.profile_twist == 0.0 for gear in micro
-    )
+    flat = misalignment == 0.0 and all(gear.even_over_face for gear in micro)
     if pair.helix_angle == 0.0 and flat:
         return 1
     return max(LEAST_SLICES, ceil(SLICES_PER_BASE_PITCH * abs(pair.overlap_ratio) - 1e-9))

@@ -108,17 +108,33 @@ def single_pair_stiffness(
     half_width = np.sqrt(4.0 * line_load * radius * sum(moduli) / pi)
     compliance = np.zeros_like(path)
     for index, roll in enumerate((roll_1, roll_2)):
-        outline = tooth_outline(pair.gears[index])
         nu = pair.poisson_ratios[index]
-        angle = roll / outline.base_radius - _half_base_angle(pair, index)
-        compliance += _tooth_compliance(outline, angle, nu, moduli[index])
-        if body == "ring":
-            compliance += _ring_compliance(pair, index, outline, angle)
-        else:
-            compliance += _half_plane_compliance(outline, angle, nu, moduli[index])
-        depth = roll - outline.base_radius * np.tan(angle)
+        tooth, gear_body, depth = tooth_compliance(pair, index, roll, body=body)
+        compliance += tooth
+        compliance += gear_body
         compliance += moduli[index] / pi * (2.0 * np.log(2.0 * depth / half_width) - nu / (1.0 - nu))
     return cos_base / compliance
+
+
+def tooth_compliance(
+    pair: GearPair, index: int, roll: Array, *, body: Body = "half_plane"
+) -> tuple[Array, Array, Array]:
+    """Deflection of a tooth of gear ``index`` (0 pinion) without flattening, of the body under it, depth of its axis.
+
+    roll : (n,) roll lengths in the normal section of the virtual spur gear [m]
+
+    Returns the displacements along the normal per load per contact length by tooth and by body, (n,) [m2/N], and the
+    distance from the flank to the tooth axis along the normal (n,) [m].
+    """
+    outline, nu = tooth_outline(pair.gears[index]), pair.poisson_ratios[index]
+    modulus = (1.0 - nu**2) / pair.youngs_moduli[index]
+    angle = roll / outline.base_radius - _half_base_angle(pair, index)
+    tooth = _tooth_compliance(outline, angle, nu, modulus)
+    if body == "ring":
+        gear_body = _ring_compliance(pair, index, outline, angle)
+    else:
+        gear_body = _half_plane_compliance(outline, angle, nu, modulus)
+    return tooth, gear_body, roll - outline.base_radius * np.tan(angle)
 
 
 def _half_base_angle(pair: GearPair, index: int) -> float:

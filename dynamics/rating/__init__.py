@@ -1,1 +1,1 @@
-"""ISO ratings, dynamic factor, root stress."""
+"""ISO ratings: dynamic factor, root stress, pitting, scuffing, micropitting."""

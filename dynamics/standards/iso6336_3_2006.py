@@ -213,12 +213,15 @@ def K_Falpha(
     c_gamma_alpha [N/(mm um)], f_pb_eff = f_pb - y_alpha [um]; limited to 1 ..
     epsilon_gamma / (0.25 epsilon_alpha + 0.75).
     """
-    X = c_gamma_alpha * f_pb_eff / specific_load
-    if epsilon_gamma <= 2.0:
-        K = epsilon_gamma / 2.0 * (0.9 + 0.4 * X)
-    else:
-        K = 0.9 + 0.4 * sqrt(2.0 * (epsilon_gamma - 1.0) / epsilon_gamma) * X
+    K = transverse_sharing(epsilon_gamma, c_gamma_alpha * f_pb_eff / specific_load)
     return min(max(K, 1.0), epsilon_gamma / (0.25 * epsilon_alpha + 0.75))
+
+
+def transverse_sharing(epsilon_gamma: float, X: float) -> float:
+    """K_Halpha = K_Falpha of ISO 6336-1:2006, 8.3.2 before their limits; X = c_gamma_alpha f_pb_eff / (F_tH/b)."""
+    if epsilon_gamma <= 2.0:
+        return epsilon_gamma / 2.0 * (0.9 + 0.4 * X)
+    return 0.9 + 0.4 * sqrt(2.0 * (epsilon_gamma - 1.0) / epsilon_gamma) * X
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -110,6 +110,12 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
         {"J/(kg K)": "J/(kg*K)", "J/kgK": "J/(kg*K)", "kJ/(kg K)": "kJ/(kg*K)", "kJ/kgK": "kJ/(kg*K)"},
         "2000 J/(kg K)",
     ),
+    QuantityKind(
+        "pressure_viscosity",
+        "1/Pa",
+        {"1/GPa": "1/GPa", "mm2/N": "mm**2/N", "m2/N": "m**2/N", "1/Pa": "1/Pa"},
+        "18 1/GPa",
+    ),
     QuantityKind("conductance", "W/K", {"W/K": "W/K", "kW/K": "kW/K"}, "20 W/K"),
     QuantityKind("body_heat_capacity", "J/K", {"J/K": "J/K", "kJ/K": "kJ/K"}, "20 kJ/K"),
     QuantityKind("conductivity", "W/(m*K)", {"W/(m K)": "W/(m*K)", "W/mK": "W/(m*K)"}, "45 W/(m K)"),
@@ -133,6 +139,9 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
         "linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"
     ),
     QuantityKind("data_size", "byte", {"MB": "megabyte", "GB": "gigabyte", "kB": "kilobyte"}, "500 MB"),
+    QuantityKind("voltage", "V", {"V": "V", "mV": "mV", "uV": "uV"}, "5 V"),
+    QuantityKind("resistance", "ohm", {"ohm": "ohm", "mohm": "milliohm", "kohm": "kiloohm"}, "120 ohm"),
+    QuantityKind("voltage_ratio", "V/V", {"mV/V": "mV/V", "uV/V": "uV/V", "V/V": "V/V"}, "2 mV/V"),
     QuantityKind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
 )
 """Every kind of quantity a case file knows, by name."""

@@ -128,6 +128,7 @@ Flow = Annotated[float, Quantity("flow", above="0 l/min", at_most="100000 l/min"
 Volume = Annotated[float, Quantity("volume", above="0 l", at_most="100 m3")]
 Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]
 KinematicViscosity = Annotated[float, Quantity("kinematic_viscosity", above="0 mm2/s")]
+PressureViscosity = Annotated[float, Quantity("pressure_viscosity", at_least="5 1/GPa", at_most="60 1/GPa")]
 HeatCapacity = Annotated[float, Quantity("heat_capacity", above="0 J/(kg K)")]
 Conductance = Annotated[float, Quantity("conductance", at_least="0 W/K", at_most="10000 kW/K")]
 """Heat that goes to something else per kelvin."""
@@ -146,10 +147,14 @@ TorsionalDamping = Annotated[float, Quantity("torsional_damping", at_least="0 N 
 LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]
 LinearDamping = Annotated[float, Quantity("linear_damping", at_least="0 N s/m")]
 Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="100000 kg m2")]
+Voltage = Annotated[float, Quantity("voltage", above="0 V", at_most="100 V")]
+Resistance = Annotated[float, Quantity("resistance", at_least="0 ohm", at_most="100 kohm")]
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 """A part of a whole, 0 to 1."""
 Positive = Annotated[float, Field(gt=0.0)]
+LoadStage = Annotated[float, Field(ge=1.0, le=14.0)]
+"""Load stage of the FZG test A/8.3/90, DIN ISO 14635-1."""
 Count = Annotated[int, Field(gt=0)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
 """Name of a part: lower-case letters, digits and underscores."""

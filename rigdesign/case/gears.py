@@ -1,6 +1,7 @@
 """Gears and meshes of a gearbox."""
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -21,10 +22,14 @@ from rigdesign.case.fields import (
     Share,
     Size,
     Small,
+    Text,
     TorsionalDamping,
     TorsionalStiffness,
     fault,
 )
+from rigdesign.case.strain_gauges import StrainGaugeInput
+
+ReliefExponent = Annotated[float, Field(ge=0.5, le=6.0)]
 
 
 class RackInput(Part):
@@ -84,10 +89,28 @@ class FlankModification(Part):
     """C_alpha: relief at tip and root against the middle of the profile."""
     lead_crowning: Small = 0.0
     """C_beta: relief at both face ends against the middle."""
+    lead_crowning_form: Literal["parabolic", "circular"] = "parabolic"
+    """Parabola over the face width, or arc of a circle."""
     tip_relief: Small = 0.0
     """C_a: relief at the tip edge."""
     tip_relief_length: Gap = 0.0
     """Radial height over which the tip relief grows."""
+    tip_relief_exponent: ReliefExponent = 1.0
+    """How it grows with the distance: 1 linear, 2 parabolic."""
+    root_relief: Small = 0.0
+    """C_f: relief at the start of the active profile."""
+    root_relief_length: Gap = 0.0
+    """Radial height over which the root relief grows."""
+    root_relief_exponent: ReliefExponent = 1.0
+    """How it grows with the distance: 1 linear, 2 parabolic."""
+    end_relief: Small = 0.0
+    """C_betaI, C_betaII: relief at the ends of the face."""
+    end_relief_length: Gap = 0.0
+    """Face width over which the end relief grows, at each end."""
+    end_relief_exponent: ReliefExponent = 1.0
+    """How it grows with the distance: 1 linear, 2 parabolic."""
+    end_relief_at: Literal["both", "front", "rear"] = "both"
+    """Ends of the face that are relieved."""
     profile_slope: Deviation = 0.0
     """f_Halpha over the active profile, positive where the tip stands out of the flank."""
     profile_slope_scatter: tuple[Deviation, ...] = ()
@@ -95,7 +118,20 @@ class FlankModification(Part):
     helix_slope: Deviation = 0.0
     """f_Hbeta over the face width, positive where the rear end is relieved."""
     twist: Deviation = 0.0
-    """Relief difference between the two diagonals of the flank."""
+    """S_alpha: profile slope at the front end of the face less that at the rear end, the relief difference between the
+    two diagonals of the flank; a quarter of it is the relief at the tip of the rear end. Intended, or measured."""
+    manufacturing_twist: Share = 0.0
+    """Share of the natural twist that the lead crowning of a helical gear brings: 1 when hobbed or ground by a worm at
+    a changing centre distance, 0 when the grinding is free of twist. On top of ``twist``."""
+    topography: Text | None = None
+    """CSV file next to the case with the measured deviations of the front flanks over profile and face: a row of
+    names, a row of units, one row for each place. Columns: roll_length, diameter or roll_angle; face from its middle to
+    the rear end; removed (metal missing is positive) or deviation (metal standing out is positive); tooth from 0 where
+    every tooth was measured. Replaces crownings, reliefs and twist of the gear."""
+    back_topography: Text | None = None
+    """The same of the back flanks. The analytic mesh law has one table for both and takes the front flanks for it."""
+    topography_interpolation: Literal["bilinear", "bicubic"] = "bilinear"
+    """Between the places of the topography; bicubic: cubic spline, at least 4 places each way."""
     run_out: Small = 0.0
     """F_r: total run-out; the eccentricity is half of it."""
     run_out_phase: Angle = 0.0
@@ -144,6 +180,8 @@ class Gear(Part):
     """Times the inertia, stated or of the disc."""
     spline: Spline | None = None
     """Connection with the shaft; a gear without one is rigid with its shaft."""
+    strain_gauges: Mapping[Name, StrainGaugeInput] = {}
+    """Strain gauges in the root of its teeth, by name."""
 
 
 class GearMesh(Part):
@@ -188,7 +226,7 @@ class GearMesh(Part):
     application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
     """K_A of ISO 6336: load from outside the gearbox over the nominal one."""
     face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)
-    """K_Fbeta of ISO 6336-3: uneven load over the face width."""
+    """K_Fbeta of ISO 6336-3: uneven load over the face width. K_Hbeta of the flanks follows from it."""
     phase: Share = 0.0
     """Where the pinion's teeth stand when all shafts stand at zero, as a share of a pitch; how the gears are put on
     their shafts decides it. A pinion in a second mesh of its gearbox counts from there on, by the place of its axes

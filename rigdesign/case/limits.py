@@ -127,6 +127,21 @@ class StrengthLimits(Part):
     """Least safety S_F against tooth breakage, ISO 6336-3."""
 
 
+class FlankLimits(Part):
+    """Load capacity of the flanks."""
+
+    pitting_safety_minimum: Positive | None = None
+    """Least safety S_H against pitting of the gears of the rig itself, ISO 6336-2."""
+    scuffing_safety_minimum: Positive | None = None
+    """Least safety S_B against scuffing of every mesh, flash temperature method of ISO/TS 6336-20."""
+    film_ratio_minimum: Positive | None = None
+    """Least film over roughness lambda_GF of every mesh, ISO/TS 6336-22. What an oil needs against micropitting its FZG
+    test C-GF/8.3/90 says."""
+    flank_over_root_minimum: Positive | None = None
+    """Least load that the flanks carry, those of specimens and those of the rig, over what the root of the weakest
+    specimen carries: of tests that are to end with a broken tooth."""
+
+
 class SpecimenWindow(Part):
     """What the test gears are meant to see."""
 
@@ -249,6 +264,8 @@ class Limits(Part):
     """Limits of the additional dynamic load and of resonances."""
     strength: StrengthLimits = StrengthLimits()
     """Least safeties of the gears of the rig itself."""
+    flanks: FlankLimits = FlankLimits()
+    """Least load capacity of the flanks."""
     specimen: SpecimenWindow = SpecimenWindow()
     """Window of the test gears."""
     ramp: RampRules = RampRules()

@@ -7,7 +7,18 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Tag, model_validator
 
-from rigdesign.case.fields import Flow, Offset, Part, Size, Temperature, Text, Velocity, Volume, fault
+from rigdesign.case.fields import (
+    Flow,
+    LoadStage,
+    Offset,
+    Part,
+    Size,
+    Temperature,
+    Text,
+    Velocity,
+    Volume,
+    fault,
+)
 from rigdesign.case.kinds import kind_from
 
 
@@ -31,6 +42,10 @@ class JetOil(Part):
     """Measured outlet; computed from the heat when left out."""
     blocked_jets: Annotated[float, Field(ge=0.0, le=0.9)] = 0.0
     """Share of the jets that is closed: the same flow leaves the others faster, and wets so much less face width."""
+    scuffing_load_stage: LoadStage | None = None
+    """Load stage of the FZG test A/8.3/90 at which this oil lets the gears scuff; that of the oil when left out."""
+    scuffing_temperature: Temperature | None = None
+    """Contact temperature at which this oil lets gears scuff, where a test or table has it; goes before the stage."""
 
 
 class DipOil(Part):
@@ -53,6 +68,10 @@ class DipOil(Part):
     """Inner length of the box along the shafts, for ISO/TR 14179-2 in a gearbox without a housing."""
     plan_width: Size | None = None
     """Inner width of the box across the shafts, for ISO/TR 14179-2 in a gearbox without a housing."""
+    scuffing_load_stage: LoadStage | None = None
+    """Load stage of the FZG test A/8.3/90 at which this oil lets the gears scuff; that of the oil when left out."""
+    scuffing_temperature: Temperature | None = None
+    """Contact temperature at which this oil lets gears scuff, where a test or table has it; goes before the stage."""
 
 
 GearOil: TypeAlias = Annotated[

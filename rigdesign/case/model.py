@@ -164,6 +164,13 @@ class Case(Part):
                 content[f"mesh_file.{name}"] = (
                     hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
                 )
+            for gear_name, gear in box.gears.items():
+                for key in ("topography", "back_topography"):
+                    if (measured := getattr(gear.flank, key)) is not None:
+                        file = self.path.parent / measured
+                        content[f"{key}.{name}.{gear_name}"] = (
+                            hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+                        )
         text = json.dumps(content, sort_keys=True, ensure_ascii=False, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 

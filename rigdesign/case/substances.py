@@ -10,8 +10,10 @@ from rigdesign.case.fields import (
     ExpansionCoefficient,
     HeatCapacity,
     KinematicViscosity,
+    LoadStage,
     Modulus,
     Part,
+    PressureViscosity,
     RoomTemperature,
     Stress,
     Temperature,
@@ -53,6 +55,10 @@ class CustomOil(Part):
     """Thermal conductivity at 40 degC."""
     lubricant_factor: Annotated[float, Field(gt=0.1, le=2.0)] = 1.0
     """X_L of the friction laws: 1 for mineral oil."""
+    pressure_viscosity: PressureViscosity = 1.8e-8
+    """Pressure-viscosity coefficient at about 80 degC: film between the flanks."""
+    scuffing_load_stage: LoadStage | None = None
+    """Load stage of the FZG test A/8.3/90 at which the oil lets the gears scuff; without it scuffing is not checked."""
 
     def properties(self, name: str) -> Oil:
         """The oil by the name the case gives it."""
@@ -66,6 +72,8 @@ class CustomOil(Part):
             heat_capacity=self.heat_capacity,
             conductivity_40=self.conductivity,
             lubricant_factor=self.lubricant_factor,
+            pressure_viscosity=self.pressure_viscosity,
+            scuffing_load_stage=self.scuffing_load_stage,
         )
 
     @model_validator(mode="after")
@@ -96,9 +104,12 @@ class CustomMaterial(Part):
     root_strength: Stress | None = None
     """sigma_FE of ISO 6336-5 for gears: allowable stress number of the root, sigma_Flim Y_ST."""
     flank_strength: Stress | None = None
-    """sigma_Hlim of ISO 6336-5 for gears: how their flanks run in."""
+    """sigma_Hlim of ISO 6336-5 for gears: strength of their flanks, and how they run in."""
     treatment: Literal["case_hardened", "nitrided", "through_hardened"] = "case_hardened"
     """Of gears: how their flanks run in (ISO 6336-1)."""
+    scuffing_factor: Annotated[float, Field(ge=0.4, le=1.5)] = 1.0
+    """X_W of ISO/TS 6336-20 for gears: 1 for case-hardened steel with 20 to 30 % of retained austenite, 1.15 with less,
+    1.5 nitrided."""
     tempering_temperature: Temperature | None = None
     """Tempering temperature of gears; without it their bulk temperature is not checked."""
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from rigdesign.case.model import Case
-from rigdesign.checks.influences import INPUTS, OF_ONE_GEARBOX, Influence
+from rigdesign.checks.influences import INPUTS, MOVE_NO_CHECK, OF_ONE_GEARBOX, Influence
 from rigdesign.checks.registry import PATH, REGISTRY, RuleFamily
 from rigdesign.results.check import Check
 
@@ -18,6 +18,8 @@ def with_assumptions(case: Case, check: Check) -> Check:
 
 def depends(case: Case, check: Check, path: str) -> bool:
     """Whether the value or limit of a check depends on an input."""
+    if any(is_under(path, part) for part in MOVE_NO_CHECK):
+        return False
     group, _, name = check.id.partition(".")
     own = [*PATH.findall(check.source), *([f"limits.bought_parts.{name}"] if group == "bought_part" else [])]
     if any(is_under(path, part) for part in own):
@@ -31,7 +33,7 @@ def depends(case: Case, check: Check, path: str) -> bool:
 
 def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) -> bool:
     """Whether an influence of an input moves a check."""
-    if influence in OF_ONE_GEARBOX:
+    if influence in OF_ONE_GEARBOX and not family.across_gearboxes:
         box = path.split(".")[1]
         if not check.id.startswith(f"{family.key}.{box}."):
             return False
@@ -40,6 +42,8 @@ def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) ->
 
 def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
     """What an input moves; None for all checks."""
+    if any(is_under(path, part) for part in MOVE_NO_CHECK):
+        return ()
     for inputs, influences in INPUTS.items():
         for part in inputs:
             if any(is_under(path, one) for one in _filled(case, part)):

@@ -11,10 +11,12 @@ from typing import Literal
 Influence = Literal[
     "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
     "thermal history", "coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
-    "rig heat",
+    "rig heat", "flank rating",
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
+MOVE_NO_CHECK = ("gearboxes.*.gears.*.strain_gauges",)
+"""Inputs of what is measured, not of the rig."""
 INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("limits.bearing.start_torque_limit",): ("start torque",),
     ("limits.ramp",): ("ramp limits",),
@@ -45,6 +47,12 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
         "spline friction",
     ),
     ("gearboxes.*.meshes.*.face_load_factor", "gearboxes.*.gears.*.quality_grade"): ("gear rating",),
+    (
+        "gearboxes.*.oil.scuffing_load_stage",
+        "gearboxes.*.oil.scuffing_temperature",
+        "oils.*.scuffing_load_stage",
+        "materials.*.scuffing_factor",
+    ): ("flank rating",),
     ("gearboxes.*.housing", "gearboxes.*.seals"): ("housing",),
     ("gearboxes.*.bearings.*.axial_play",): ("axial play",),
     ("rig_heat.room", "rig_heat{dry}"): ("rig heat",),

@@ -70,6 +70,8 @@ class RuleFamily:
     """Groups of inputs that move the value, beyond those that move every check (`assumptions`)."""
     only_inputs: tuple[str, ...] | None = None
     """Inputs of a rule that is arithmetic of a few; None for all others."""
+    across_gearboxes: bool = False
+    """Inputs that move the checks of their own gearbox only move those of the others as well."""
     by_definition: bool = False
     """Value and limit are both commanded by the case, by its schedule or its flows: nothing is predicted."""
 

@@ -4,14 +4,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from dynamics.rating.iso_rating import permissible_factors, root_stress, transverse_load_factor
-from dynamics.standards.iso6336_3_2006 import LoadFactors
+from dynamics.rating.iso_rating import permissible_factors, root_stress
 from rigdesign.checks.influences import SPEEDS, Influence
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable
-from rigdesign.records.curves import iso_factor
+from rigdesign.records.gear_loads import load_cycles, rated_cycles, rated_loads
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
@@ -143,16 +142,13 @@ def _safety(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> C
     family, limit = SAFETIES[method.name], solved.case.limits.strength.root_safety_minimum
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
     rule = family.rule(limit, f"{label}.{gear}")
-    material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
     if solved.loads is None or limit is None:
         return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
-    if material.root_strength is None:
+    found = root_safety(solved, mesh, index, method)
+    if found is None:
+        material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
         return not_applicable(rule, f"material {material.title} has no root strength")
-    stress, how = _stress(solved, mesh, index, method)
-    share, factors = _strength_share(solved, mesh, index)
-    strength = MPA * share * material.root_strength
-    reason = f"{how}; sigma_F {stress:.0f} MPa of {strength:.0f} MPa = sigma_FE {factors}"
-    return hold(rule, strength / stress, reason)
+    return hold(rule, *found)
 
 
 def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> tuple[float, str]:
@@ -171,39 +167,33 @@ def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> t
 def _iso_stresses(solved: SolvedRig, mesh: int, index: int) -> Iterator[tuple[float, str]]:
     """sigma_F [MPa] of ISO 6336-3 at every held stage, with the simulated K_V in K_Falpha too."""
     rig = solved.rig
-    name = rig.mesh_names[mesh]
-    pair, gear = rig.pairs[name], rig.mesh_gear(mesh, index)
-    box, own = rig.mesh(name)
-    entry = box.meshes[own]
-    for point in solved.points:
-        response = point.last.response
-        assert response is not None
-        torque, factor = float(response.mean[mesh]), float(response.dynamic_factor[mesh])
-        speed = rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, point.point.speed)
-        shared = transverse_load_factor(
-            pair, iso_factor(rig, name, torque, speed), dynamic=factor, face_load=entry.face_load_factor
-        )
-        stress = root_stress(
-            pair,
-            torque,
-            index,
-            LoadFactors(
-                K_A=entry.application_factor, K_V=factor, K_Fbeta=entry.face_load_factor, K_Falpha=shared
-            ),
-            grade=gear.quality_grade,
-        )
+    pair, gear = rig.pairs[rig.mesh_names[mesh]], rig.mesh_gear(mesh, index)
+    for load in rated_loads(rig, solved.points, mesh):
+        stress = root_stress(pair, load.torque, index, load.root, grade=gear.quality_grade)
         yield (
             stress.sigma_F,
-            f"nominal {stress.sigma_F0:.0f} MPa, simulated K_V {factor:.3f}, K_Fbeta {entry.face_load_factor:.2f}, "
-            f"K_Falpha {shared:.3f}, stage {point.point.stage}",
+            f"nominal {stress.sigma_F0:.0f} MPa, simulated K_V {stress.K_V:.3f}, K_Fbeta {stress.K_Fbeta:.2f}, "
+            f"K_Falpha {stress.K_Falpha:.3f}, stage {load.stage}",
         )
+
+
+def root_safety(
+    solved: SolvedRig, mesh: int, index: int, method: StressMethod = ISO
+) -> tuple[float, str] | None:
+    """Root safety S_F of one gear and how it came about; None for a material without a root strength."""
+    material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
+    if material.root_strength is None:
+        return None
+    stress, how = _stress(solved, mesh, index, method)
+    share, factors = _strength_share(solved, mesh, index)
+    strength = MPA * share * material.root_strength
+    return strength / stress, f"{how}; sigma_F {stress:.0f} MPa of {strength:.0f} MPa = sigma_FE {factors}"
 
 
 def _strength_share(solved: SolvedRig, mesh: int, index: int) -> tuple[float, str]:
     """Share of sigma_FE that the planned cycles, notch, size and reversed bending leave, and its factors."""
     rig = solved.rig
-    gear = rig.mesh_gear(mesh, index)
-    cycles = _cycles(solved, gear.shaft) * solved.case.test_plan.specimens
+    cycles = rated_cycles(rig, mesh, index)
     factors = permissible_factors(rig.pairs[rig.mesh_names[mesh]], index, cycles)
     share = math.prod(factors.values())
     words = " ".join(f"{symbol} {value:.3f}" for symbol, value in factors.items())
@@ -215,22 +205,13 @@ def _strength_share(solved: SolvedRig, mesh: int, index: int) -> tuple[float, st
     return share, words
 
 
-def _cycles(solved: SolvedRig, shaft: str) -> float:
-    """Turns of a shaft in the planned time at test speed.
-
-    A tooth is loaded once a turn; an idler's two meshes load opposite flanks, one cycle of reversed bending.
-    """
-    speed = solved.rig.shaft_speed(shaft, solved.case.schedule.test_speed)
-    return solved.case.test_plan.time * speed / (2.0 * math.pi)
-
-
 def _load_cycles(solved: SolvedRig) -> Check:
     """The slowest specimen gear has to get its cycles."""
     hours = solved.case.test_plan.time / HOUR
     rule = LOAD_CYCLES.rule(solved.case.limits.specimen.load_cycles_minimum)
     specimens = (
         (
-            _cycles(solved, gear.shaft),
+            load_cycles(solved.rig, gear.shaft),
             f"{hours:.0f} h of {name}.{key} at {_gear_rpm(solved, gear.shaft):.0f} rpm",
         )
         for name, box in solved.case.gearboxes.items()

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
+from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import (
@@ -27,15 +28,15 @@ from dynamics.mesh.friction import (
     friction_coefficient,
 )
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
-from rigdesign.case.gears import FlankModification, Gear
+from rigdesign.case.gears import Gear
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.properties.oil import Oil
+from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed
 
@@ -102,7 +103,7 @@ def mesh_model(
         shape = shape.scaled(0.8)
     if entry.stiffness_factor != 1.0:
         shape = shape.scaled(entry.stiffness_factor)
-    micro = microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)
+    micro = mesh_microgeometry(rig, name, pair)
     law = mesh_law(
         pair,
         shape,
@@ -201,21 +202,50 @@ def friction_law(rig: Rig, oil: Oil) -> FrictionLaw:
     return Schlenk(lubricant_factor=factor)
 
 
-def microgeometry(gear: Gear, pair: GearPair, index: int, tooth_offset: int = 0) -> Microgeometry:
+def mesh_microgeometry(rig: Rig, name: str, pair: GearPair) -> tuple[Microgeometry, Microgeometry]:
+    """Modifications and deviations of pinion and wheel of a mesh as the mesh law reads them."""
+    box, mesh = rig.mesh(name)
+    entry = box.meshes[mesh]
+    first, second = rig.mesh_gears(name)
+    return (
+        microgeometry(box.gears[entry.pinion], pair, 0, measured=rig.topography(first)),
+        microgeometry(box.gears[entry.wheel], pair, 1, entry.tooth_offset, rig.topography(second)),
+    )
+
+
+def microgeometry(
+    gear: Gear,
+    pair: GearPair,
+    index: int,
+    tooth_offset: int = 0,
+    measured: FlankTopographies = NOT_MEASURED,
+) -> Microgeometry:
     """Modifications and deviations of one gear as the mesh law reads them.
 
     The law counts an eccentricity from the shaft; here it belongs to the teeth, and goes with them where the gear is
     put on its shaft ``tooth_offset`` teeth further.
     """
     flank = gear.flank
+    relieved = {"both": (1.0, 1.0), "front": (1.0, 0.0), "rear": (0.0, 1.0)}[flank.end_relief_at]
     return Microgeometry(
         tip_relief=flank.tip_relief,
-        tip_relief_length=_relief_path(flank, pair, index),
+        tip_relief_length=_tip_path(flank.tip_relief_length, pair, index),
+        tip_relief_exponent=flank.tip_relief_exponent,
+        root_relief=flank.root_relief,
+        root_relief_length=_root_path(flank.root_relief_length, pair, index),
+        root_relief_exponent=flank.root_relief_exponent,
+        end_relief=(relieved[0] * flank.end_relief, relieved[1] * flank.end_relief),
+        end_relief_length=flank.end_relief_length,
+        end_relief_exponent=flank.end_relief_exponent,
         profile_crowning=flank.profile_crowning,
         lead_crowning=flank.lead_crowning,
+        lead_crowning_form=flank.lead_crowning_form,
+        manufacturing_twist=flank.manufacturing_twist,
         profile_slope=flank.profile_slope,
         helix_slope=flank.helix_slope,
         profile_twist=0.25 * flank.twist,
+        topography=measured[0],
+        back_topography=measured[1],
         pitch_deviations=_tooth_places(gear),
         run_out=0.5 * flank.run_out,
         run_out_phase=flank.run_out_phase - 2.0 * math.pi * tooth_offset / gear.teeth,
@@ -243,10 +273,17 @@ def _tooth_stiffness(gear: Gear) -> tuple[float, ...]:
     return tuple(share * (weak.stiffness if i == weak.tooth else 1.0) for i, share in enumerate(shares))
 
 
-def _relief_path(flank: FlankModification, pair: GearPair, index: int) -> float:
+def _tip_path(height: float, pair: GearPair, index: int) -> float:
     """Path length of a tip relief from its radial height [m]."""
     gear = pair.gears[index]
-    return gear.roll_length(gear.tip_radius) - gear.roll_length(gear.tip_radius - flank.tip_relief_length)
+    return gear.roll_length(gear.tip_radius) - gear.roll_length(gear.tip_radius - height)
+
+
+def _root_path(height: float, pair: GearPair, index: int) -> float:
+    """Path length of a root relief from its radial height above the start of the active profile [m]."""
+    gear = pair.gears[index]
+    start = pair.rolling_radii[index] + (pair.path.start if index == 0 else -pair.path.end)
+    return gear.roll_length(math.hypot(gear.base_radius, start) + height) - start
 
 
 def laws_of(models: Sequence[MeshModel]) -> list[MeshLaw]:

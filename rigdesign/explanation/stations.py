@@ -52,6 +52,11 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__boundary="heat stored in bodies that still warm up, as one implicit step"
     ),
     "oils.*": _at(rig__model=_SHEET, properties__oil="viscosity by Ubbelohde-Walther, density, heat data"),
+    "oils.*.pressure_viscosity": _at(
+        records__flank_rating="film between the flanks",
+        coupling__loads="friction coefficient after Doleschel",
+    ),
+    "oils.*.scuffing_load_stage": _at(records__flank_rating="scuffing temperature of the oil"),
     "materials.*": _at(
         rig__model="material of gears, shafts and housing",
         coupling__expansion="thermal expansion",
@@ -69,8 +74,15 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__drivetrain="inertia of shafts and gears", coupling__boundary="heat stored in bodies"
     ),
     "materials.*.root_strength": _at(checks__strength="strength of the tooth root"),
-    "materials.*.flank_strength": _at(records__curves="running-in allowance in K_V of ISO 6336-1"),
-    "materials.*.treatment": _at(records__curves="running-in allowance in K_V of ISO 6336-1"),
+    "materials.*.flank_strength": _at(
+        records__flank_rating="pitting strength of the flanks",
+        records__curves="running-in allowance in K_V of ISO 6336-1",
+    ),
+    "materials.*.treatment": _at(
+        records__flank_rating="life factor of the flanks",
+        records__curves="running-in allowance in K_V of ISO 6336-1",
+    ),
+    "materials.*.scuffing_factor": _at(records__flank_rating="scuffing temperature of the flanks"),
     "materials.*.tempering_temperature": _at(
         checks__temperatures="temperature that gears keep a distance from"
     ),
@@ -82,19 +94,44 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.gears.*.quality_grade": _at(
         records__curves="K_V of ISO 6336-1",
-        checks__strength="K_Falpha of ISO 6336-1",
+        records__gear_loads="K_Falpha and K_Halpha of ISO 6336-1",
         coupling__alignment="tolerances of the axes",
     ),
-    "gearboxes.*.gears.*.flank_roughness": _at(coupling__loads="friction coefficient of the teeth"),
+    "gearboxes.*.gears.*.flank_roughness": _at(
+        coupling__loads="friction coefficient of the teeth",
+        records__flank_rating="pitting strength, flash temperature and film thickness ratio",
+    ),
     "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.flank": _at(coupling__loads=_WARM),
+    "gearboxes.*.gears.*.flank.topography": _at(
+        rig__flank_topography="grid of the measured flanks, held against form circle, tip circle and face width",
+        coupling__loads=_WARM,
+    ),
+    "gearboxes.*.gears.*.flank.back_topography": _at(
+        rig__flank_topography="grid of the measured back flanks, read and held against the gear",
+    ),
+    "gearboxes.*.gears.*.flank.topography_interpolation": _at(
+        rig__flank_topography="deviations between the places of the grid"
+    ),
     "gearboxes.*.gears.*.flank.pitch_waves.*": _at(
         coupling__loads="pitch deviations of the teeth: orders of the shaft"
     ),
     "gearboxes.*.gears.*.flank.weak_tooth": _at(
         coupling__loads="stiffness of the pairs of one tooth: orders of the shaft"
     ),
+    "gearboxes.*.gears.*.strain_gauges.*": _at(
+        rig__strain_gauges="place in the tooth root, held against face width and fillet"
+    ),
+    "gearboxes.*.gears.*.strain_gauges.*.gauge_factor": _at(strain_gauge__bridge="strain to bridge voltage"),
+    "gearboxes.*.gears.*.strain_gauges.*.resistance": _at(strain_gauge__bridge="strain to bridge voltage"),
+    "gearboxes.*.gears.*.strain_gauges.*.transverse_sensitivity": _at(
+        strain_gauge__gauge="strain that the gauge indicates"
+    ),
+    "gearboxes.*.gears.*.strain_gauges.*.stress_state": _at(
+        rig__strain_gauges="strain to stress by Hooke's law"
+    ),
+    "gearboxes.*.gears.*.strain_gauges.*.bridge": _at(strain_gauge__bridge="strain to bridge voltage"),
     "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
     "gearboxes.*.meshes.*": _at(
         rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"
@@ -111,9 +148,12 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.meshes.*.tooth_offset": _at(coupling__loads="which teeth meet"),
     "gearboxes.*.meshes.*.phase": _at(coupling__loads="phase of the mesh against the others of the loop"),
     "gearboxes.*.meshes.*.application_factor": _at(
-        checks__strength="K_A of the root stress", records__curves="load of K_V by ISO 6336-1"
+        records__gear_loads="K_A of the ratings of root and flank",
+        records__curves="load of K_V by ISO 6336-1",
     ),
-    "gearboxes.*.meshes.*.face_load_factor": _at(checks__strength="K_Fbeta of the root stress"),
+    "gearboxes.*.meshes.*.face_load_factor": _at(
+        records__gear_loads="K_Fbeta of the root stress, K_Hbeta of the flanks"
+    ),
     "gearboxes.*.meshes.*.low_load_factor": _at(
         coupling__loads="mean mesh stiffness of ISO 6336-1", records__curves="K_V of ISO 6336-1"
     ),
@@ -160,6 +200,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__boundary="fluid of the films of wetted walls",
         coupling__dip="viscosity of the oil that is churned",
     ),
+    "gearboxes.*.oil.scuffing_load_stage": _at(records__flank_rating="scuffing temperature of the oil"),
+    "gearboxes.*.oil.scuffing_temperature": _at(records__flank_rating="scuffing temperature of the oil"),
     "gearboxes.*.oil.churning": _at(coupling__dip="law of the churning loss"),
     "gearboxes.*.oil.plan_length": _at(coupling__dip="hydraulic length of ISO/TR 14179-2"),
     "gearboxes.*.oil.plan_width": _at(coupling__dip="hydraulic length of ISO/TR 14179-2"),
@@ -358,7 +400,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "schedule.stages.*.drive_torque": _at(
         coupling__time_run="run-up at constant torque instead of speed control"
     ),
-    "test_plan": _at(checks__strength="load cycles of the teeth", transient__phases="length of the dwell"),
+    "test_plan": _at(records__gear_loads="load cycles of the teeth", transient__phases="length of the dwell"),
     "limits.standard_set": _at(case__limits="whether the standard set stands for limits that are left out"),
     "limits.clearances": _at(checks__clearances=_LIMIT, transient__limits="limit over the thermal history"),
     "limits.alignment": _at(checks__alignment=_LIMIT),
@@ -373,6 +415,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "limits.dynamics.dangerous_amplification": _at(records__resonances="which resonances are dangerous"),
     "limits.dynamics.dangerous_force_share": _at(records__resonances="which resonances are dangerous"),
     "limits.strength": _at(checks__strength=_LIMIT),
+    "limits.flanks": _at(checks__flanks=_LIMIT),
     "limits.specimen": _at(checks__strength=_LIMIT),
     "limits.ramp": _at(checks__ramp=_LIMIT),
     "limits.bought_parts.*": _at(checks__component_limits=_LIMIT),

@@ -28,6 +28,7 @@ class Material:
     root_strength : sigma_FE = sigma_Flim Y_ST of ISO 6336-5 [Pa]; None if not for gears
     flank_strength : sigma_Hlim of ISO 6336-5 [Pa]; None if not for gears
     treatment : of the flanks of gears, how they run in by ISO 6336-1
+    scuffing_factor : X_W of ISO/TS 6336-20, structure of the flanks of gears
     tempering_temperature : bulk temperature above which hardness is lost [K]; None if it has none
     """
 
@@ -41,6 +42,7 @@ class Material:
     root_strength: float | None = None
     flank_strength: float | None = None
     treatment: Treatment = "case_hardened"
+    scuffing_factor: float = 1.0
     tempering_temperature: float | None = None
     source: str = "input of the case"
     confidence: Confidence = "medium"

@@ -40,6 +40,7 @@ class Oil:
     lubricant_factor : X_L of the friction laws [-]
     pressure_viscosity : coefficient at about 80 degC [1/Pa]
     highest_temperature : bulk oil temperature it stands for long [K]
+    scuffing_load_stage : of the FZG test A/8.3/90; None where it is not known
     viscosity_factor : multiplies the viscosity of the line [-]
     """
 
@@ -57,6 +58,7 @@ class Oil:
     pressure_viscosity: float = 1.8e-8
     highest_temperature: float = 373.15
     viscosity_factor: float = 1.0
+    scuffing_load_stage: float | None = None
     source: str
     confidence: Confidence
 
@@ -97,7 +99,7 @@ class Oil:
         standard: Literal["ASTM D341", "DIN 51563"] = "ASTM D341",
         source: str = "input of the case",
         confidence: Confidence = "medium",
-        **properties: float,
+        **properties: float | None,
     ) -> Self:
         """Oil from two kinematic viscosities [m2/s] at two temperatures [K], density at 15 degC and c_p.
 
@@ -129,7 +131,7 @@ class Oil:
             heat_capacity_40=heat_capacity,
             source=source,
             confidence=confidence,
-            **properties,
+            **properties,  # type: ignore[arg-type]
         )
 
     def kinematic_viscosity(self, temperature: float) -> float:

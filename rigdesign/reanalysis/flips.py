@@ -1,7 +1,9 @@
 """The inputs that would turn the verdict: each moved alone until the governing check stands at its limit.
 
-Root stress and root safety are solved again at the temperatures of the run: they follow torque and face width
-directly, and warm teeth hardly matter. Temperatures, clearances and films are solved again through the coupling loop.
+Root stress, root safety and flanks are solved again at the temperatures of the run: they follow torque and face width
+directly, and warm teeth hardly matter; against scuffing and for the film teeth that get colder with less torque would
+help, so that what is found is on the safe side. Temperatures, clearances and bearing films are solved again through the
+coupling loop.
 Checks that need the time run or the response over speed are left out.
 """
 
@@ -30,7 +32,7 @@ from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 from rigdesign.run.solver_errors import solver_errors
 
-BY_LOADS = ("specimen.root_stress*", "strength.root_safety*")
+BY_LOADS = ("specimen.root_stress*", "strength.root_safety*", "flank.*")
 """Checks that follow the loads at given temperatures."""
 BY_HEAT = (
     "temperature.*",

@@ -9,11 +9,13 @@ from dynamics.drivetrain.modes import order_crossings, sampling_audit, shaft_fre
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import factor_points, iso_factor, own_ratio
 from rigdesign.records.dynamics import DynamicRun, numbered
+from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.time_run import ramp_history
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
 from rigdesign.results.rows import dynamics as rows
+from rigdesign.results.rows.flank_rating import flank_rating_row
 from rigdesign.rig.model import Rig
 
 
@@ -80,6 +82,7 @@ def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> Gea
         root_stress=[rows.root_stress_row(path) for path in loads.root_stress],
         root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
         geometry=rows.geometry_row(rig.pairs[name], run.test.last.models[mesh]),
+        flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, run.points, mesh)],
     )
 
 

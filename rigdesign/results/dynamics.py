@@ -63,6 +63,10 @@ class GearboxDynamics:
     """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static, to compare with K_V(n)."""
     geometry: dict[str, float | str]
     """Gear data, as drawn and warm, for the report."""
+    flank_ratings: list[dict[str, Any]] = field(default_factory=list)
+    """Per held stage: {stage, sigma_H_pinion_MPa, S_H_pinion, sigma_H_wheel_MPa, S_H_wheel, bulk_degC, bulk_basis,
+    contact_degC, contact_friction, scuffing_degC, S_B, film_ratio_least, film_ratio_at, film_ratio: {point: ratio}};
+    what is not rated is None."""
 
 
 @dataclass(frozen=True, kw_only=True)

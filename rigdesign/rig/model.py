@@ -22,12 +22,14 @@ from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
+from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
 from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
+from rigdesign.rig.strain_gauges import RootGauge, root_gauges
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
 from thermal.expansion.expansion import ExpansionSetup
@@ -191,6 +193,20 @@ class Rig:
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
         return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
 
+    @cached_property
+    def topographies(self) -> Mapping[str, FlankTopographies]:
+        """Measured front and back flanks by ``gearbox.gear`` of the gears that have any."""
+        return flank_topographies(self.case, self.pairs)
+
+    def topography(self, gear: str) -> FlankTopographies:
+        """Measured front and back flanks of the gear ``gearbox.gear``."""
+        return self.topographies.get(gear, NOT_MEASURED)
+
+    @cached_property
+    def strain_gauges(self) -> Mapping[str, RootGauge]:
+        """Strain gauges in tooth roots by ``gearbox.gear.gauge``."""
+        return root_gauges(self.case, self.pairs, self.materials)
+
     @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
@@ -298,7 +314,8 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     Raises
     ------
     CaseError
-        A shaft that would twist off, a machine whose loss map does not hold its speed.
+        A shaft that would twist off, a machine whose loss map does not hold its speed, a topography that does not fit
+        its flanks, a strain gauge that does not fit its root.
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
@@ -318,6 +335,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     if rig.heat_parts.machines:
         speeds = {stage.name: rig.driven_speed(stage.speed_end) for stage in case.schedule.held()}
         refuse_uncovered_speeds(rig.heat_parts.machines, speeds, str(case.path))
+    _ = rig.topographies, rig.strain_gauges  # now: what does not fit the teeth is a fault of the case
     return rig
 
 
@@ -342,6 +360,7 @@ def _custom_material(case: Case, name: str) -> Material:
         density=entry.density,
         root_strength=entry.root_strength,
         flank_strength=entry.flank_strength,
+        scuffing_factor=entry.scuffing_factor,
         treatment=entry.treatment,
         tempering_temperature=entry.tempering_temperature,
     )

@@ -12,7 +12,7 @@ from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, mesh_models, microgeometry, signed_torque
+from rigdesign.coupling.loads import MeshModel, mesh_microgeometry, mesh_models, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
@@ -135,11 +135,7 @@ def reshaped(
     rig = prototype.simulated
     laws = []
     for model in models:
-        box, name = rig.mesh(model.name)
-        mesh = box.meshes[name]
-        first, second = (
-            microgeometry(box.gears[gear], model.pair, i) for i, gear in enumerate((mesh.pinion, mesh.wheel))
-        )
+        first, second = mesh_microgeometry(rig, model.name, model.pair)
         if not crowned:
             first, second = (replace(m, profile_crowning=0.0, lead_crowning=0.0) for m in (first, second))
         laws.append(

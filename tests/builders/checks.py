@@ -27,5 +27,6 @@ def limit_of(identity: str) -> str:
         "bearing": "limits.bearing.film_thickness_minimum; limits.bearing.specific_load_maximum",
         "alignment": f"limits.alignment.{parts[1]}_maximum; drivetrain.couplings.{parts[-1]}.radial_offset_maximum; "
         f"drivetrain.couplings.{parts[-1]}.angle_maximum",
+        "flank": f"limits.flanks.{parts[1]}_minimum; limits.flanks.flank_over_root_minimum",
         "oil": f"limits.oil.{parts[1]}_maximum; limits.oil.{parts[1]}_power_maximum; limits.oil.room_heat_maximum",
     }.get(parts[0], "")

@@ -68,9 +68,11 @@ def signals(repeat: int = 1) -> dict[str, np.ndarray]:
     }
 
 
-def write_recording(path: Path, recorded: dict[str, np.ndarray]) -> None:
+def write_recording(
+    path: Path, recorded: dict[str, np.ndarray], units: dict[str, str] = UNITS, rate: float = RATE
+) -> None:
     """A file of the kind that its name ends with."""
-    {".tdms": _tdms, ".h5": _hdf5, ".csv": _csv}[path.suffix](path, recorded)
+    {".tdms": _tdms, ".h5": _hdf5, ".csv": _csv}[path.suffix](path, recorded, units, rate)
 
 
 def write_recorded_set(folder: Path, kind: str) -> Path:
@@ -84,26 +86,26 @@ def write_recorded_set(folder: Path, kind: str) -> Path:
     return folder
 
 
-def _tdms(path: Path, recorded: dict[str, np.ndarray]) -> None:
-    timing = {"wf_increment": 1.0 / RATE, "wf_start_offset": 0.0}
+def _tdms(path: Path, recorded: dict[str, np.ndarray], units: dict[str, str], rate: float) -> None:
+    timing = {"wf_increment": 1.0 / rate, "wf_start_offset": 0.0}
     channels = [
-        ChannelObject("Dev1", name, values, properties={**timing, "unit_string": UNITS[name]})
+        ChannelObject("Dev1", name, values, properties={**timing, "unit_string": units[name]})
         for name, values in recorded.items()
     ]
     with TdmsWriter(path) as writer:
         writer.write_segment(channels)
 
 
-def _hdf5(path: Path, recorded: dict[str, np.ndarray]) -> None:
+def _hdf5(path: Path, recorded: dict[str, np.ndarray], units: dict[str, str], rate: float) -> None:
     with h5py.File(path, "w") as file:
-        file.attrs["sample_rate"] = RATE
+        file.attrs["sample_rate"] = rate
         for name, values in recorded.items():
             file[name] = values
-            file[name].attrs["units"] = UNITS[name]
+            file[name].attrs["units"] = units[name]
 
 
-def _csv(path: Path, recorded: dict[str, np.ndarray]) -> None:
-    rows = [",".join(["time", *recorded]), ",".join(["s", *(UNITS[name] for name in recorded)])]
-    columns = [np.arange(len(next(iter(recorded.values())))) / RATE, *recorded.values()]
-    rows += [",".join(f"{value:.5f}" for value in row) for row in zip(*columns)]
+def _csv(path: Path, recorded: dict[str, np.ndarray], units: dict[str, str], rate: float) -> None:
+    rows = [",".join(["time", *recorded]), ",".join(["s", *(units[name] for name in recorded)])]
+    columns = [np.arange(len(next(iter(recorded.values())))) / rate, *recorded.values()]
+    rows += [",".join(f"{value:.10g}" for value in row) for row in zip(*columns)]
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")

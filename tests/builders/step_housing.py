@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
+from thermal.fe.gmsh_session import gmsh_session
 from thermal.housing.face_rules import Box, Cylinder, FaceRule, Plane
-from thermal.housing.meshing import gmsh_session
 from thermal.housing.step_file import StepFace, named_faces, read_part
 
 MM = 1e-3

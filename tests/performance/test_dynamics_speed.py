@@ -13,9 +13,9 @@ import pytest
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.flank.microgeometry import Microgeometry
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.microgeometry import Microgeometry
 from dynamics.mesh.stiffness import pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.response.initial_state import wound_state

@@ -18,7 +18,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from tests.builders.paths import CASES
 
-NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting", "fzg")
+NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting", "fzg", "strain_gauge_rig")
 UTILISATION_TOLERANCE = 0.005
 """Relative. A wrong formula among many seldom moves a check by more than a few per cent."""
 ROUNDING = 5e-4

@@ -12,12 +12,12 @@ from math import acos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
+from dynamics.flank.microgeometry import Microgeometry, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, alike_teeth, mesh_law
 from dynamics.mesh.force import evaluate_mesh, pack_meshes, tooth_forces
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.microgeometry import Microgeometry, pitch_waves
 from dynamics.mesh.stiffness import pair_stiffness
 
 PAIR = GearPair.from_centre_distance(

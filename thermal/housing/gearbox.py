@@ -38,11 +38,12 @@ from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Literal
 
+from thermal.fe.gmsh_session import gmsh_session
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.geometry import ClampingField, HousingGeometry
 from thermal.housing.housing_surfaces import FOOT, field_faces, housing_faces
 from thermal.housing.measures import GeometryError
-from thermal.housing.meshing import Component, gmsh_session, mesh_component
+from thermal.housing.meshing import Component, mesh_component
 from thermal.housing.parametric_stations import (
     bearing_stations,
     foot_joint,

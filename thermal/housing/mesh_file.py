@@ -11,10 +11,10 @@ from types import ModuleType
 import numpy as np
 from scipy import sparse
 
+from thermal.fe.gmsh_session import gmsh_session
 from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys, whole_surfaces
 from thermal.fe.numbering import along_curve, inverse
 from thermal.fe.reference_elements import HEXAHEDRON_20, HEXAHEDRON_27, TETRAHEDRON_10, CellElement
-from thermal.housing.meshing import gmsh_session
 
 KINDS: dict[int, CellElement] = {11: TETRAHEDRON_10, 17: HEXAHEDRON_20, 12: HEXAHEDRON_27}
 """gmsh's number of a volume element -> the element that is computed with."""

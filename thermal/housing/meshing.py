@@ -2,12 +2,10 @@
 
 A component is a set of volumes that share nodes (housing and field; a shaft and its gear). Components are
 meshed in separate gmsh models, so that parts that overlap in space, as the discs of two meshing gears may,
-never meet. gmsh is imported when a mesh is built; a machine that lacks one of its system libraries gets the
-loader's own OSError.
+never meet.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -37,35 +35,6 @@ SizeLaw = Callable[[float, float, float], float]
 """Target element size [m] at a corner of the geometry (x, y, z)."""
 Drawing = Callable[[Any], Mapping[str, Sequence[int]]]
 """Makes solids with the OCC kernel it is given; returns body name -> volume tags."""
-
-OPTIONS = {
-    "General.Terminal": 0,
-    "General.NumThreads": 1,
-    "Mesh.RandomSeed": 1,
-    "Mesh.Algorithm": 6,
-    "Mesh.Algorithm3D": 1,
-    "Mesh.MeshSizeFromPoints": 1,
-    "Mesh.MeshSizeExtendFromBoundary": 1,
-    "Mesh.MeshSizeFromCurvature": 0,
-    "Mesh.Optimize": 1,
-}
-
-
-@contextmanager
-def gmsh_session() -> Iterator[ModuleType]:
-    """A quiet, single-threaded gmsh, finalised in any case.
-
-    Raises OSError or ImportError, unchanged, where gmsh or a shared library it needs is missing.
-    """
-    import gmsh
-
-    gmsh.initialize(argv=["gmsh"], readConfigFiles=False, interruptible=False)
-    try:
-        for option, value in OPTIONS.items():
-            gmsh.option.setNumber(option, value)
-        yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 @dataclass(frozen=True, kw_only=True)

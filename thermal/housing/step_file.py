@@ -13,11 +13,11 @@ from types import ModuleType
 
 import numpy as np
 
+from thermal.fe.gmsh_session import gmsh_session
 from thermal.fe.mesh import FloatArray, MeshError, NamedMesh
 from thermal.housing.curving import straighten_inverted
 from thermal.housing.face_rules import FaceRule
 from thermal.housing.mesh_file import collected_mesh
-from thermal.housing.meshing import gmsh_session
 from thermal.housing.stations import Point
 from thermal.housing.step_names import ListedFace, listed_faces
 

@@ -235,6 +235,38 @@ def _volume_round_gears(tree: RawTree, box: str, level: float) -> Filling:
     return around(litres, "l", reason) if litres > 0.0 else None
 
 
+SCUFFING_STAGES = {
+    "FVA 3": assumed(7.0, "FZG stage of mineral oil without additives; replace by a test", 6.0, 8.0),
+    "FVA 3A": assumed(
+        12.0, "most oils with 4 % sulphur-phosphorus additive pass it; replace by a test", 11.0, 14.0
+    ),
+}
+SCUFFING_TEMPERATURES = {
+    "MIL-PRF-23699": assumed(
+        "220 degC", "mean for this oil on aviation gear steel, AGMA 925 (from memory)", "205 degC", "260 degC"
+    ),
+}
+"""What lets gears scuff in a built-in oil; none of these numbers is of its specification."""
+
+
+@book.default("gearboxes.*.oil.scuffing_load_stage")
+def _scuffing_load_stage(tree: RawTree, box: str) -> Filling:
+    at = f"gearboxes.{box}.oil"
+    return (
+        None if tree.has(f"{at}.scuffing_temperature") else SCUFFING_STAGES.get(tree.text(f"{at}.oil") or "")
+    )
+
+
+@book.default("gearboxes.*.oil.scuffing_temperature")
+def _scuffing_temperature(tree: RawTree, box: str) -> Filling:
+    at = f"gearboxes.{box}.oil"
+    return (
+        None
+        if tree.has(f"{at}.scuffing_load_stage")
+        else SCUFFING_TEMPERATURES.get(tree.text(f"{at}.oil") or "")
+    )
+
+
 @book.default("gearboxes.*.bearing_oil")
 def _bearing_oil(tree: RawTree, box: str) -> Filling:
     """Plain bearings are fed with the oil of the gears; all others by splash of the gears."""

@@ -35,6 +35,12 @@ def standard_limits(tree: RawTree) -> dict[str, dict[str, Filling]]:
         "strength": {
             "root_safety_minimum": assumed(1.4, "a rig gear must outlive the specimens", 1.2, 1.6),
         },
+        "flanks": {
+            "pitting_safety_minimum": assumed(
+                1.2, "as 1.4 of the root: the stress of a flank grows with the root of its load", 1.0, 1.3
+            ),
+            "scuffing_safety_minimum": assumed(1.5, "friction and oil test are known within a third", 1.2, 2.0),
+        },
         "bought_parts": {"motor": _motor(tree)},
     }  # fmt: skip
 

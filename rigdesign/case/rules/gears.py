@@ -17,6 +17,11 @@ SHIFT_TOLERANCE = 0.002
 """Most difference between the sum of two stated profile shifts and that of the centre distance: both are printed with
 three or four digits. The pinion keeps its own, the wheel takes the rest."""
 
+MEASURED_WITH_TOPOGRAPHY = (
+    "profile_crowning", "lead_crowning", "tip_relief", "root_relief", "end_relief", "twist",
+)  # fmt: skip
+"""Modifications that a measured flank shows; slopes may stand beside it, for the place of the axes."""
+
 
 def gearbox_faults(case: "Case") -> Iterator[Fault]:
     """References, tooth numbers, profile shifts, tips, bearings of every gearbox."""
@@ -76,6 +81,13 @@ def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
             f"{at}.flank.weak_tooth.tooth", str(flank.weak_tooth.tooth),
             f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
         )  # fmt: skip
+    for name, gauge in gear.strain_gauges.items():
+        if gauge.tooth >= gear.teeth:
+            yield Fault(
+                f"{at}.strain_gauges.{name}.tooth", str(gauge.tooth),
+                f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
+            )  # fmt: skip
+    yield from _modifications(at, gear)
     for index, wave in enumerate(flank.pitch_waves):
         if 2 * wave.order > gear.teeth:
             yield Fault(
@@ -83,6 +95,32 @@ def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
                 f"{gear.teeth} teeth show no wave above order {gear.teeth // 2}",
                 f"write 1 to {gear.teeth // 2}, or single_pitch",
             )  # fmt: skip
+
+
+def _modifications(at: str, gear: "Gear") -> Iterator[Fault]:
+    """Reliefs without a length, and intended modifications together with a measured flank that has them already."""
+    flank = gear.flank
+    for name in ("root_relief", "end_relief"):
+        amount = getattr(flank, name)
+        if amount and not getattr(flank, f"{name}_length"):
+            yield Fault(
+                f"{at}.flank.{name}_length", "0", f"is needed with {name} = {show(amount, 'length', 'um')}",
+                f'write how far the relief reaches, e.g. {name}_length = "1 mm"',
+            )  # fmt: skip
+    longest = gear.face_width * (0.5 if flank.end_relief_at == "both" else 1.0)
+    if flank.end_relief and flank.end_relief_length > longest:
+        yield Fault(
+            f"{at}.flank.end_relief_length", show(flank.end_relief_length, "length"),
+            f"is above {show(longest, 'length')}, the face that each relief has", "shorten it",
+        )  # fmt: skip
+    if flank.topography is None and flank.back_topography is None:
+        return
+    twice = [name for name in MEASURED_WITH_TOPOGRAPHY if getattr(flank, name)]
+    if twice:
+        yield Fault(
+            f"{at}.flank.{twice[0]}", "", "is part of the measured topography of this gear, and would count twice",
+            f"remove {', '.join(twice)}, or the topography",
+        )  # fmt: skip
 
 
 def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:

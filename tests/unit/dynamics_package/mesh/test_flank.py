@@ -4,15 +4,15 @@ from math import cos, pi, tan
 import numpy as np
 import pytest
 
+from dynamics.flank.field import FlankField
+from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.mesh.flank import (
     ContactDiscretisation,
     MeshDissipation,
     MeshPosition,
-    flank_modification,
     mesh_law,
 )
 from dynamics.mesh.law import check_mesh_law
-from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
@@ -28,6 +28,12 @@ PUBLISHED = (
 def scaled(pair, torque=180.0):
     load = torque / pair.base_radii[0] / pair.face_width
     return pair_stiffness(pair, load).scaled_to(mesh_stiffness(pair, torque))
+
+
+def flank_modification(pair, gear, index, path, face):
+    """Metal removed from gear ``index``, (len(face), len(path)), by places on the path."""
+    flank = FlankField(pair=pair, index=index, micro=gear)
+    return flank.modification(flank.roll(path), face[:, None])
 
 
 def path_of(law):

@@ -37,9 +37,9 @@ def test_the_minimal_case_is_short() -> None:
     assert len(MINIMAL.splitlines()) <= MOST_LINES
 
 
-@pytest.mark.parametrize("name", sorted(set(shipped_cases()) - {"fzg"}))
+@pytest.mark.parametrize("name", sorted(set(shipped_cases()) - {"fzg", "strain_gauge_rig"}))
 def test_shipped_cases_state_everything(name: str) -> None:
-    """A default in one of them would move its results with the tool; fzg is there to show the defaults."""
+    """A default in one of them would move its results with the tool; the two others are there to show the defaults."""
     for file in sorted(shipped_cases()[name].glob("*.toml")):
         case = load_case(file)
         assert case.origin.tree == case.origin.stated, file

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.shaft_torque import ShaftTorque
-from dynamics.mesh.flank import alike_teeth, flank_modification, mesh_law
-from dynamics.mesh.microgeometry import Microgeometry, pitch_waves
+from dynamics.flank.field import FlankField
+from dynamics.flank.microgeometry import Microgeometry, pitch_waves
+from dynamics.mesh.flank import alike_teeth, mesh_law
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
@@ -53,7 +54,8 @@ def test_profile_slope_takes_from_the_root_what_it_adds_to_the_tip() -> None:
     pair = models[0].pair
     path = np.array([pair.path.start, 0.5 * (pair.path.start + pair.path.end), pair.path.end])
     gear = Microgeometry(profile_slope=8e-6)
-    pinion, wheel = (flank_modification(pair, gear, side, path, np.zeros(1))[0] for side in (0, 1))
+    flanks = [FlankField(pair=pair, index=side, micro=gear) for side in (0, 1)]
+    pinion, wheel = (flank.modification(flank.roll(path), 0.0) for flank in flanks)
     np.testing.assert_allclose(pinion, [4e-6, 0.0, -4e-6], atol=1e-18)
     np.testing.assert_allclose(wheel, pinion[::-1], atol=1e-18)
 

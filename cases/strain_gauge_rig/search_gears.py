@@ -1,0 +1,345 @@
+"""Find gears that meet what P1 prints of its test gear: tooth number, helix angle and profile shifts are not printed.
+
+Printed: a 112.5 mm, m_n 6 mm, b 25 mm, tip shortening 2.5 mm, crownings and twist, a reference gear 28/28 (so that the
+loop closes with z1 = z2 only), contact ratios 1.03 "load-free" and 1.24 at 238 N m, about 125 N/mm2 at gauge II at
+189 N m, the maxima of gauges I, II, IV and V between 0.3 and 0.4 rad of rolling angle, and where the pattern is blank.
+
+`python cases/strain_gauge_rig/search_gears.py` takes half a minute and prints three tables in Markdown, those of the
+README:
+
+1. Geometry alone: which helix angles a tooth number allows, and the contact ratios there.
+2. Loaded contact: every reading of the printed twist and tip shortening with every tooth number; the helix angle is the
+   one that meets 1.24 at 238 N m, the other figures say how well the set does in the rest.
+3. The chosen set: what the figures do when one thing is changed.
+
+Stress at the gauges comes from the line loads and ISO 6336-3 factors at the moving load point (`gauge_stresses`).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import acos, cos, degrees, radians
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.contact.slice_compliance import USUAL_COUPLING
+from dynamics.flank.field import FlankField
+from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.rating.root_stress import root_influence
+from rigdesign.validation.p1_contact import (
+    contact_of,
+    corner_load,
+    cycle_at,
+    ratio_without_load,
+    torque_of_ratio,
+)
+
+Array = NDArray[np.float64]
+
+CENTRE_DISTANCE, MODULE, FACE_WIDTH, TIP_SHORTENING = 112.5e-3, 6e-3, 25e-3, 2.5e-3
+PINION_LEAD, WHEEL_PROFILE, WHEEL_LEAD, HELIX_SLOPE, TWIST = 3e-6, 25e-6, 32e-6, 10e-6, 160e-6
+FREE_RATIO, LOADED_RATIO, RATIO_TORQUE = 1.03, 1.24, 238.0
+STRESS_TORQUE, STRESS_AT_II, PATTERN_TORQUES = 189.0, 125e6, (140.0, 336.0, 483.0)
+GAUGES = {"I": -8e-3, "II": -4e-3, "III": 0.0, "IV": 4e-3, "V": 8e-3}
+"""Assumed face positions [m], front end of the face (first in mesh) negative: every second grid of a chain of ten with
+a pitch of 2 mm, the third in the middle as printed."""
+SHOWN = [0, 1, 3, 4]
+"""Gauges of Figure 9: III was defective."""
+MAXIMA_WITHIN = 0.1
+"""Rolling angle in which the maxima of Figure 9 lie, 0.3 to 0.4 rad."""
+TEETH = (15, 16, 17, 18, 19, 20)
+OTHER_PRESSURE_ANGLES = (18.0, 22.5)
+"""Normal pressure angles [deg] besides 20."""
+HELICES = np.arange(0.5, 35.01, 0.5)
+"""Helix angles looked at [deg]."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the printed twist and tip shortening may mean.
+
+    corner_twist : relief at the tip of the rear end of the wheel, the bilinear twist [m]; negative: the corners in
+        which the mesh starts and ends are relieved
+    both_cut : whether both tips are shortened, or that of the wheel alone
+    """
+
+    name: str
+    corner_twist: float
+    both_cut: bool = False
+
+
+READINGS = (
+    Reading("S_alpha = 160 um, start and end relieved", -TWIST / 4.0),
+    Reading("S_alpha = 160 um, start and end kept", TWIST / 4.0),
+    Reading("slope of +-160 um at each end, start and end relieved", -TWIST / 2.0),
+    Reading("slope of +-160 um at each end, start and end kept", TWIST / 2.0),
+    Reading("no twist", 0.0),
+    Reading("both tips cut, S_alpha = 160 um, start and end relieved", -TWIST / 4.0, both_cut=True),
+    Reading("both tips cut, S_alpha = 160 um, start and end kept", TWIST / 4.0, both_cut=True),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearSet:
+    """One set of gears; angles [deg], lengths [m].
+
+    shift_difference : x1 - x2; their sum follows from the centre distance
+    helix_slope : f_Hbeta by which the gap opens towards the end that P1 has on the left
+    coupling : of the slices of a tooth, in normal modules
+    """
+
+    teeth: int
+    helix: float
+    reading: Reading
+    pressure_angle: float = 20.0
+    shift_difference: float = 0.0
+    helix_slope: float = HELIX_SLOPE
+    coupling: float = USUAL_COUPLING
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears; raises GearGeometryError where they cannot be made or cannot mesh."""
+        equal = self._pair("equal")
+        return equal if not self.shift_difference else self._pair(
+            0.5 * (sum(equal.profile_shifts) + self.shift_difference)
+        )  # fmt: skip
+
+    def _pair(self, first_shift: float | str) -> GearPair:
+        return GearPair.from_centre_distance(
+            normal_module=MODULE,
+            teeth=(self.teeth, self.teeth),
+            centre_distance=CENTRE_DISTANCE,
+            face_widths=(FACE_WIDTH, FACE_WIDTH),
+            profile_shift_1=first_shift,  # type: ignore[arg-type]
+            pressure_angle=radians(self.pressure_angle),
+            helix_angle=radians(self.helix),
+            tips=TipShortening(shortening=(TIP_SHORTENING if self.reading.both_cut else 0.0, TIP_SHORTENING)),
+        )
+
+    @property
+    def right_is_front(self) -> bool:
+        """Whether the end that P1 has on the right, whose root is blank, comes into mesh first."""
+        return self.reading.corner_twist <= 0.0
+
+    @property
+    def flanks(self) -> tuple[Microgeometry, Microgeometry]:
+        """Modifications of pinion and wheel."""
+        slope = self.helix_slope if self.right_is_front else -self.helix_slope
+        return (
+            Microgeometry(lead_crowning=PINION_LEAD, helix_slope=slope),
+            Microgeometry(
+                profile_crowning=WHEEL_PROFILE,
+                lead_crowning=WHEEL_LEAD,
+                profile_twist=self.reading.corner_twist,
+            ),
+        )
+
+    def loaded_ratio(self) -> float:
+        """Contact ratio at 238 N m [-]."""
+        mesh = contact_of(self.pair, self.flanks, self.coupling, n_face=15, n_positions=64)
+        return cycle_at(mesh, RATIO_TORQUE).contact_ratio
+
+
+@dataclass(frozen=True)
+class GaugeStresses:
+    """Root stress at gauges over the rolling angle of the pinion: angle (n,) [rad], stress (n, n_gauges) [Pa]."""
+
+    angle: Array
+    stress: Array
+
+    @property
+    def largest(self) -> dict[str, float]:
+        """Largest stress by gauge [Pa]."""
+        return dict(zip(GAUGES, self.stress.max(axis=0).tolist(), strict=True))
+
+    @property
+    def together(self) -> float:
+        """Share of their maxima that gauges I, II, IV and V all reach within 0.1 rad of rolling angle, the best [-]."""
+        relative = (self.stress / self.stress.max(axis=0))[:, SHOWN]
+        windows = [(self.angle >= start) & (self.angle <= start + MAXIMA_WITHIN) for start in self.angle]
+        return float(max(relative[window].max(axis=0).min() for window in windows))
+
+
+def gauge_stresses(cycle: MeshCycle, coupling: float = USUAL_COUPLING) -> GaugeStresses:
+    """Stress at the 30 deg tangent of the pinion at the gauges, by the local lever of ISO 6336-3.
+
+    The line load of the contact is spread along the tooth as by the slices of the analytic compliance, an elastic
+    foundation under a string with ``coupling`` in normal modules; neighbouring teeth and the length of the grids are
+    left out. Influence numbers replace this function.
+    """
+    pair, grid = cycle.points.pair, cycle.points.grid
+    springs = np.diag(grid.width)
+    for k, step in enumerate(np.diff(grid.position)):
+        tie = (coupling * pair.normal_module) ** 2 / step
+        springs[k : k + 2, k : k + 2] += tie * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    path, force = cycle.points.path, cycle.force * cos(pair.base_helix_angle)
+    bending = (force * root_influence(pair, 0).at(path)).swapaxes(0, 1)[::-1].reshape(-1, len(grid.position))
+    over_face = np.linalg.solve(springs, bending.T).T
+    places = list(GAUGES.values())
+    stress = np.array([np.interp(places, grid.position, row) for row in over_face])
+    return GaugeStresses(cycle.pattern(0).path / pair.base_radii[0], stress)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figures:
+    """What a set gives of P1's figures; SI units."""
+
+    shift_sum: float
+    geometric: float
+    unloaded: float
+    free_torque: float
+    loaded: float
+    stress: float
+    together: float
+    blank: tuple[float, ...]
+    other: tuple[float, ...]
+    to_the_right: tuple[float, ...]
+
+
+def figures(gears: GearSet) -> Figures:
+    """Compute every figure of a set."""
+    pair = gears.pair
+    mesh = contact_of(pair, gears.flanks, gears.coupling)
+    stresses = gauge_stresses(cycle_at(mesh, STRESS_TORQUE), gears.coupling)
+    corners = [corner_load(pair, cycle_at(mesh, torque).pattern(0)) for torque in PATTERN_TORQUES]
+    diagonals = [(one.start_to_end, one.across) for one in corners]
+    blank, other = zip(*(pair if gears.right_is_front else pair[::-1] for pair in diagonals), strict=True)
+    side = -1.0 if gears.right_is_front else 1.0
+    return Figures(
+        shift_sum=sum(pair.profile_shifts),
+        geometric=pair.total_contact_ratio,
+        unloaded=ratio_without_load(mesh),
+        free_torque=torque_of_ratio(mesh, FREE_RATIO),
+        loaded=cycle_at(mesh, RATIO_TORQUE).contact_ratio,
+        stress=stresses.largest["II"],
+        together=stresses.together,
+        blank=blank,
+        other=other,
+        to_the_right=tuple(side * one.centre for one in corners),
+    )
+
+
+def helices_of(gears: GearSet, wanted: float = LOADED_RATIO) -> Iterator[float]:
+    """Helix angles [deg] at which a set, whose own is not looked at, meets the contact ratio at 238 N m."""
+
+    def miss(helix: float) -> float:
+        return replace(gears, helix=helix).loaded_ratio() - wanted
+
+    before: tuple[float, float] | None = None
+    for helix in HELICES.tolist():
+        try:
+            now = helix, miss(helix)
+        except GearGeometryError:
+            before = None
+            continue
+        if before is not None and before[1] * now[1] <= 0.0:
+            yield float(brentq(miss, before[0], helix, xtol=0.005))
+        before = now
+
+
+def print_geometry() -> None:
+    """Table 1."""
+    print("| z1 = z2 | tips cut | beta, deg | sum of x | eps_alpha | eps_gamma |\n|---|---|---|---|---|---|")
+    for both_cut in (False, True):
+        for teeth in TEETH:
+            found: list[tuple[float, GearPair]] = []
+            reasons: list[str] = []
+            for helix in HELICES.tolist():
+                try:
+                    pair = GearSet(teeth=teeth, helix=helix, reading=Reading("", 0.0, both_cut)).pair
+                    found.append((helix, pair))
+                except GearGeometryError as error:
+                    reasons.append(str(error).partition(";")[0])
+            cut = "both" if both_cut else "wheel"
+            if not found:
+                print(f"| {teeth} | {cut} | none: {reasons[0]} | | | |")
+                continue
+            transverse, total = ([getattr(pair, name) for _, pair in found] for name in
+                                 ("transverse_contact_ratio", "total_contact_ratio"))  # fmt: skip
+            shifts = [sum(pair.profile_shifts) for _, pair in found]
+            print(
+                f"| {teeth} | {cut} | {found[0][0]:g} to {found[-1][0]:g} | {shifts[0]:.2f} to {shifts[-1]:.2f} | "
+                f"{min(transverse):.2f} to {max(transverse):.2f} | {min(total):.2f} to {max(total):.2f} |"
+            )
+
+
+HEAD = (
+    "| {} | beta, deg | sum of x | eps_gamma, geometry | eps, no load | 1.03 at, N m | eps, 238 N m | sigma II, MPa | "
+    "maxima in 0.1 rad | blank / other corners, 140 and 483 N m | to the right, mm |\n" + "|---" * 11 + "|"
+)
+
+
+def row(name: str, gears: GearSet) -> str:
+    """One line of tables 2 and 3."""
+    got = figures(gears)
+    at = [f"{got.blank[k]:.2f}/{got.other[k]:.2f}" for k in (0, -1)]
+    return (
+        f"| {name} | {gears.helix:.2f} | {got.shift_sum:+.2f} | {got.geometric:.2f} | {got.unloaded:.2f} | "
+        f"{got.free_torque:.0f} | {got.loaded:.3f} | {got.stress / 1e6:.0f} | {got.together:.2f} | {at[0]}, {at[1]} | "
+        f"{1e3 * got.to_the_right[0]:.2f} to {1e3 * got.to_the_right[-1]:.2f} |"
+    )
+
+
+def print_fits() -> None:
+    """Table 2."""
+    print(HEAD.format("reading, z1 = z2"))
+    readings = [(reading.name, reading, 20.0) for reading in READINGS]
+    readings[1:1] = [
+        (f"the same, alpha_n {angle:g} deg", READINGS[0], angle) for angle in OTHER_PRESSURE_ANGLES
+    ]
+    for name, reading, angle in readings:
+        none = []
+        for teeth in TEETH:
+            gears = GearSet(teeth=teeth, helix=0.0, reading=reading, pressure_angle=angle)
+            helices = list(helices_of(gears))
+            for helix in helices:
+                print(row(f"{name}, {teeth}", replace(gears, helix=helix)))
+            if not helices:
+                none.append(str(teeth))
+        print(f"| {name}, {', '.join(none)} | none |" + " |" * 9)
+
+
+def chosen_set() -> GearSet:
+    """The set of the case: 18 teeth without profile shift, whose reference circles touch at the centre distance."""
+    return GearSet(teeth=18, helix=degrees(acos(18.0 * MODULE / CENTRE_DISTANCE)), reading=READINGS[0])
+
+
+def print_chosen() -> None:
+    """Table 3."""
+    chosen = chosen_set()
+    changes: dict[str, dict[str, object]] = {
+        "chosen": {},
+        "beta + 1 deg": {"helix": chosen.helix + 1.0},
+        "beta - 1 deg": {"helix": chosen.helix - 1.0},
+        "x1 - x2 = 0.4": {"shift_difference": 0.4},
+        "x1 - x2 = -0.4": {"shift_difference": -0.4},
+        "alpha_n 18 deg": {"pressure_angle": 18.0},
+        "alpha_n 22.5 deg": {"pressure_angle": 22.5},
+        "f_Hbeta 0": {"helix_slope": 0.0},
+        "f_Hbeta to the other end": {"helix_slope": -HELIX_SLOPE},
+        "twist 10 % less": {"reading": Reading("", -0.9 * TWIST / 4.0)},
+        "slices not tied": {"coupling": 0.0},
+        "slices tied over 3 m_n": {"coupling": 3.0},
+    }
+    print(HEAD.format("z1 = z2 = 18"))
+    for name, change in changes.items():
+        print(row(name, replace(chosen, **change)))  # type: ignore[arg-type]
+
+
+def main() -> None:
+    for table in (print_geometry, print_fits, print_chosen):
+        table()
+        print()
+    crowned = Microgeometry(lead_crowning=WHEEL_LEAD, manufacturing_twist=1.0)
+    natural = FlankField(pair=chosen_set().pair, index=1, micro=crowned).natural_twist
+    kept = "start and end kept" if natural < 0.0 else "start and end relieved"
+    print(f"Natural twist of the wheel's lead crowning: {abs(1e6 * natural):.0f} um, {kept}.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,193 @@
+"""Compliance of the flanks of one gear between points on its teeth, without the local Hertzian approach."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from dynamics.errors import DynamicsInputError
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+RECIPROCITY = 1e-6
+"""Largest difference of two influence numbers that reciprocity makes equal, relative to the largest [-]."""
+
+
+class FlankCompliance(Protocol):
+    """What the contact asks of one gear.
+
+    Teeth are numbered the way the loaded flank faces: tooth 1 is the next one that its normal points to.
+    """
+
+    @property
+    def tip_roll(self) -> float:
+        """Roll length at the end of the flank, at the tip edge [m]."""
+
+    def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
+        """Return (n, n) displacement of point i along its flank normal per newton of normal force on point j [m/N].
+
+        roll : (n,) roll lengths [m], held at the ends of the flank; face : (n,) from mid-face [m]; tooth : (n,)
+        """
+
+    def depth(self, roll: Array) -> Array:
+        """Depth under the flank, along its normal in space, to which the local approach counts, like ``roll`` [m].
+
+        The transverse distance to the tooth axis over cos(beta_b)
+        """
+
+    def excess(self, roll: Array) -> Array:
+        """Addition of the tooth to the logarithm of the local approach of a half space, like ``roll`` [-]."""
+
+
+class InfluenceNumbers(Protocol):
+    """Influence numbers of one gear; see `InterpolatedCompliance`."""
+
+    @property
+    def profile(self) -> Array:
+        """Roll lengths (n_p,) of the grid, growing [m]."""
+
+    @property
+    def face(self) -> Array:
+        """Positions (n_f,) of the grid from mid-face, growing [m]."""
+
+    @property
+    def deflection(self) -> Mapping[int, Array]:
+        """Tooth offset k -> (n_p n_f, n_p n_f), face running faster: displacement of tooth k (rows) per force on
+        tooth 0 (columns) [m/N]."""
+
+    @property
+    def axis_depth(self) -> Array:
+        """(n_p,) transverse distance along the normal from flank to tooth axis [m]."""
+
+    @property
+    def local_excess(self) -> Array:
+        """(n_p,) what the tooth adds to the logarithm of the local approach of a half space [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class InterpolatedCompliance:
+    """Compliance between any points from influence numbers on a grid: W G W^T, cubic in roll, linear in face.
+
+    profile : (n_p,) roll lengths, growing, at least four [m]
+    face : (n_f,) positions from mid-face, growing [m]
+    deflection : tooth offset k -> (n_p n_f, n_p n_f), face running faster: displacement of tooth k (rows) per force on
+        tooth 0 (columns) [m/N]; without 1 and -1 the teeth do not know of each other
+    axis_depth : (n_p,) depth to which the local approach counts [m]
+    local_excess : (n_p,) addition of the tooth to its logarithm [-]
+    beyond : displacement of all teeth further away per force, the share of the body [m/N]
+
+    The shape functions of load and displacement are the same, so that the matrix is symmetric and positive where the
+    influence numbers are. Raises DynamicsInputError for arrays that do not fit each other or break reciprocity.
+    """
+
+    profile: Array
+    face: Array
+    deflection: Mapping[int, Array]
+    axis_depth: Array
+    local_excess: Array
+    beyond: float = 0.0
+
+    def __post_init__(self) -> None:
+        n_p, n_f = len(self.profile), len(self.face)
+        shapes = (self.axis_depth.shape, self.local_excess.shape)
+        if n_p < 4 or shapes != ((n_p,), (n_p,)) or 0 not in self.deflection:
+            raise DynamicsInputError(
+                f"influence numbers: {n_p} profile positions, axis_depth and local_excess {shapes} and offsets "
+                f"{sorted(self.deflection)} given; four positions, one depth and excess each and offset 0 are needed"
+            )
+        for name, grid in (("profile", self.profile), ("face", self.face)):
+            if not np.all(np.diff(grid) > 0.0):
+                raise DynamicsInputError(f"influence numbers: {name} must grow; sort the grid")
+        scale = float(np.abs(self.deflection[0]).max())
+        for offset, block in self.deflection.items():
+            mirror = self.deflection.get(-offset)
+            if block.shape != (n_p * n_f, n_p * n_f) or not np.all(np.isfinite(block)):
+                raise DynamicsInputError(
+                    f"influence numbers of offset {offset} have shape {block.shape}, expected {(n_p * n_f,) * 2} and "
+                    "finite numbers"
+                )
+            error = np.inf if mirror is None else float(np.abs(block - mirror.T).max()) / scale
+            if error > RECIPROCITY:
+                raise DynamicsInputError(
+                    f"influence numbers of offsets {offset} and {-offset} differ by {error:.1e} of the largest, limit "
+                    f"{RECIPROCITY:.0e}: deflection[k] must be deflection[-k] transposed (reciprocity); build them anew"
+                )
+
+    @classmethod
+    def of(
+        cls, numbers: InfluenceNumbers, slant: float = 0.0, beyond: float = 0.0
+    ) -> "InterpolatedCompliance":
+        """Compliance from influence numbers; slant : base helix angle, by which depths in space are longer [rad]."""
+        return cls(
+            profile=numbers.profile,
+            face=numbers.face,
+            deflection=numbers.deflection,
+            axis_depth=numbers.axis_depth / cos(slant),
+            local_excess=numbers.local_excess,
+            beyond=beyond,
+        )
+
+    @property
+    def tip_roll(self) -> float:
+        """Roll length of the last profile position [m]."""
+        return float(self.profile[-1])
+
+    @cached_property
+    def _profile_shapes(self) -> CubicSpline:
+        """The (n_p,) cardinal splines over the roll length."""
+        return CubicSpline(self.profile, np.eye(len(self.profile)))
+
+    @cached_property
+    def _depth(self) -> CubicSpline:
+        return CubicSpline(self.profile, self.axis_depth)
+
+    @cached_property
+    def _symmetric(self) -> dict[int, Array]:
+        return {
+            offset: 0.5 * (block + self.deflection[-offset].T) for offset, block in self.deflection.items()
+        }
+
+    def shapes(self, roll: Array, face: Array) -> Array:
+        """Return W, (n, n_p n_f): share of every grid point in points at ``roll`` and ``face`` (n,) [m]."""
+        along = self._profile_shapes(np.clip(roll, self.profile[0], self.profile[-1]))
+        across = self._hats(face)
+        return np.asarray((along[:, :, None] * across[:, None, :]).reshape(len(roll), -1))
+
+    def _hats(self, face: Array) -> Array:
+        if len(self.face) == 1:
+            return np.ones((len(face), 1))
+        at = np.clip(np.searchsorted(self.face, face) - 1, 0, len(self.face) - 2)
+        share = np.clip((face - self.face[at]) / np.diff(self.face)[at], 0.0, 1.0)
+        hats, rows = np.zeros((len(face), len(self.face))), np.arange(len(face))
+        hats[rows, at], hats[rows, at + 1] = 1.0 - share, share
+        return hats
+
+    def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
+        """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""
+        shapes = self.shapes(roll, face)
+        result = np.full((len(roll), len(roll)), self.beyond)
+        teeth = np.unique(tooth)
+        rows = {int(one): np.flatnonzero(tooth == one) for one in teeth}
+        for loaded, columns in rows.items():
+            for offset in range(min(self.deflection), max(self.deflection) + 1):
+                moved = rows.get(loaded + offset)
+                if moved is None or offset < 0 or offset not in self._symmetric:
+                    continue
+                block = shapes[moved] @ self._symmetric[offset] @ shapes[columns].T
+                result[np.ix_(moved, columns)] = block
+                result[np.ix_(columns, moved)] = block.T
+        return result
+
+    def depth(self, roll: Array) -> Array:
+        """Depth to which the local approach counts, shape of ``roll`` [m]."""
+        return np.asarray(self._depth(np.clip(roll, self.profile[0], self.profile[-1])))
+
+    def excess(self, roll: Array) -> Array:
+        """Addition to the logarithm of the local approach, shape of ``roll`` [-]."""
+        return np.asarray(np.interp(roll, self.profile, self.local_excess))

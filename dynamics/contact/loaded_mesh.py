@@ -1,0 +1,164 @@
+"""Loaded contact of a gear pair, quasi-static, over one mesh cycle.
+
+The potential contact points of all tooth pairs press on compliant flanks: at approach x (transverse line of action,
+at a given rotation of the pinion) the gap of a point closes by w x along its normal, forces along it only press,
+
+    w x - w g - A F - h(F) <= 0 ,  F >= 0 ,  one of them 0 ;   sum w F = P = T_2 / r_b2
+
+A: influence numbers of both gears with neighbouring teeth, h: local approach, w = cos(beta_b) lever_2 / r_b2, by which
+force and approach belong together (virtual work) also where a tip corner's force leaves the line of action.
+Source: gears.md g; Conry and Seireg, ASME J. Eng. Ind. 95 (1973) 1115.
+"""
+
+from dataclasses import dataclass
+from math import nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.contact.compliance import FlankCompliance
+from dynamics.contact.corner import TipEnd
+from dynamics.contact.face import FaceGrid
+from dynamics.contact.local_approach import SOFT_EDGES, EdgeModel, LocalContact, LocalModel
+from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.contact.points import ContactPoints, FlankGap, contact_points, no_gap
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
+from dynamics.gear.pair import GearPair
+from dynamics.kernels.loaded_contact import (
+    CONVERGED,
+    NO_CONVERGENCE,
+    NOT_POSITIVE,
+    ContactProblem,
+    ContactSolution,
+    press_points,
+)
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FIRST_REACH = 0.05
+"""Approach that is looked for first, in normal modules."""
+MOST_REACH = 0.8
+"""Largest approach, in normal modules."""
+FAILURES = {
+    NO_CONVERGENCE: "Newton's method did not end; refine the positions or check the gap",
+    NOT_POSITIVE: "the compliance of the touching points is not positive definite; build the influence numbers anew",
+}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadedMesh:
+    """A gear pair whose contact under load can be asked for.
+
+    gears : compliance of pinion and wheel
+    grid : positions over the common face width
+    gap : of the flanks beyond the involutes, see ``FlankGap``
+    tips : ends of both flanks; None: sharp on the tip circles
+    edges : how tip edges act
+    n_positions : of a mesh cycle
+    """
+
+    pair: GearPair
+    gears: tuple[FlankCompliance, FlankCompliance]
+    grid: FaceGrid
+    gap: FlankGap = no_gap
+    tips: tuple[TipEnd, TipEnd] | None = None
+    edges: EdgeModel = SOFT_EDGES
+    n_positions: int = 64
+
+    def cycle(self, force: float) -> MeshCycle:
+        """Contact over one mesh cycle under a transverse mesh force P = T_2 / r_b2 [N].
+
+        Raises DynamicsInputError for a force that is not positive, DynamicsNotConverged where the teeth would have to
+        approach by more than 0.8 modules or a position has no solution; the message names it.
+        """
+        if not (force > 0.0 and np.isfinite(force)):
+            raise DynamicsInputError(
+                f"mesh force = {force} N must be positive; give the amount, the pair is loaded on its front flanks"
+            )
+        reach, most = FIRST_REACH * self.pair.normal_module, MOST_REACH * self.pair.normal_module
+        while True:
+            points = self.points(reach)
+            needed = np.inf
+            if np.all(np.isfinite(points.gap).any(axis=(1, 2))):
+                cycle = self._pressed(points, force)
+                needed = float(np.max(cycle.approach)) - min(float(np.min(points.gap)), 0.0)
+                if needed <= reach:
+                    return cycle
+            reach = 2.0 * reach if np.isinf(needed) else max(2.0 * reach, 1.2 * needed)
+            if reach > most:
+                raise DynamicsNotConverged(
+                    f"mesh force = {force:.4g} N: the teeth would have to approach by {1e6 * reach:.0f} um, limit "
+                    f"{1e6 * most:.0f} um; reduce the load or the gap of the flanks"
+                )
+
+    def points(self, reach: float, n_positions: int | None = None) -> ContactPoints:
+        """Potential contact points for approaches up to ``reach`` [m]."""
+        return contact_points(
+            self.pair,
+            self.grid,
+            gap=self.gap,
+            tips=self.tips,
+            n_positions=self.n_positions if n_positions is None else n_positions,
+            reach=reach,
+        )
+
+    def _pressed(self, points: ContactPoints, force: float) -> MeshCycle:
+        model = LocalModel(
+            pair=self.pair,
+            gears=self.gears,
+            tips=points.tips,
+            edges=self.edges,
+            line_load=force / self.grid.face_width,
+        )
+        widths = np.broadcast_to(self.grid.width, points.path.shape)
+        local = model.at(points.place, widths)
+        shape = points.path.shape
+        forces, closing = np.zeros(shape), np.full(shape, -np.inf)
+        approach, tangent = np.empty(shape[0]), np.empty(shape[0])
+        near = np.zeros(shape[1:])
+        for k in range(shape[0]):
+            within = np.isfinite(points.gap[k])
+            problem = self._problem(points, local, k, within)
+            start = near[within]
+            solution = press_points(problem, force, nan if k == 0 else approach[k - 1], start)
+            if solution.status != CONVERGED:
+                solution = press_points(problem, force, nan, np.zeros(len(start)))
+            self._require(solution, points, k, force)
+            near = np.zeros(shape[1:])
+            near[within] = solution.force
+            forces[k], closing[k][within] = near, solution.closing
+            approach[k], tangent[k] = solution.approach, solution.tangent
+        return MeshCycle(
+            mesh_force=force,
+            points=points,
+            local=local,
+            force=forces,
+            closing=closing,
+            approach=approach,
+            tangent_stiffness=tangent,
+        )
+
+    def _problem(self, points: ContactPoints, local: LocalContact, k: int, within: Flags) -> ContactProblem:
+        """Contact problem of the points within reach at position k."""
+        rows, columns = np.nonzero(within)
+        face, number = self.grid.position[columns], points.pairs[rows]
+        place = points.place
+        # pinion teeth that come later stand behind the loaded flank, wheel teeth before it
+        compliance = self.gears[0].matrix(place.roll[0][k][within], face, -number)
+        compliance = compliance + self.gears[1].matrix(place.roll[1][k][within], face, number)
+        weight = points.weight[k][within]
+        return ContactProblem(
+            np.ascontiguousarray(compliance),
+            weight * points.gap[k][within],
+            weight,
+            np.ascontiguousarray(local.law[k][within]),
+        )
+
+    def _require(self, solution: ContactSolution, points: ContactPoints, k: int, force: float) -> None:
+        if solution.status != CONVERGED:
+            raise DynamicsNotConverged(
+                f"contact at position {k} of {len(points.position)} (path {1e3 * points.position[k]:.4f} mm) under "
+                f"{force:.4g} N: residual {solution.residual:.1e} after {solution.steps} steps, limit 1e-12: "
+                + FAILURES.get(solution.status, "no point can take the force; check gap and reach")
+            )

@@ -1,0 +1,169 @@
+"""Loads on the flank of a gear segment and what is read of it, as rows that multiply its displacements."""
+
+from collections.abc import Mapping
+from math import atan, cos, pi, sin
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.influence.gear_model import GearModel
+from dynamics.influence.numbers import RootFillet
+from dynamics.influence.section import TEETH
+from dynamics.influence.segment import GearSegment, turned
+from dynamics.influence.strips import BEST, Entry, IndexArray, Strip, displacement_row, stress_row
+
+Array = NDArray[np.float64]
+Place = TypeVar("Place")
+
+
+class SegmentReading:
+    """Rows of loads and readings of a segment.
+
+    rolls : (n_p,) roll lengths of the loaded places of the right flank of tooth 0, from fillet to tip [m]
+    """
+
+    def __init__(self, model: GearModel, segment: GearSegment) -> None:
+        self._form, self._poisson, self._segment = model.form, model.material.poisson, segment
+        gear = model.form.gear
+        self._pitch = 2.0 * pi / gear.teeth
+        self._slope = atan(model.lead * gear.base_radius)
+        section = segment.section
+        corners = section.points[section.flanks[0]][::2]
+        self.rolls = np.array([gear.roll_length(radius) for radius in np.hypot(*corners.T).tolist()])
+        self._face, self._free_ends = model.face, not model.plane_strain
+        self._hats = range(len(model.face))
+        self._positions = model.face.tolist()
+
+    def _strip(self, curves: Mapping[Place, IndexArray], key: Place) -> Strip:
+        return Strip(segment=self._segment, curve=curves[key], face=self._face)
+
+    def _inwards(self, roll: float, tooth: int) -> Array:
+        """(3,) normal of the right flank of a tooth into it, at mid-face."""
+        normal = turned(self._form.flank_normal(roll)[None, :], np.array([tooth * self._pitch]))[0]
+        return -np.append(cos(self._slope) * normal, -sin(self._slope))
+
+    def loads(self) -> list[Entry]:
+        """Unit normal forces on the flank of tooth 0."""
+        flank = self._strip(self._segment.section.flanks, 0)
+        found = []
+        for number, roll in enumerate(self.rolls.tolist()):
+            place = (number, 0.0) if number < flank.n_elements else (number - 1, 1.0)
+            found += [displacement_row(flank, place, hat, self._inwards(roll, 0)) for hat in self._hats]
+        return found
+
+    def axis(self, tooth: int) -> list[Entry]:
+        """Displacement of a tooth on its axis under the points of its right flank, along their normals."""
+        axis = self._strip(self._segment.section.axes, tooth)
+        height = np.hypot(*axis.points.T)
+        found = []
+        for roll in self.rolls.tolist():
+            point = self._form.flank_point(roll) - self._form.axis_depth(roll) * self._form.flank_normal(roll)
+            place = _element_at(height, float(point[1]))
+            found += [displacement_row(axis, place, hat, self._inwards(roll, tooth)) for hat in self._hats]
+        return found
+
+    def carried(self, tooth: int) -> list[Entry]:
+        """Displacement of a tooth at the points of its right flank if it moved with its foot as a rigid body.
+
+        The foot moves as the ground of the tooth spaces on either side of it.
+        """
+        ends = [self._ground(tooth + 0.5), self._ground(tooth - 0.5)]
+        right, left = (strip.at(*place) for strip, place in ends)
+        chord = right - left
+        across = chord / np.linalg.norm(chord)
+        upwards = np.array([-across[1], across[0]])
+        middle = 0.5 * (right + left)
+        found = []
+        for roll in self.rolls.tolist():
+            normal = self._inwards(roll, tooth)
+            point = self._form.flank_point(roll) - self._form.axis_depth(roll) * self._form.flank_normal(roll)
+            arm = turned(point[None, :], np.array([tooth * self._pitch]))[0] - middle
+            # the foot turns clockwise by the difference of its ends over its length
+            lever = (normal[0] * arm[1] - normal[1] * arm[0]) / np.linalg.norm(chord)
+            turning = lever * np.append(upwards, 0.0)
+            found += [
+                _joined(
+                    displacement_row(*ends[0], hat, 0.5 * normal - turning),
+                    displacement_row(*ends[1], hat, 0.5 * normal + turning),
+                )
+                for hat in self._hats
+            ]
+        return found
+
+    def _ground(self, place: float) -> tuple[Strip, tuple[int, float]]:
+        """Middle of the tooth space at ``place`` pitches, and where it lies on a strip."""
+        side = 1 if place > 0.0 else -1
+        drawn = TEETH[-1]
+        if abs(place) <= drawn:
+            return self._strip(self._segment.section.fillets, (round(place - 0.5 * side), side)), (0, 0.0)
+        strip = self._strip(self._segment.section.rims, side)
+        angle = np.unwrap(np.abs(np.arctan2(*strip.points.T)))
+        return strip, _element_at(angle, min(abs(place) * self._pitch, pi))
+
+    # -- root ---------------------------------------------------------------------------------------------------
+    def _stress(self, strip: Strip, place: tuple[int, float], position: float) -> Entry:
+        return stress_row(strip, place, position, self._poisson, free_ends=self._free_ends)
+
+    def root(self, tooth: int, side: int) -> list[Entry]:
+        """Stress at the points of a fillet over the face; that of a neighbour between its own points."""
+        strip = self._strip(self._segment.section.fillets, (tooth, side))
+        own = _gauss_points(strip.n_elements)
+        if tooth == 0:
+            return [self._stress(strip, place, position) for place in own for position in self._positions]
+        arcs = _arcs(strip)[1]
+        found = []
+        for arc in self.fillet.arc.tolist():
+            at = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
+            share = float(np.clip((arc - arcs[at - 1]) / (arcs[at] - arcs[at - 1]), 0.0, 1.0))
+            for position in self._positions:
+                pair = [self._stress(strip, own[k], position) for k in (at - 1, at)]
+                found.append(_mixed(pair, share))
+        return found
+
+    @property
+    def fillet(self) -> RootFillet:
+        """Root points of tooth 0 under its loaded flank."""
+        strip = self._strip(self._segment.section.fillets, (0, 1))
+        points, arcs, tangents = _arcs(strip)
+        return RootFillet(point=points, arc=arcs, tangent=tangents)
+
+
+def _gauss_points(n_elements: int) -> list[tuple[int, float]]:
+    return [(element, along) for element in range(n_elements) for along in BEST]
+
+
+def _arcs(strip: Strip) -> tuple[Array, Array, Array]:
+    """Points (n, 2), arc lengths (n,) and angles (n,) against the tooth axis of the stress points of a fillet."""
+    fine = np.linspace(0.0, 1.0, 65)
+    shape = np.column_stack(
+        [(1.0 - fine) * (1.0 - 2.0 * fine), 4.0 * fine * (1.0 - fine), fine * (2.0 * fine - 1.0)]
+    )
+    points, arcs, tangents, start = [], [], [], 0.0
+    for element in range(strip.n_elements):
+        course = shape @ strip.points[2 * element : 2 * element + 3]
+        length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(course, axis=0).T))])
+        angle = np.abs(np.arctan2(*np.gradient(course, axis=0).T))
+        for along in BEST:
+            points.append([np.interp(along, fine, course[:, k]) for k in (0, 1)])
+            arcs.append(start + np.interp(along, fine, length))
+            tangents.append(np.interp(along, fine, angle))
+        start += length[-1]
+    return np.array(points), np.array(arcs), np.array(tangents)
+
+
+def _mixed(pair: list[Entry], share: float) -> Entry:
+    (low, low_weight), (high, high_weight) = pair
+    return _joined((low, (1.0 - share) * low_weight), (high, share * high_weight))
+
+
+def _joined(first: Entry, second: Entry) -> Entry:
+    return np.concatenate([first[0], second[0]]), np.concatenate([first[1], second[1]])
+
+
+def _element_at(height: Array, wanted: float) -> tuple[int, float]:
+    """Element of a straight curve with corners and middles at growing ``height`` and the place in it, 0 to 1."""
+    corners = height[::2]
+    element = int(np.clip(np.searchsorted(corners, wanted) - 1, 0, len(corners) - 2))
+    share = (wanted - corners[element]) / (corners[element + 1] - corners[element])
+    return element, float(np.clip(share, 0.0, 1.0))

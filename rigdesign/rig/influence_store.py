@@ -1,0 +1,151 @@
+"""Influence numbers kept on disk by the cold gear they belong to.
+
+A file is named after the hash of the gear model; inside stands the hash of what it holds. A file that is damaged, cut
+off or of another gear is not used: its numbers are computed again and replace it. Deleting the folder loses time only.
+"""
+
+import hashlib
+import os
+import tempfile
+import zipfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.influence.build import influence_numbers
+from dynamics.influence.gear_model import GearModel
+from dynamics.influence.numbers import InfluenceNumbers, RootFillet
+from rigdesign.base.cache_folder import cache_folder
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+SCHEMA = 1
+"""Of the numbers and of how they are computed; raise it with any change of either."""
+SEAL = "sha256"
+"""Entry of a file that holds the hash of all others."""
+
+
+def _silent(message: str) -> None:
+    """Say nothing."""
+
+
+@dataclass(frozen=True)
+class InfluenceStore:
+    """Stored numbers in a folder."""
+
+    folder: Path
+
+    @classmethod
+    def default(cls) -> "InfluenceStore":
+        """In RIGDESIGN_CACHE_DIR or the user's cache folder."""
+        return cls(cache_folder() / "influence")
+
+    def numbers(self, model: GearModel, say: Progress = _silent) -> InfluenceNumbers:
+        """Numbers of a gear, stored or computed now and stored.
+
+        say : called before they are computed, and for a file that cannot be used
+        """
+        file = self.file(model)
+        if file.exists():
+            found = _read(file, identity(model))
+            if found is not None:
+                return found
+            say(f"{file} is damaged or of another gear: its influence numbers are computed again")
+        gear = model.form.gear
+        say(f"influence numbers of the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm")
+        made = influence_numbers(model)
+        # a cache that cannot be written costs time only
+        with suppress(OSError):
+            _write(file, identity(model), made)
+        return made
+
+    def file(self, model: GearModel) -> Path:
+        """Where the numbers of a gear are kept."""
+        return self.folder / f"{identity(model)[:32]}.npz"
+
+
+def identity(model: GearModel) -> str:
+    """Hash of everything the numbers of a gear follow from."""
+    return hashlib.sha256(f"{SCHEMA} {model!r}".encode()).hexdigest()
+
+
+def _entries(numbers: InfluenceNumbers) -> dict[str, Array]:
+    """Arrays of a file; displacements against the direction of counting follow from reciprocity."""
+    entries = {
+        "profile": numbers.profile,
+        "face": numbers.face,
+        "axis_depth": numbers.axis_depth,
+        "local_excess": numbers.local_excess,
+        "body": numbers.body,
+        "point": numbers.fillet.point,
+        "arc": numbers.fillet.arc,
+        "tangent": numbers.fillet.tangent,
+        "measures": np.array([numbers.asymmetry, float(numbers.n_nodes)]),
+    }
+    entries |= {f"deflection {k}": block for k, block in numbers.deflection.items() if k >= 0}
+    return entries | {f"stress {k} {side}": block for (k, side), block in numbers.stress.items()}
+
+
+def _from_entries(entries: Mapping[str, Array]) -> InfluenceNumbers:
+    deflection = {
+        int(name.split()[1]): block for name, block in entries.items() if name.startswith("deflection")
+    }
+    deflection |= {-k: np.ascontiguousarray(block.T) for k, block in deflection.items() if k > 0}
+    stress = {
+        (int(name.split()[1]), int(name.split()[2])): block
+        for name, block in entries.items()
+        if name.startswith("stress")
+    }
+    asymmetry, n_nodes = entries["measures"].tolist()
+    return InfluenceNumbers(
+        profile=entries["profile"],
+        face=entries["face"],
+        axis_depth=entries["axis_depth"],
+        local_excess=entries["local_excess"],
+        deflection=deflection,
+        body=entries["body"],
+        fillet=RootFillet(point=entries["point"], arc=entries["arc"], tangent=entries["tangent"]),
+        stress=stress,
+        asymmetry=asymmetry,
+        n_nodes=round(n_nodes),
+    )
+
+
+def _seal(key: str, entries: Mapping[str, Array]) -> str:
+    """Hash of names, shapes and contents, and of the gear they belong to."""
+    hashed = hashlib.sha256(key.encode())
+    for name in sorted(entries):
+        block = np.ascontiguousarray(entries[name], dtype=np.float64)
+        hashed.update(f"{name} {block.shape}".encode())
+        hashed.update(block.tobytes())
+    return hashed.hexdigest()
+
+
+def _read(file: Path, key: str) -> InfluenceNumbers | None:
+    """Numbers of a file; None for one that is damaged or of another gear."""
+    try:
+        with np.load(file, allow_pickle=False) as archive:
+            entries = {name: archive[name] for name in archive.files}
+        sealed = str(entries.pop(SEAL))
+        return _from_entries(entries) if sealed == _seal(key, entries) else None
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+
+
+def _write(file: Path, key: str, numbers: InfluenceNumbers) -> None:
+    """Store numbers: whole or not at all, also while others write the same."""
+    entries = _entries(numbers)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=file.parent, suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            np.savez(stream, allow_pickle=False, **entries, **{SEAL: np.array(_seal(key, entries))})
+        Path(name).replace(file)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise

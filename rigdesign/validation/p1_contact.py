@@ -1,0 +1,115 @@
+"""Loaded contact of P1's test gear on the analytic compliance, and what its text says of contact ratio and pattern.
+
+The text has words for the pattern only: no load at the top left and the bottom right of the pinion flank at 140, 336
+and 483 N m, and a pattern that stands to the right at low load. Top is the tip of the pinion; right is hence the end of
+the face whose root stays without load.
+"""
+
+from dataclasses import dataclass
+from math import tan
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from dynamics.contact.contact_ratio import unloaded_contact_ratio
+from dynamics.contact.face import FaceGrid
+from dynamics.contact.flank_gap import flank_gap
+from dynamics.contact.loaded_mesh import LoadedMesh
+from dynamics.contact.mesh_cycle import ContactPattern, MeshCycle
+from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
+from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.pair_gap import PairGap
+
+Array = NDArray[np.float64]
+CORNER = 0.25
+"""Part of the active profile, and of the face, that counts as a corner of the flank."""
+POSITIONS_UNLOADED = 2000
+"""Positions of a mesh cycle for the limit of no load."""
+REACH_UNLOADED = 0.2e-3
+"""Approach up to which unloaded points are looked at [m]: above the crownings and the twist together."""
+
+
+def contact_of(
+    pair: GearPair,
+    micro: tuple[Microgeometry, Microgeometry],
+    coupling: float = USUAL_COUPLING,
+    n_face: int = 21,
+    n_positions: int = 128,
+) -> LoadedMesh:
+    """Loaded mesh on Weber and Banaschek's teeth; ``coupling`` : of the slices, in normal modules."""
+    grid = FaceGrid.over(pair.face_width, n_face)
+    first, second = (
+        SliceCompliance(pair=pair, index=i, grid=grid, coupling_length=coupling * pair.normal_module)
+        for i in (0, 1)
+    )
+    gap = flank_gap(PairGap.of_pair(pair, micro))
+    return LoadedMesh(pair=pair, gears=(first, second), grid=grid, gap=gap, n_positions=n_positions)
+
+
+def cycle_at(mesh: LoadedMesh, torque: float) -> MeshCycle:
+    """Contact over a mesh cycle under a pinion torque [N m], friction left out."""
+    return mesh.cycle(torque / mesh.pair.base_radii[0])
+
+
+def ratio_without_load(mesh: LoadedMesh) -> float:
+    """Contact ratio in the limit of no load, modifications included [-]."""
+    return unloaded_contact_ratio(mesh.points(REACH_UNLOADED, POSITIONS_UNLOADED))
+
+
+def torque_of_ratio(mesh: LoadedMesh, ratio: float, most: float = 500.0) -> float:
+    """Pinion torque at which the contact ratio is ``ratio`` [N m]; NaN where none between 0.5 N m and ``most`` is."""
+
+    def above(exponent: float) -> float:
+        return cycle_at(mesh, float(np.exp(exponent))).contact_ratio - ratio
+
+    low, high = float(np.log(0.5)), float(np.log(most))
+    if above(low) * above(high) > 0.0:
+        return float("nan")
+    return float(np.exp(brentq(above, low, high, xtol=1e-3)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CornerLoad:
+    """Share of the four corners of the active pinion flank that carries load over a mesh cycle [-].
+
+    root_front, root_rear : at the root, on the face end that comes into mesh first and last; tip_front, tip_rear
+    centre : face position of the centre of load, from mid-face to the rear [m]
+    """
+
+    root_front: float
+    root_rear: float
+    tip_front: float
+    tip_rear: float
+    centre: float
+
+    @property
+    def start_to_end(self) -> float:
+        """Of the corners in which the mesh starts and ends."""
+        return 0.5 * (self.root_front + self.tip_rear)
+
+    @property
+    def across(self) -> float:
+        """Of the other two."""
+        return 0.5 * (self.root_rear + self.tip_front)
+
+
+def corner_load(pair: GearPair, pattern: ContactPattern) -> CornerLoad:
+    """Where the corners of the pinion flank carry, flank on flank; ``pattern`` : of the pinion."""
+    path = pattern.path[:, None] - pattern.face * tan(pair.base_helix_angle)
+    along = (path - pair.path.start) / pair.path.length
+    across = np.broadcast_to(pattern.face / pair.face_width + 0.5, along.shape)
+    root, tip = (along >= 0.0) & (along <= CORNER), (along <= 1.0) & (along >= 1.0 - CORNER)
+    front, rear = across <= CORNER, across >= 1.0 - CORNER
+
+    def share(area: NDArray[np.bool_]) -> float:
+        return float((pattern.touched & area).sum()) / float(area.sum())
+
+    return CornerLoad(
+        root_front=share(root & front),
+        root_rear=share(root & rear),
+        tip_front=share(tip & front),
+        tip_rear=share(tip & rear),
+        centre=pattern.centre[1],
+    )
