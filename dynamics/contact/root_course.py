@@ -1,4 +1,4 @@
-"""Stress in the root fillets of a tooth over its way through the mesh, from its own force and those of its neighbours."""
+"""Stress in the root fillets of a tooth over its way through the mesh, by its own force and those of its neighbours."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
