@@ -1,7 +1,7 @@
 """Stress in the root fillets of a tooth over its way through the mesh, by its own force and those of its neighbours."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -37,6 +37,10 @@ class RootCourse:
     path: Array
     face: Array
     stress: Array
+
+    def within(self, points: NDArray[np.bool_]) -> "RootCourse":
+        """The same at some points of the fillet (n_r,)."""
+        return replace(self, stress=self.stress[:, points])
 
     @property
     def highest(self) -> float:

@@ -29,6 +29,11 @@ class ToothInfluence:
             self._found[model] = self.store.numbers(model, self.say)
         return self._found[model]
 
+    def stored(self, pair: GearPair) -> bool:
+        """Whether the numbers of both gears are there."""
+        models = [gear_model(pair, index) for index in (0, 1)]
+        return all(model in self._found or self.store.file(model).exists() for model in models)
+
     def of_pair(self, pair: GearPair) -> tuple[InfluenceNumbers, InfluenceNumbers]:
         """Numbers of pinion and wheel on the face positions of the contact: positive z comes into mesh last."""
         pinion, wheel = (self.numbers(gear_model(pair, index)) for index in (0, 1))
