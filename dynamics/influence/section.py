@@ -278,10 +278,10 @@ class _Drawing:
         axis_deep = self._polar(self._ring.depth, turn)
         tip = form.tip_points()
         axis_top = self._point(0.0, float(tip[-1, 1]), turn)
-        rows = high_part + profile
-        stem = self._line(axis_low, axis_top, rows)
+        axis_form = self._polar(form.form_radius, turn)
+        foot, stem = self._line(axis_low, axis_form, high_part), self._line(axis_form, axis_top, profile)
         deep = self._counted(self._geo.addLine(axis_deep, axis_low), division.depth, division.grading)
-        self._curves[f"axis {tooth}"] = [deep, stem]
+        self._curves[f"axis {tooth}"] = [deep, foot, stem]
         under: list[_Arc] = []
         for side in (-1, 1):
             (root, low), wall = (ends[0], sides[0]) if side < 0 else (ends[1], sides[1])
@@ -308,7 +308,9 @@ class _Drawing:
             under_root = self._arc(c, low, low_part)
             self._curves[f"flank {tooth} {side}"] = [flank]
             self._curves[f"fillet {tooth} {side}"] = [lower, upper]
-            self._patch([foot_line, upper, flank, *top, -stem], [axis_low, q, t, axis_top])
+            across = self._arc(axis_form, f, thickness, division.grading)
+            self._patch([foot_line, upper, -across, -foot], [axis_low, q, f, axis_form])
+            self._patch([across, flank, *top, -stem], [axis_form, f, t, axis_top])
             self._patch([under_tooth, column, -foot_line, -deep], [axis_deep, c, q, axis_low])
             self._patch([under_root, wall, lower, -column], [c, low, root, q])
             inner = _Arc(
