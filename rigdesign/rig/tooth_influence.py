@@ -1,9 +1,10 @@
 """Influence numbers of the gears of a rig, of the cold teeth as drawn."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import PairGeometry
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_model import GearModel
@@ -48,8 +49,9 @@ class ToothInfluence:
 
 
 def gear_model(pair: GearPair, index: int) -> GearModel:
-    """Cold gear of a pair as drawn, pinion (0) or wheel (1)."""
-    form = ToothForm(gear=pair.gears[index])
+    """Cold gear of a pair as drawn, pinion (0) or wheel (1); of a warm pair, that at its reference temperature."""
+    drawn = {entry.name: getattr(pair, entry.name) for entry in fields(PairGeometry)}
+    form = ToothForm(gear=PairGeometry(**drawn | {"expansion": (0.0, 0.0)}).gears[index])
     bore = 0.5 * pair.bore_diameters[index]
     return GearModel(
         form=form,
