@@ -59,6 +59,6 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
 
 
 def missing_numbers(rig: Rig) -> Iterator[str]:
-    """Meshes whose influence numbers have to be computed."""
+    """Meshes whose influence numbers are wanted and not stored."""
     if rig.fidelity in FIDELITIES and rig.drivetrain is not None:
         yield from (name for name in rig.mesh_names if not rig.tooth_influence.stored(rig.pairs[name]))
