@@ -87,10 +87,13 @@ def test_axis_rows_read_rigid_motions(read, tooth, turning, axis):
 @pytest.mark.parametrize("tooth", [-3, -1, 0, 2])
 @pytest.mark.parametrize(("axis", "turning"), [(0, False), (1, False), (2, False), (2, True)])
 def test_carried_rows_read_rigid_motions(read, tooth, axis, turning):
-    """Not the tilts of a helical gear, whose axial motion is that of the ground instead of the axis point."""
+    """Not the tilts of a helical gear, whose axial motion is that of the ground instead of the axis point.
+
+    Far from the teeth the parabola of a wide element leaves the root circle by a millionth of its radius.
+    """
     field = motion(axis, turning)
     found = read.rows(read.reading.carried(tooth)) @ field(read.points).ravel()
-    assert found == pytest.approx(wanted(read, tooth, field), abs=1e-7 if turning else 1e-12)
+    assert found == pytest.approx(wanted(read, tooth, field), abs=2e-6 if turning else 1e-12)
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -152,8 +155,8 @@ def test_strain_along_the_helix():
 def test_loads_sum_to_one_newton_along_the_normal(read):
     loads = read.rows(read.reading.loads()).toarray().reshape(-1, *read.points.shape)
     form, face = read.model.form, read.model.face
-    for number, (row, place) in enumerate(zip(loads, np.ndindex(len(read.reading.rolls), len(face)))):
-        roll = read.reading.rolls[place[0]]
+    assert len(loads) == len(read.reading.rolls) * len(face)
+    for number, row in enumerate(loads):
         force = row.sum(axis=0)
         assert np.linalg.norm(force) == pytest.approx(1.0, abs=1e-3 if read.model.lead else 1e-12), number
         slope = atan(read.model.lead * form.gear.base_radius)

@@ -80,7 +80,7 @@ def test_layers_at_planes_and_between(section):
 
 def test_bad_input_is_named(section):
     for heights in (np.array([0.0]), np.array([1e-3, 0.0]), np.array([0.0, 0.0])):
-        with pytest.raises(DynamicsInputError, match="heights = .* at least two growing"):
+        with pytest.raises(DynamicsInputError, match=r"heights = .* at least two growing"):
             GearSegment.of(section, heights)
     body = GearBody(bore_radius=15e-3, rim_thickness=8e-3, web_thickness=1e-3)
     with pytest.raises(
