@@ -65,10 +65,9 @@ def test_teeth_of_the_prototype_meet_early_and_share_as_in_calculix(found: Loade
 
 
 def test_forces_carry_the_torque(found: LoadedContact) -> None:
-    base_radius = found.cycle.points.pair.base_radii[1]
-    assert found.cycle.torques[1] == pytest.approx(
-        np.full(64, found.cycle.mesh_force * base_radius), rel=1e-10
-    )
+    cycle = found.cycle
+    torque = cycle.mesh_force * cycle.points.pair.base_radii[1]
+    assert cycle.torques[1] == pytest.approx(np.full(64, torque), rel=1e-10)
 
 
 def test_row_and_picture_hold_what_was_found(found: LoadedContact) -> None:
