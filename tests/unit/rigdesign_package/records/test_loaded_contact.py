@@ -53,8 +53,10 @@ def test_quick_has_no_loaded_contact() -> None:
 
 
 def test_teeth_of_the_prototype_meet_early_and_share_as_in_calculix(found: LoadedContact) -> None:
-    """CalculiX, plane, cold: largest share 0.884, contact ratio 2.08, pinion root 1240 MPa. The wheel is twice as wide as
-    the pinion and sees 960 MPa with the standard mesh; this one is coarse."""
+    """CalculiX, plane, cold: largest share 0.884, contact ratio 2.08, pinion root 1240 MPa.
+
+    The wheel is twice as wide as the pinion and sees 960 MPa with the standard mesh; this one is coarse.
+    """
     assert found.torque == pytest.approx(180.0, rel=1e-3)
     assert found.unloaded_contact_ratio == pytest.approx(1.0, abs=2e-3)
     assert found.cycle.contact_ratio == pytest.approx(2.1, abs=0.1)
