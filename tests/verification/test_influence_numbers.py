@@ -108,7 +108,7 @@ def test_root_stress_of_a_slice(name, index):
 
 
 def test_numbers_converge(monkeypatch):
-    """Elements at a half and a third: the standard division is within 0.2 % (deflection) and 0.5 % (root stress) of the finest.
+    """Elements at a half and a third: the standard division is off by 0.2 % (deflection) and 0.5 % (root stress).
 
     Observed order above 2 of both. The local addition has a mesh of its own.
     """
