@@ -107,6 +107,7 @@ def test_root_stress_of_a_slice(name, index):
 # -- their own meshes --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_numbers_converge(monkeypatch):
     """Elements at a half and a third: the standard division is off by 0.2 % (deflection) and 0.5 % (root stress).
 
@@ -130,6 +131,7 @@ def test_numbers_converge(monkeypatch):
     assert changes[1][1] < second_order * changes[0][1]
 
 
+@pytest.mark.slow
 def test_local_addition_does_not_depend_on_its_mesh(monkeypatch):
     """Elements half as long again, so that load and reading stand further apart as well.
 
