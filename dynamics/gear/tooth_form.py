@@ -7,7 +7,7 @@ Source: ISO 21771:2007, 5 and annex A; Litvin, Fuentes, Gear Geometry and Applie
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, cos, hypot, pi, radians, sin, tan
+from math import atan2, cos, degrees, hypot, pi, radians, sin, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,8 @@ class ToothForm:
 
     protuberance : undercut that a protuberance tool leaves after finishing the flank, s_pr in the normal section [m]
     protuberance_angle : of the protuberance flank of that tool, below the normal pressure angle [rad]
+
+    Raises GearGeometryError for a pointed tooth and for a tip edge or protuberance that leaves no flank, tip or fillet.
     """
 
     gear: CylindricalGear
@@ -62,6 +64,8 @@ class ToothForm:
             raise GearGeometryError(
                 f"protuberance = {self.protuberance} m must not be negative; give 0 for none"
             )
+        if self.protuberance:
+            self._require_fillet_of_protuberance()
         if self.flank_tip_radius <= self.form_radius:
             raise GearGeometryError(
                 f"flank from d_Ff = {2e3 * self.form_radius:.3f} mm to {2e3 * self.flank_tip_radius:.3f} mm: "
@@ -71,6 +75,28 @@ class ToothForm:
             raise GearGeometryError(
                 f"tooth of {gear.teeth} teeth is pointed: thickness {1e3 * gear.tip_thickness:.3f} mm at the tip; "
                 "reduce the tip diameter or the profile shift"
+            )
+        land = float(self.tip_points()[self.tip_edge_points - 1, 0])
+        if not land > 0.0:
+            raise GearGeometryError(
+                f"tip_edge.rounding = {1e3 * self.tip_edge.rounding:.3f} mm, chamfer = "
+                f"{1e3 * self.tip_edge.chamfer:.3f} mm: the edges of both flanks overlap by {-2e3 * land:.3f} mm on a "
+                f"tip of {1e3 * gear.tip_thickness:.3f} mm; reduce the tip edge"
+            )
+
+    def _require_fillet_of_protuberance(self) -> None:
+        """Raise GearGeometryError for a tool that leaves no fillet from the root circle up to the involute."""
+        angle, limit = self.protuberance_angle, self.gear.pressure_angle
+        if not 0.0 < angle < limit:
+            raise GearGeometryError(
+                f"protuberance_angle = {degrees(angle):.3f} deg must lie between 0 and the normal pressure angle, "
+                f"{degrees(limit):.3f} deg; correct the tool"
+            )
+        traced = [hypot(*self._traced(float(place))) for place in np.linspace(0.0, self._fillet_end, 121)]
+        if not np.all(np.diff(traced) > 0.0):
+            raise GearGeometryError(
+                f"protuberance = {1e3 * self.protuberance:.3f} mm, module {1e3 * self.gear.normal_module:g} mm: the "
+                "fillet that the tool leaves does not rise to the flank; a tenth of the module is usual, reduce it"
             )
 
     @property

@@ -4,9 +4,9 @@ Printed symbols. Confidence: written from memory of ISO/TR 13989-1:2000 and DIN 
 compare with. What other evidence there is:
  - Theta_fl is Blok's formula; its closed form for cylindrical gears, 0.51 X_alphabeta X_M ... (clause 10), follows from
    it to 0.2 % (`tests/verification/test_flank_rating.py`), so both forms are right.
- - Theta_S rests on the FZG test A/8.3/90: its term 1.4 X_L S^2 stands for the flash temperature of those gears at load
+ - Theta_S follows the FZG test A/8.3/90: its term 1.4 X_L S^2 stands for the flash temperature of those gears at load
    stage S. Theta_fl gives 1.18 to 1.24 times that from stage 8 to 12 at Ra = 0.4 um (same test): the right size.
- - X_Gamma, X_J, mu_m and the safety S_B rest on memory alone.
+ - X_Gamma, X_J, mu_m and the safety S_B are from memory alone.
 """
 
 from dataclasses import dataclass

@@ -179,13 +179,15 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__oil=_OIL_FLOW,
     ),
     "gearboxes.*.oil.jet_direction": _at(
-        coupling__losses="power that brings the jets up to speed",
+        case__jets="power that brings the jets up to speed",
         coupling__flank_heat="film of the jets on the flanks",
     ),
     "gearboxes.*.oil.jet_velocity": _at(
         case__jets="velocity with which the oil arrives: power of the jets, film on the flanks"
     ),
-    "gearboxes.*.oil.blocked_jets": _at(rig__oil_supply="velocity of the open jets and wetted face width"),
+    "gearboxes.*.oil.blocked_jets": _at(
+        case__jets="velocity of the open jets", rig__oil_supply="wetted face width"
+    ),
     "gearboxes.*.oil.lubrication": _at(
         case__lubrication="injection at the meshes, or a sump into which gears dip"
     ),
@@ -296,7 +298,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.oil_paths": _at(coupling__oil="ways of the gear oil: which heat which part of it takes up"),
     "gearboxes.*.oil_paths.bypass": _at(
-        rig__oil_supply="flow that reaches the jets", coupling__oil="part of the oil that takes up no heat"
+        case__jets="flow that reaches the jets", coupling__oil="part of the oil that takes up no heat"
     ),
     "gearboxes.*.oil_state": _at(
         rig__oil_supply="properties of the oil as it runs: viscosity, heat capacity, conductivity"

@@ -67,6 +67,12 @@ class GearboxDynamics:
     """Per held stage: {stage, sigma_H_pinion_MPa, S_H_pinion, sigma_H_wheel_MPa, S_H_wheel, bulk_degC, bulk_basis,
     contact_degC, contact_friction, scuffing_degC, S_B, film_ratio_least, film_ratio_at, film_ratio: {point: ratio}};
     what is not rated is None."""
+    loaded_contact: dict[str, Any] | None = None
+    """Quasi-static contact of the warm teeth at the test, from influence numbers: {stage, torque_Nm,
+    contact_ratio_geometric, contact_ratio_no_load, contact_ratio, largest_share, early_contact, late_contact,
+    transmission_error_um, approach_um, mesh_stiffness_N_um, K_H_beta, line_load_N_mm, flank_pressure_MPa,
+    edge_pressure_MPa, pattern: {rolling_angle_deg, face_mm, pressure_MPa, edge}, root_stress: {pinion, wheel:
+    {rolling_angle_deg, highest_MPa, mid_face_MPa, largest_MPa, at_face_mm, stress_ratio}}}; None but at reference."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,16 +1,18 @@
 """Influence numbers kept on disk by the cold gear they belong to.
 
-A file is named after the hash of the gear model; inside stands the hash of what it holds. A file that is damaged, cut
-off or of another gear is not used: its numbers are computed again and replace it. Deleting the folder loses time only.
+A file is named after the hash of the gear model and begins with the hash of that and of what follows, an archive of
+arrays. A file that is damaged, cut off or of another gear is not used: its numbers are computed again and replace it.
+Deleting the folder loses time only.
 """
 
 import hashlib
+import io
+import json
 import os
 import tempfile
-import zipfile
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -24,10 +26,10 @@ from rigdesign.base.cache_folder import cache_folder
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-SCHEMA = 1
+SCHEMA = 2
 """Of the numbers and of how they are computed; raise it with any change of either."""
-SEAL = "sha256"
-"""Entry of a file that holds the hash of all others."""
+SEAL = 64
+"""Length of the hash at the beginning of a file [bytes]."""
 
 
 def _silent(message: str) -> None:
@@ -51,7 +53,7 @@ class InfluenceStore:
         say : called before they are computed, and for a file that cannot be used
         """
         file = self.file(model)
-        if file.exists():
+        with suppress(FileNotFoundError):
             found = _read(file, identity(model))
             if found is not None:
                 return found
@@ -66,12 +68,13 @@ class InfluenceStore:
 
     def file(self, model: GearModel) -> Path:
         """Where the numbers of a gear are kept."""
-        return self.folder / f"{identity(model)[:32]}.npz"
+        return self.folder / f"{identity(model)[:32]}.influence"
 
 
 def identity(model: GearModel) -> str:
     """Hash of everything the numbers of a gear follow from."""
-    return hashlib.sha256(f"{SCHEMA} {model!r}".encode()).hexdigest()
+    # json writes numbers of numpy and of Python alike, to the last digit
+    return hashlib.sha256(json.dumps([SCHEMA, asdict(model)], default=int).encode()).hexdigest()
 
 
 def _entries(numbers: InfluenceNumbers) -> dict[str, Array]:
@@ -116,35 +119,39 @@ def _from_entries(entries: Mapping[str, Array]) -> InfluenceNumbers:
     )
 
 
-def _seal(key: str, entries: Mapping[str, Array]) -> str:
-    """Hash of names, shapes and contents, and of the gear they belong to."""
-    hashed = hashlib.sha256(key.encode())
-    for name in sorted(entries):
-        block = np.ascontiguousarray(entries[name], dtype=np.float64)
-        hashed.update(f"{name} {block.shape}".encode())
-        hashed.update(block.tobytes())
-    return hashed.hexdigest()
+def _seal(key: str, archive: bytes) -> bytes:
+    """Hash of an archive and of the gear it belongs to, (SEAL,) hexadecimal digits."""
+    return hashlib.sha256(key.encode() + archive).hexdigest().encode()
 
 
 def _read(file: Path, key: str) -> InfluenceNumbers | None:
-    """Numbers of a file; None for one that is damaged or of another gear."""
+    """Numbers of a file; None for one that is damaged or of another gear.
+
+    Raises FileNotFoundError where there is none.
+    """
     try:
-        with np.load(file, allow_pickle=False) as archive:
-            entries = {name: archive[name] for name in archive.files}
-        sealed = str(entries.pop(SEAL))
-        return _from_entries(entries) if sealed == _seal(key, entries) else None
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        content = file.read_bytes()
+    except FileNotFoundError:
+        raise
+    except OSError:
         return None
+    seal, archive = content[:SEAL], content[SEAL:]
+    if seal != _seal(key, archive):
+        return None
+    with np.load(io.BytesIO(archive), allow_pickle=False) as arrays:
+        return _from_entries({name: arrays[name] for name in arrays.files})
 
 
 def _write(file: Path, key: str, numbers: InfluenceNumbers) -> None:
     """Store numbers: whole or not at all, also while others write the same."""
-    entries = _entries(numbers)
+    stream = io.BytesIO()
+    np.savez(stream, allow_pickle=False, **_entries(numbers))
+    archive = stream.getvalue()
     file.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=file.parent, suffix=".part")
     try:
-        with os.fdopen(handle, "wb") as stream:
-            np.savez(stream, allow_pickle=False, **entries, **{SEAL: np.array(_seal(key, entries))})
+        with os.fdopen(handle, "wb") as part:
+            part.write(_seal(key, archive) + archive)
         Path(name).replace(file)
     except BaseException:
         Path(name).unlink(missing_ok=True)

@@ -30,6 +30,7 @@ from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, hi
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
+from rigdesign.rig.tooth_influence import ToothInfluence
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
 from thermal.expansion.expansion import ExpansionSetup
@@ -192,6 +193,11 @@ class Rig:
         named |= {f"shaft_{shaft}": entry.material for shaft, entry in housing.shafts.items()}
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
         return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
+
+    @cached_property
+    def tooth_influence(self) -> ToothInfluence:
+        """Influence numbers of the cold gears, from the store or computed when they are asked for."""
+        return ToothInfluence()
 
     @cached_property
     def topographies(self) -> Mapping[str, FlankTopographies]:

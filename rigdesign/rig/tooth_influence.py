@@ -1,9 +1,10 @@
 """Influence numbers of the gears of a rig, of the cold teeth as drawn."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import PairGeometry
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_model import GearModel
@@ -29,6 +30,11 @@ class ToothInfluence:
             self._found[model] = self.store.numbers(model, self.say)
         return self._found[model]
 
+    def stored(self, pair: GearPair) -> bool:
+        """Whether the numbers of both gears are there."""
+        models = [gear_model(pair, index) for index in (0, 1)]
+        return all(model in self._found or self.store.file(model).exists() for model in models)
+
     def of_pair(self, pair: GearPair) -> tuple[InfluenceNumbers, InfluenceNumbers]:
         """Numbers of pinion and wheel on the face positions of the contact: positive z comes into mesh last."""
         pinion, wheel = (self.numbers(gear_model(pair, index)) for index in (0, 1))
@@ -43,8 +49,9 @@ class ToothInfluence:
 
 
 def gear_model(pair: GearPair, index: int) -> GearModel:
-    """Cold gear of a pair as drawn, pinion (0) or wheel (1)."""
-    form = ToothForm(gear=pair.gears[index])
+    """Cold gear of a pair as drawn, pinion (0) or wheel (1); of a warm pair, that at its reference temperature."""
+    drawn = {entry.name: getattr(pair, entry.name) for entry in fields(PairGeometry)}
+    form = ToothForm(gear=PairGeometry(**drawn | {"expansion": (0.0, 0.0)}).gears[index])
     bore = 0.5 * pair.bore_diameters[index]
     return GearModel(
         form=form,

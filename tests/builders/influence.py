@@ -1,71 +1,65 @@
-"""Influence numbers of small finite-element models for tests, each gear once in a session."""
+"""Gears and small models for the tests of influence numbers."""
 
-from dataclasses import replace
-from functools import lru_cache
 from math import cos, radians
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FlankGap, no_gap
-from dynamics.gear.pair import GearPair
-from dynamics.influence.build import influence_numbers
+import numpy as np
+
+from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
+from dynamics.gear.tooth_form import ToothForm
+from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_model import GearModel
-from dynamics.influence.numbers import InfluenceNumbers
-from dynamics.influence.section import SectionDivision
-from rigdesign.rig.tooth_influence import gear_model
+from dynamics.influence.numbers import InfluenceNumbers, RootFillet
+from dynamics.influence.section import GearBody, SectionDivision
 
-COARSE = SectionDivision(profile=5, thickness=2, fillet=4, depth=2)
-"""Deflections within 1 %."""
-
-
-@lru_cache
-def numbers_of(model: GearModel) -> InfluenceNumbers:
-    """Influence numbers of a gear, of one position for a slice in plane strain."""
-    numbers = influence_numbers(model)
-    return numbers.even() if model.plane_strain else numbers
+STEEL = Elastic(young=206e9, poisson=0.3)
+COARSE = SectionDivision(profile=3, thickness=2, fillet=4, depth=2, neighbours=(2, 2, 4))
 
 
-def plane_gears(pair: GearPair) -> tuple[InterpolatedCompliance, InterpolatedCompliance]:
-    """Compliance of a spur pair in plane strain over the common face width, 2 s a gear."""
-    first, second = (
-        InterpolatedCompliance.of(
-            numbers_of(replace(gear_model(pair, index), plane_strain=True, face_width=pair.face_width))
-        )
-        for index in (0, 1)
+def drawn_gear(
+    teeth: int,
+    *,
+    module: float = 1e-3,
+    helix: float = 0.0,
+    shift: float = 0.0,
+    pressure_angle: float = 20.0,
+    addendum: float = 1.0,
+    tool_radius: float = 0.38,
+) -> CylindricalGear:
+    """Gear with full tips; helix and pressure angle [deg], module [m]."""
+    beta = radians(helix)
+    return CylindricalGear(
+        normal_module=module,
+        pressure_angle=radians(pressure_angle),
+        helix_angle=beta,
+        teeth=teeth,
+        profile_shift=shift,
+        tip_diameter=module * (teeth / cos(beta) + 2.0 * (addendum + shift)),
+        rack=Rack(tip_radius=tool_radius),
     )
-    return first, second
 
 
-def equal_helical_pair() -> GearPair:
-    """Two equal gears of one hand each: one set of influence numbers serves both."""
-    pair = GearPair.from_centre_distance(
-        normal_module=3e-3,
-        teeth=(30, 30),
-        centre_distance=90e-3 / cos(radians(15.0)),
-        helix_angle=radians(15.0),
-        face_widths=(30e-3, 30e-3),
-        profile_shift_1=0.0,
-    )
-    return replace(pair, profile_shifts=(0.0, 0.0))
+def small_model(helix: float = 0.0, n_face: int = 4, **fields: object) -> GearModel:
+    """28 teeth of module 4 mm, 20 mm wide, in large elements."""
+    form = ToothForm(gear=drawn_gear(28, module=4e-3, helix=helix))
+    given = {"body": GearBody(bore_radius=15e-3), "division": COARSE, "n_face": n_face} | fields
+    return GearModel(form=form, material=STEEL, face_width=20e-3, **given)  # type: ignore[arg-type]
 
 
-def coarse_gears(pair: GearPair) -> tuple[InterpolatedCompliance, InterpolatedCompliance]:
-    """Compliance of a pair in space, five positions over the face, some seconds a gear."""
-    pinion, wheel = (
-        numbers_of(replace(gear_model(pair, index), n_face=5, division=COARSE)) for index in (0, 1)
-    )
-    slant = pair.base_helix_angle
-    return InterpolatedCompliance.of(pinion.reversed_face(), slant), InterpolatedCompliance.of(wheel, slant)
-
-
-def loaded(
-    pair: GearPair,
-    gears: tuple[InterpolatedCompliance, InterpolatedCompliance],
-    gap: FlankGap = no_gap,
-    n_face: int = 1,
-) -> LoadedMesh:
-    """Loaded mesh on influence numbers."""
-    return LoadedMesh(
-        pair=pair, gears=gears, grid=FaceGrid.over(pair.face_width, n_face), gap=gap, n_positions=32
+def invented_numbers(n_profile: int = 4, n_face: int = 2, seed: int = 0) -> InfluenceNumbers:
+    """Numbers of the right shapes that keep reciprocity and are nothing else."""
+    draw, n = np.random.default_rng(seed), n_profile * n_face
+    deflection = {k: draw.random((n, n)) for k in range(4)}
+    deflection[0] = deflection[0] + deflection[0].T
+    deflection |= {-k: deflection[k].T.copy() for k in (1, 2, 3)}
+    return InfluenceNumbers(
+        profile=np.linspace(1e-3, 2e-3, n_profile),
+        face=np.linspace(-5e-3, 5e-3, n_face),
+        axis_depth=draw.random(n_profile),
+        local_excess=draw.random(n_profile),
+        deflection=deflection,
+        body=draw.random((n, n)),
+        fillet=RootFillet(point=draw.random((3, 2)), arc=np.arange(3.0), tangent=np.arange(3.0)[::-1]),
+        stress={(k, side): draw.random((3 * n_face, n)) for k in (-1, 0, 1) for side in (1, -1)},
+        asymmetry=0.03,
+        n_nodes=5,
     )

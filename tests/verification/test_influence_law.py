@@ -19,7 +19,7 @@ from dynamics.mesh.flank import ContactDiscretisation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.static_cycle import StaticCycle, static_cycle
 from dynamics.mesh.stiffness import pair_stiffness
-from tests.builders.influence import coarse_gears, equal_helical_pair, loaded, plane_gears
+from tests.builders.elastic_pairs import coarse_gears, equal_helical_pair, loaded, plane_gears
 from tests.builders.loaded_mesh import gap_of
 from tests.reference.tooth_contact import tables
 from tests.reference.tooth_contact.contact_cases import contact_case

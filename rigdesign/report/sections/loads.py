@@ -16,7 +16,7 @@ def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
     from rigdesign.report.figures.ramp import ramp_figure
 
-    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}}
+    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}, "contact": {}}
     dynamics = result.dynamics
     if dynamics is None:
         return shown
@@ -29,9 +29,9 @@ def _loads(result: RunResult, draw: Draw) -> Values:
             figures.dynamic_factor_figure(dynamics),
             "Dynamic factor over speed, simulated and by ISO 6336-1",
         )
-    shown["root_stress"] = _root_stress(
-        result, draw, [name for name in dynamics.gearboxes if _shown_first(result, name)]
-    )
+    first = [name for name in dynamics.gearboxes if _shown_first(result, name)]
+    shown["root_stress"] = _root_stress(result, draw, first)
+    shown["contact"] = _contact(result, draw, first)
     return shown
 
 
@@ -44,7 +44,11 @@ def _details(result: RunResult, draw: Draw) -> Values:
     if dynamics.crossings:
         campbell = draw(figures.campbell_figure(dynamics), "Mesh orders and natural frequencies over speed")
     rest = [name for name in dynamics.gearboxes if not _shown_first(result, name)]
-    return {"campbell": campbell, "root_stress": _root_stress(result, draw, rest)}
+    return {
+        "campbell": campbell,
+        "root_stress": _root_stress(result, draw, rest),
+        "contact": _contact(result, draw, rest),
+    }
 
 
 def _root_stress(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, Markup]":
@@ -59,6 +63,21 @@ def _root_stress(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[s
         )
         for name, gearbox in chosen.items()
         if _has_root_stress(gearbox)
+    }
+
+
+def _contact(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, Markup]":
+    from rigdesign.report.figures.tooth_contact import tooth_contact_figure
+
+    assert result.dynamics is not None
+    found = {name: result.dynamics.gearboxes[name].loaded_contact for name in names}
+    return {
+        name: draw(
+            tooth_contact_figure(contact, gearbox_styles(result)[name]),
+            f"Loaded contact and root stress of gearbox {name}",
+        )
+        for name, contact in found.items()
+        if contact
     }
 
 

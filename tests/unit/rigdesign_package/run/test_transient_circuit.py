@@ -11,7 +11,7 @@ from rigdesign.results.transient import OilPowerCurve
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 
-pytestmark = pytest.mark.whole_run
+pytestmark = [pytest.mark.whole_run, pytest.mark.slow]  # 48 s of one core
 
 CASE = f"""
 extends = "{(CASES / "uhcf_prototype" / "given_losses.toml").as_posix()}"

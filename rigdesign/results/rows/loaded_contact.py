@@ -1,0 +1,73 @@
+"""Loaded contact as a row of the result."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.contact.mesh_cycle import ContactPattern
+from dynamics.contact.root_course import RootCourse
+from dynamics.gear.pair import GearPair
+from rigdesign.results.loaded_contact import LoadedContact
+from rigdesign.results.units import MPA
+
+Array = NDArray[np.float64]
+MM, UM = 1e3, 1e6
+GEARS = ("pinion", "wheel")
+
+
+def loaded_contact_row(contact: LoadedContact) -> dict[str, Any]:
+    """Figures of the contact, pattern on the pinion flank, root stress of both gears over the rolling angle."""
+    cycle = contact.cycle
+    pair = cycle.points.pair
+    return {
+        "stage": contact.stage,
+        "torque_Nm": contact.torque,
+        "contact_ratio_geometric": pair.total_contact_ratio,
+        "contact_ratio_no_load": contact.unloaded_contact_ratio,
+        "contact_ratio": cycle.contact_ratio,
+        "largest_share": float(cycle.load_share.max()),
+        "early_contact": bool(cycle.early.any()),
+        "late_contact": bool(cycle.late.any()),
+        "transmission_error_um": UM * cycle.peak_to_peak,
+        "approach_um": UM * float(cycle.approach.mean()),
+        "mesh_stiffness_N_um": 1e-6 * float(cycle.tangent_stiffness.mean()),
+        "K_H_beta": cycle.face_load_factor,
+        "line_load_N_mm": 1e-3 * float(cycle.line_load.max()),
+        "flank_pressure_MPa": MPA * cycle.flank_pressure,
+        "edge_pressure_MPa": MPA * float(cycle.pressure[cycle.edge_contact].max(initial=0.0)),
+        "pattern": _pattern(cycle.pattern(0), pair),
+        "root_stress": {
+            gear: _root(course, pair.base_radii[index], -1.0 if index else 1.0)
+            for index, (gear, course) in enumerate(zip(GEARS, contact.roots, strict=True))
+        },
+    }
+
+
+def _pattern(pattern: ContactPattern, pair: GearPair) -> dict[str, Any]:
+    """Pressure on the pinion over face and rolling angle from the pitch point, where the flank is touched."""
+    path = pattern.path[:, None] - pattern.face * np.tan(pair.base_helix_angle)
+    touched = np.flatnonzero(pattern.touched.any(axis=1))
+    rows = slice(touched[0], touched[-1] + 1)
+    return {
+        "rolling_angle_deg": np.degrees(path[rows] / pair.base_radii[0]).tolist(),
+        "face_mm": (MM * pattern.face).tolist(),
+        "pressure_MPa": (MPA * np.where(pattern.edge, 0.0, pattern.pressure))[rows].tolist(),
+        "edge": pattern.edge[rows].tolist(),
+    }
+
+
+def _root(course: RootCourse, base: float, sense: float) -> dict[str, Any]:
+    """Highest stress of the fillet over the face, by the rolling angle of the gear from the pitch point."""
+    over_fillet = course.stress.max(axis=1)
+    angle = sense * np.degrees(course.path / base)
+    order = np.argsort(angle)
+    face = course.highest_at[2]
+    return {
+        "rolling_angle_deg": angle[order].tolist(),
+        "highest_MPa": (MPA * over_fillet.max(axis=1))[order].tolist(),
+        "mid_face_MPa": (MPA * over_fillet[:, len(course.face) // 2])[order].tolist(),
+        "largest_MPa": MPA * course.highest,
+        "at_face_mm": MM * float(course.face[face]),
+        "stress_ratio": course.stress_ratio,
+    }
