@@ -22,6 +22,7 @@ from rigdesign.case.fields import (
 )
 
 End = Literal["start", "end"]
+MeshStiffness = Literal["influence_numbers", "iso_6336_scaled", "weber_banaschek_0.8"]
 
 
 class SectionInput(Part):
@@ -144,6 +145,7 @@ class DrivetrainInput(Part):
     """How the test torque is locked into the loop."""
     torque_at: Text
     """Gear at which test torque and speed are counted, ``gearbox.gear``."""
-    mesh_stiffness: Literal["iso_6336_scaled", "weber_banaschek_0.8", "influence_numbers"] = "iso_6336_scaled"
-    """Analytic shape scaled to the mean of ISO 6336-1, or unscaled times 0.8; or finite-element influence numbers of
-    the teeth as drawn, whose gear bodies all pairs share (at fidelity quick as ``iso_6336_scaled``)."""
+    mesh_stiffness: MeshStiffness = "influence_numbers"
+    """Tooth model: finite-element influence numbers of the teeth as drawn on the gear bodies that all pairs share
+    (``iso_6336_scaled`` at fidelity quick), the analytic shape scaled to the mean of ISO 6336-1, or unscaled times
+    0.8."""

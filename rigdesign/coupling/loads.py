@@ -29,11 +29,12 @@ from dynamics.mesh.friction import (
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import PairStiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.coupling.tooth_springs import StiffnessKind, WarmMesh, springs_of, stiffness_kind
+from rigdesign.coupling.tooth_springs import WarmMesh, springs_of
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies
 from rigdesign.rig.model import Rig
@@ -55,11 +56,11 @@ class MeshModel:
 
 
 def mesh_models(
-    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, stiffness: StiffnessKind | None = None
+    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, stiffness: MeshStiffness | None = None
 ) -> tuple[MeshModel, ...]:
     """Warm gears and mesh laws of the whole rig.
 
-    stiffness : tooth model; that of the case when left out
+    stiffness : tooth model; that of the rig when left out
     """
     return tuple(mesh_model(rig, name, point, coupling_state, stiffness) for name in rig.mesh_names)
 
@@ -86,7 +87,7 @@ def mesh_model(
     name: str,
     point: OperatingPoint,
     coupling_state: CouplingState,
-    stiffness: StiffnessKind | None = None,
+    stiffness: MeshStiffness | None = None,
 ) -> MeshModel:
     """One warm mesh and its law; ``stiffness`` as in `mesh_models`."""
     box, mesh = rig.mesh(name)
@@ -113,7 +114,7 @@ def mesh_model(
         ),
         discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro)),
     )
-    shape, law = springs_of(rig, warm, stiffness_kind(rig, stiffness))
+    shape, law = springs_of(rig, warm, stiffness or rig.mesh_stiffness)
     law = law._replace(damping=mesh_damping(rig, name, law))
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
 

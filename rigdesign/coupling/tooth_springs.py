@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 
-from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.influence_law import ContactLines, ElasticPair, contact_lines, influence_law
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
@@ -14,10 +12,9 @@ from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosi
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import ToothInfluence
-
-StiffnessKind = Literal["iso_6336_scaled", "weber_banaschek_0.8", "influence_numbers"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,13 +35,7 @@ class WarmMesh:
     discretisation: ContactDiscretisation
 
 
-def stiffness_kind(rig: Rig, stated: StiffnessKind | None = None) -> StiffnessKind:
-    """Tooth model of the meshes; influence numbers are not asked for at fidelity quick."""
-    kind = stated or (rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else "iso_6336_scaled")
-    return "iso_6336_scaled" if kind == "influence_numbers" and rig.fidelity == "quick" else kind
-
-
-def springs_of(rig: Rig, mesh: WarmMesh, kind: StiffnessKind) -> tuple[PairStiffness, MeshLaw]:
+def springs_of(rig: Rig, mesh: WarmMesh, kind: MeshStiffness) -> tuple[PairStiffness, MeshLaw]:
     """Stiffness of one tooth pair over the path, and the mesh law, not yet damped."""
     box, name = rig.mesh(mesh.name)
     factor = box.meshes[name].stiffness_factor
@@ -63,7 +54,7 @@ def springs_of(rig: Rig, mesh: WarmMesh, kind: StiffnessKind) -> tuple[PairStiff
     return shape, law
 
 
-def _analytic(rig: Rig, mesh: WarmMesh, kind: StiffnessKind) -> PairStiffness:
+def _analytic(rig: Rig, mesh: WarmMesh, kind: MeshStiffness) -> PairStiffness:
     pair = mesh.pair
     shape = pair_stiffness(pair, mesh.torque / pair.base_radii[0] / pair.face_width)
     if kind != "iso_6336_scaled":
@@ -81,12 +72,14 @@ def _from_influence(rig: Rig, mesh: WarmMesh, factor: float) -> tuple[PairStiffn
     pair = mesh.pair
     cold = rig.pairs[mesh.name]
     law = influence_law(
-        ElasticPair(pair=pair, gears=_compliances(cold), force=mesh.torque / pair.base_radii[0]),
+        ElasticPair(
+            pair=pair, gears=rig.tooth_influence.compliances(cold), force=mesh.torque / pair.base_radii[0]
+        ),
         mesh.micro,
         position=mesh.position,
         dissipation=mesh.dissipation,
         discretisation=mesh.discretisation,
-        lines=_lines(cold, mesh.cold_micro, mesh.discretisation),
+        lines=_lines(rig.tooth_influence, cold, mesh.cold_micro, mesh.discretisation),
     )
     law = law._replace(
         stiffness=factor * law.stiffness,
@@ -103,15 +96,12 @@ def _from_influence(rig: Rig, mesh: WarmMesh, factor: float) -> tuple[PairStiffn
     return shape, law
 
 
-@lru_cache(maxsize=16)
-def _compliances(pair: GearPair) -> tuple[InterpolatedCompliance, InterpolatedCompliance]:
-    """Compliance of the cold gears of a pair as drawn."""
-    return ToothInfluence().compliances(pair)
-
-
 @lru_cache(maxsize=8)
 def _lines(
-    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], discretisation: ContactDiscretisation
+    influence: ToothInfluence,
+    pair: GearPair,
+    micro: tuple[Microgeometry, Microgeometry],
+    discretisation: ContactDiscretisation,
 ) -> ContactLines:
     """Contact lines of a cold pair: the displacements of its slices, the same at every temperature."""
-    return contact_lines(pair, _compliances(pair), micro, discretisation=discretisation)
+    return contact_lines(pair, influence.compliances(pair), micro, discretisation=discretisation)

@@ -375,7 +375,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "drivetrain.motor.ripple.*": _at(rig__drivetrain="alternating torque of the drive"),
     "drivetrain.bracing": _at(coupling__loads="how the torque is locked in: what is held while parts expand"),
     "drivetrain.torque_at": _at(rig__model="gear at which torque and speed of the schedule count"),
-    "drivetrain.mesh_stiffness": _at(coupling__tooth_springs="tooth model of the mesh law"),
+    "drivetrain.mesh_stiffness": _at(
+        rig__model="tooth model at the fidelity of the run", coupling__tooth_springs="mesh law from it"
+    ),
     "losses": _at(coupling__losses="which losses are computed"),
     "losses.chamber_density": _at(
         coupling__losses="windage and seal losses", coupling__boundary="films in oil mist"

@@ -4,6 +4,8 @@ A case is validated once when it is loaded. A setting replaces numbers of it tha
 a copy of the tree without validating the rest of the case again.
 """
 
+from dataclasses import replace
+
 from rigdesign.base.errors import UsageError
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
@@ -34,7 +36,7 @@ def rig_at(rig: Rig, setting: OperatingCondition) -> Rig:
     case = case_at(rig.case, setting)
     if case is rig.case:
         return rig
-    placed = Rig(case=case, fidelity=rig.fidelity, oils=rig.oils, materials=rig.materials, pairs=rig.pairs)
+    placed = replace(rig, case=case)
     return take_over(placed, rig, UNMOVED)
 
 

@@ -4,6 +4,7 @@ Root stress, root safety and flanks are solved again at the temperatures of the 
 directly, and warm teeth hardly matter; against scuffing and for the film teeth that get colder with less torque would
 help, so that what is found is on the safe side. Temperatures, clearances and bearing films are solved again through the
 coupling loop.
+Teeth of another width take the influence numbers of the stated ones over, as slices far from the ends have them.
 Checks that need the time run or the response over speed are left out.
 """
 
@@ -259,6 +260,9 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
     patterns = (*BY_LOADS, *BY_HEAT) if through_heat else BY_LOADS
     with solver_errors(case):
         rig = build_rig(case, stated.rig.fidelity)
+        rig = replace(
+            rig, tooth_influence=stated.rig.tooth_influence.for_widths_near(stated.rig.pairs.values())
+        )
         if not through_heat or same_housings(rig, stated.rig):
             take_over(rig, stated.rig, HOUSINGS)
         point = coupled_again if through_heat else _at_stated_temperatures

@@ -13,11 +13,11 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
+from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.coupling.tooth_springs import StiffnessKind
 from rigdesign.results.dynamics import DynamicFactorPoint
 from rigdesign.rig.model import Rig
 
@@ -33,7 +33,7 @@ HARDNESS = ("case_hardened", "nitrided", "through_hardened")
 """Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
 DEFAULT = RatingOptions()
 VARIANT: Final = "weber_banaschek_0.8"
-"""The other reading of the mesh stiffness, shown for comparison."""
+"""The other reading of the mesh stiffness beside that of ISO 6336-1; beside all others stands that of ISO."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,7 @@ def plan_curves(rig: Rig, warm: IterationResult, *, variants: bool = True) -> Cu
     works: dict[float | str, Callable[[], ResponseCurve]] = {
         torque: partial(solve, torque, grid(rig, *limits)) for torque, limits in speed_ranges(rig).items()
     }
-    shipped = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
-    other: StiffnessKind = "iso_6336_scaled" if shipped == VARIANT else VARIANT
+    other: MeshStiffness = VARIANT if rig.mesh_stiffness == "iso_6336_scaled" else "iso_6336_scaled"
     if variants and rig.fidelity != "quick":
         models = mesh_models(rig, warm.point, warm.coupling_state, other)
         own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)

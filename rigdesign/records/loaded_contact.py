@@ -4,7 +4,6 @@ All teeth alike, with their modifications; axes parallel. The dynamic loads are 
 not enter yet; K_Hbeta of the ratings is still that of the case.
 """
 
-from collections.abc import Iterator
 from math import radians
 
 from dynamics.contact.contact_ratio import unloaded_contact_ratio
@@ -19,8 +18,6 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.rig.model import Rig
 
-FIDELITIES = ("reference",)
-"""At which influence numbers are computed: half a minute a gear, once. The others have the analytic teeth alone."""
 ROOT = radians(15.0)
 """Least angle between fillet and tooth axis of the root: nearer to the flank the stress is that of the contact."""
 FINE = 1024
@@ -28,9 +25,9 @@ FINE = 1024
 
 
 def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | None:
-    """Contact of one mesh, by its number, at a held point; None without load and where the fidelity has none."""
+    """Contact of one mesh, by its number, at a held point; None without load and where the teeth are analytic."""
     response = point.last.response
-    if rig.fidelity not in FIDELITIES or response is None:
+    if rig.mesh_stiffness != "influence_numbers" or response is None:
         return None
     torque = float(response.mean[mesh])
     if abs(torque) < LEAST_TORQUE:
@@ -38,10 +35,8 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
     name, pair = rig.mesh_names[mesh], point.last.models[mesh].pair
     gap = PairGap.of_pair(pair, mesh_microgeometry(rig, name, pair))
     grid = FaceGrid.over(pair.face_width, default_positions(pair, gap_varies=True))
-    numbers, compliances = (
-        rig.tooth_influence.of_pair(rig.pairs[name]),
-        rig.tooth_influence.compliances(rig.pairs[name]),
-    )
+    cold = rig.pairs[name]
+    numbers, compliances = rig.tooth_influence.of_pair(cold), rig.tooth_influence.compliances(cold)
     loaded = LoadedMesh(
         pair=pair, gears=compliances, grid=grid, gap=modified_gap(gap), edges=EdgeModel(softer=False)
     )
@@ -56,9 +51,3 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
             root_course(cycle, numbers[1], compliances[1], 1).within(numbers[1].fillet.tangent >= ROOT),
         ),
     )
-
-
-def missing_numbers(rig: Rig) -> Iterator[str]:
-    """Meshes whose influence numbers are wanted and not stored."""
-    if rig.fidelity in FIDELITIES and rig.drivetrain is not None:
-        yield from (name for name in rig.mesh_names if not rig.tooth_influence.stored(rig.pairs[name]))

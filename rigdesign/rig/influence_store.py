@@ -32,7 +32,7 @@ SEAL = 64
 """Length of the hash at the beginning of a file [bytes]."""
 
 
-def _silent(message: str) -> None:
+def silent(message: str) -> None:
     """Say nothing."""
 
 
@@ -47,7 +47,7 @@ class InfluenceStore:
         """In RIGDESIGN_CACHE_DIR or the user's cache folder."""
         return cls(cache_folder() / "influence")
 
-    def numbers(self, model: GearModel, say: Progress = _silent) -> InfluenceNumbers:
+    def numbers(self, model: GearModel, say: Progress = silent) -> InfluenceNumbers:
         """Numbers of a gear, stored or computed now and stored.
 
         say : called before they are computed, and for a file that cannot be used
@@ -60,10 +60,14 @@ class InfluenceStore:
             say(f"{file} is damaged or of another gear: its influence numbers are computed again")
         gear = model.form.gear
         say(f"influence numbers of the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm")
+        return self.compute(model)
+
+    def compute(self, model: GearModel) -> InfluenceNumbers:
+        """Numbers of a gear, computed now and stored."""
         made = influence_numbers(model)
         # a cache that cannot be written costs time only
         with suppress(OSError):
-            _write(file, identity(model), made)
+            _write(self.file(model), identity(model), made)
         return made
 
     def file(self, model: GearModel) -> Path:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
@@ -12,6 +12,7 @@ from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.circuit_parts import oil_circuits
+from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
@@ -45,6 +46,8 @@ class Rig:
     """Everything that stays the same over operating points and iterations.
 
     pairs : gear pair as drawn, by ``gearbox.mesh``; oils, materials : by the name the case uses
+    mesh_stiffness : tooth model of the meshes; that of the case, analytic at fidelity quick
+    tooth_influence : influence numbers of the cold gears, from the store or computed when they are asked for
     coarsening : of the loop, for estimates of its discretisation error
     """
 
@@ -53,6 +56,8 @@ class Rig:
     oils: Mapping[str, Oil]
     materials: Mapping[str, Material]
     pairs: Mapping[str, GearPair]
+    mesh_stiffness: MeshStiffness = "iso_6336_scaled"
+    tooth_influence: ToothInfluence = field(default_factory=ToothInfluence)
     coarsening: Coarsening = AS_RULED
 
     @cached_property
@@ -195,11 +200,6 @@ class Rig:
         return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
 
     @cached_property
-    def tooth_influence(self) -> ToothInfluence:
-        """Influence numbers of the cold gears, from the store or computed when they are asked for."""
-        return ToothInfluence()
-
-    @cached_property
     def topographies(self) -> Mapping[str, FlankTopographies]:
         """Measured front and back flanks by ``gearbox.gear`` of the gears that have any."""
         return flank_topographies(self.case, self.pairs)
@@ -336,6 +336,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         oils=oils,
         materials=materials,
         pairs=pairs,
+        mesh_stiffness=_mesh_stiffness(case, fidelity),
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
     if rig.heat_parts.machines:
@@ -343,6 +344,12 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         refuse_uncovered_speeds(rig.heat_parts.machines, speeds, str(case.path))
     _ = rig.topographies, rig.strain_gauges  # now: what does not fit the teeth is a fault of the case
     return rig
+
+
+def _mesh_stiffness(case: Case, fidelity: Fidelity) -> MeshStiffness:
+    """Tooth model of a case: finite elements are not asked for at fidelity quick, nor where losses are given."""
+    stated = "iso_6336_scaled" if case.drivetrain is None else case.drivetrain.mesh_stiffness
+    return "iso_6336_scaled" if stated == "influence_numbers" and fidelity == "quick" else stated
 
 
 def _control_mesh(case: Case) -> str:

@@ -26,7 +26,6 @@ from rigdesign.records.dynamics import dynamic_loads
 from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, fields_of
-from rigdesign.records.loaded_contact import missing_numbers
 from rigdesign.records.rolling_bearings import rolling_bearings
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.check import Check, Checks
@@ -87,6 +86,9 @@ def solve_case(
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
+    if wanted.mesh_stiffness == "influence_numbers":
+        wanted.tooth_influence.prepare(wanted.pairs.values(), say)
+        lap("influence_numbers")
     rig = looping_rig(wanted)
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
@@ -123,10 +125,6 @@ def solve_case(
     say("errors of slices and shaft elements")
     solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
     lap("load_errors")
-    for name in missing_numbers(wanted):
-        say(f"influence numbers of the gears of {name}: computed once, then kept")
-        wanted.tooth_influence.of_pair(wanted.pairs[name])
-    lap("influence_numbers")
     say("assembling the result")
     return solved
 

@@ -11,10 +11,10 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
+from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_microgeometry, mesh_models, signed_torque
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.coupling.tooth_springs import StiffnessKind
 from rigdesign.rig.model import Rig
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
 
@@ -76,13 +76,13 @@ class SpeedSweep:
         return self.speed[places]
 
 
-def simulation_models(prototype: Prototype, stiffness: StiffnessKind | None = None) -> tuple[MeshModel, ...]:
+def simulation_models(prototype: Prototype, stiffness: MeshStiffness | None = None) -> tuple[MeshModel, ...]:
     """Meshes of P2's simulation: as drawn, 12,000 rpm, 180 N m; ``stiffness`` as in ``mesh_models``."""
     rig, point = _point(prototype)
     return mesh_models(rig, point, initial_state(rig, point), stiffness)
 
 
-def simulation_laws(prototype: Prototype, stiffness: StiffnessKind | None = None) -> list[MeshLaw]:
+def simulation_laws(prototype: Prototype, stiffness: MeshStiffness | None = None) -> list[MeshLaw]:
     """The laws of these meshes."""
     return [model.law for model in simulation_models(prototype, stiffness)]
 

@@ -1,6 +1,6 @@
 """Mesh laws of a rig from influence numbers: asked for by the case, of the cold gears, scaled as the case says."""
 
-from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -8,40 +8,42 @@ import pytest
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.static_cycle import static_cycle
 from rigdesign.case.loader import load_case
-from rigdesign.coupling import tooth_springs
+from rigdesign.case.model import Case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.tooth_influence import Compliances, ToothInfluence
 from tests.builders.loaded_mesh import influence_of
 
 CASE, MESH, TORQUE = load_case("cases/fzg"), "test.main", 302.0
 
 
-@pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[GearPair]]:
+@dataclass(frozen=True, eq=False)
+class AnalyticTeeth(ToothInfluence):
     """Analytic influence numbers in place of finite elements; the pairs they are asked for."""
-    pairs = []
 
-    def compliances(pair: GearPair) -> tuple[object, object]:
-        pairs.append(pair)
+    asked: list[GearPair] = field(default_factory=list)
+
+    def compliances(self, pair: GearPair) -> Compliances:
+        self.asked.append(pair)
         return influence_of(pair, 0, neighbour=0.4), influence_of(pair, 1, neighbour=0.4)
 
-    monkeypatch.setattr(tooth_springs, "_compliances", compliances)
-    tooth_springs._lines.cache_clear()
-    yield pairs
-    tooth_springs._lines.cache_clear()
 
-
-def model(rig: Rig, kind: tooth_springs.StiffnessKind | None = "influence_numbers") -> MeshModel:
+def model(rig: Rig) -> MeshModel:
     point = OperatingPoint(stage="test", speed=150.0, torque=TORQUE)
-    return mesh_model(rig, MESH, point, initial_state(rig, point), kind)
+    return mesh_model(rig, MESH, point, initial_state(rig, point))
 
 
-def test_pairs_share_the_bodies_of_the_cold_gears(asked: list[GearPair]) -> None:
-    rig = build_rig(CASE, "standard")
+def standard(case: Case = CASE) -> Rig:
+    return replace(build_rig(case, "standard"), tooth_influence=AnalyticTeeth())
+
+
+def test_pairs_share_the_bodies_of_the_cold_gears() -> None:
+    rig = standard()
     found = model(rig)
-    assert set(asked) == {rig.pairs[MESH]}
+    assert isinstance(rig.tooth_influence, AnalyticTeeth)
+    assert set(rig.tooth_influence.asked) == {rig.pairs[MESH]}
     assert found.law.body_compliance > 0.0
     force = TORQUE / found.pair.base_radii[0]
     cycle = static_cycle(found.law._replace(damping=0.0), force)
@@ -49,8 +51,8 @@ def test_pairs_share_the_bodies_of_the_cold_gears(asked: list[GearPair]) -> None
     assert found.law.damping > 0.0
 
 
-def test_stiffness_of_one_pair_has_the_whole_body_in_series(asked: list[GearPair]) -> None:
-    found = model(build_rig(CASE, "standard"))
+def test_stiffness_of_one_pair_has_the_whole_body_in_series() -> None:
+    found = model(standard())
     law, pair = found.law, found.pair
     middle = 0.5 * (pair.path.start + pair.path.end)
     places = law.path_start + law.path_step * np.arange(law.stiffness.shape[1])
@@ -59,9 +61,9 @@ def test_stiffness_of_one_pair_has_the_whole_body_in_series(asked: list[GearPair
     assert found.stiffness.at(np.array([middle]))[0] == pytest.approx(alone, rel=1e-6)
 
 
-def test_stiffness_factor_takes_teeth_and_bodies(asked: list[GearPair]) -> None:
+def test_stiffness_factor_takes_teeth_and_bodies() -> None:
     one, stiff = (
-        model(build_rig(CASE.with_value("gearboxes.test.meshes.main.stiffness_factor", factor), "standard"))
+        model(standard(CASE.with_value("gearboxes.test.meshes.main.stiffness_factor", factor)))
         for factor in (1.0, 1.25)
     )
     np.testing.assert_allclose(stiff.law.stiffness, 1.25 * one.law.stiffness)
@@ -75,9 +77,10 @@ def test_stiffness_factor_takes_teeth_and_bodies(asked: list[GearPair]) -> None:
         ("influence_numbers", "standard", "influence_numbers"),
         ("influence_numbers", "quick", "iso_6336_scaled"),
         ("weber_banaschek_0.8", "quick", "weber_banaschek_0.8"),
-        (None, "standard", "iso_6336_scaled"),
+        (None, "standard", "influence_numbers"),
+        (None, "quick", "iso_6336_scaled"),
     ],
 )
 def test_quick_fidelity_keeps_the_analytic_teeth(stated: str | None, fidelity: str, kind: str) -> None:
     case = CASE if stated is None else CASE.with_value("drivetrain.mesh_stiffness", stated)
-    assert tooth_springs.stiffness_kind(build_rig(case, fidelity)) == kind  # type: ignore[arg-type]
+    assert build_rig(case, fidelity).mesh_stiffness == kind  # type: ignore[arg-type]

@@ -30,11 +30,14 @@ def coarse(model: GearModel) -> GearModel:
 def contact(folder: str) -> LoadedContact:
     """Of the test gears at 180 N m."""
     rig, result = base()
-    rig = replace(rig, fidelity="reference")
+    rig = replace(
+        rig,
+        mesh_stiffness="influence_numbers",
+        tooth_influence=tooth_influence.ToothInfluence(InfluenceStore(folder)),
+    )
     whole = tooth_influence.gear_model
     tooth_influence.gear_model = lambda pair, index: coarse(whole(pair, index))
     try:
-        rig.__dict__["tooth_influence"] = tooth_influence.ToothInfluence(InfluenceStore(folder))
         found = loaded_contact(rig, result, 0)
     finally:
         tooth_influence.gear_model = whole
