@@ -44,6 +44,10 @@ class FlankCompliance(Protocol):
     def excess(self, roll: Array) -> Array:
         """Addition of the tooth to the logarithm of the local approach of a half space, like ``roll`` [-]."""
 
+    @property
+    def edge_counted(self) -> bool:
+        """Whether `excess` holds what the tip edge nearby adds."""
+
 
 class InfluenceNumbers(Protocol):
     """Influence numbers of one gear; see `InterpolatedCompliance`."""
@@ -81,6 +85,7 @@ class InterpolatedCompliance:
     axis_depth : (n_p,) depth to which the local approach counts [m]
     local_excess : (n_p,) addition of the tooth to its logarithm [-]
     beyond : displacement of all teeth further away per force, the share of the body [m/N]
+    edge_counted : the tip edge is in ``local_excess``, as finite elements have it
 
     The shape functions of load and displacement are the same, so that the matrix is symmetric and positive where the
     influence numbers are. Raises DynamicsInputError for arrays that do not fit each other or break reciprocity.
@@ -92,6 +97,7 @@ class InterpolatedCompliance:
     axis_depth: Array
     local_excess: Array
     beyond: float = 0.0
+    edge_counted: bool = True
 
     def __post_init__(self) -> None:
         n_p, n_f = len(self.profile), len(self.face)

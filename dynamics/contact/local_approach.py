@@ -32,7 +32,7 @@ LEAST_EDGE = 0.02
 class EdgeModel:
     """How tip edges act on the local approach.
 
-    softer : the wedge between flank and tip is softer than a half space
+    softer : the wedge between flank and tip is softer than a half space, where the compliance does not count it
     least_radius : of an edge without rounding [m]; None: 0.02 normal modules
     """
 
@@ -150,7 +150,7 @@ class LocalModel:
 
     def _edge(self, index: int, place: ContactPlace, depth: Array, half_width: Array) -> Array:
         """Addition of the tip edge of gear ``index`` to the logarithm of the half space (n,) [-]."""
-        if not self.edges.softer:
+        if self.gears[index].edge_counted or not self.edges.softer:
             return np.zeros_like(depth)
         tip, base = self.tips[index], self.pair.base_radii[index]
         factor = wedge_factor(0.5 * pi + atan(tip.roll / base))

@@ -96,3 +96,8 @@ class SliceCompliance:
     def excess(self, roll: Array) -> Array:
         """None: Weber's half space is all of the local approach."""
         return np.zeros_like(roll)
+
+    @property
+    def edge_counted(self) -> bool:
+        """Not in the half space."""
+        return False

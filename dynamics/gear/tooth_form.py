@@ -229,6 +229,11 @@ class ToothForm:
         point, normal = self.flank_point(roll_length), self.flank_normal(roll_length)
         return np.asarray(point[..., 0] / normal[..., 0])
 
+    def axis_point(self, roll_length: float | Array) -> Array:
+        """(..., 2) point of the tooth axis on the normal of the flank at a roll length [m]."""
+        depth = self.axis_depth(roll_length)
+        return np.asarray(self.flank_point(roll_length) - depth[..., None] * self.flank_normal(roll_length))
+
     # -- tip --------------------------------------------------------------------------------------------------
     @property
     def tip_edge_points(self) -> int:

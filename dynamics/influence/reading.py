@@ -1,6 +1,7 @@
 """Loads on the flank of a gear segment and what is read of it, as rows that multiply its displacements."""
 
 from collections.abc import Mapping
+from functools import cached_property
 from math import atan, cos, pi, sin
 from typing import TypeVar
 
@@ -58,8 +59,7 @@ class SegmentReading:
         height = np.hypot(*axis.points.T)
         found = []
         for roll in self.rolls.tolist():
-            point = self._form.flank_point(roll) - self._form.axis_depth(roll) * self._form.flank_normal(roll)
-            place = _element_at(height, float(point[1]))
+            place = _element_at(height, float(self._form.axis_point(roll)[1]))
             found += [displacement_row(axis, place, hat, self._inwards(roll, tooth)) for hat in self._hats]
         return found
 
@@ -77,7 +77,7 @@ class SegmentReading:
         found = []
         for roll in self.rolls.tolist():
             normal = self._inwards(roll, tooth)
-            point = self._form.flank_point(roll) - self._form.axis_depth(roll) * self._form.flank_normal(roll)
+            point = self._form.axis_point(roll)
             arm = turned(point[None, :], np.array([tooth * self._pitch]))[0] - middle
             # the foot turns clockwise by the difference of its ends over its length
             lever = (normal[0] * arm[1] - normal[1] * arm[0]) / np.linalg.norm(chord)
@@ -108,20 +108,21 @@ class SegmentReading:
     def root(self, tooth: int, side: int) -> list[Entry]:
         """Stress at the points of a fillet over the face; that of a neighbour between its own points."""
         strip = self._strip(self._segment.section.fillets, (tooth, side))
-        own = _gauss_points(strip.n_elements)
+        own = [
+            [self._stress(strip, place, position) for position in self._positions]
+            for place in _stress_points(strip.n_elements)
+        ]
         if tooth == 0:
-            return [self._stress(strip, place, position) for place in own for position in self._positions]
+            return [entry for place in own for entry in place]
         arcs = _arcs(strip)[1]
         found = []
         for arc in self.fillet.arc.tolist():
             at = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
             share = float(np.clip((arc - arcs[at - 1]) / (arcs[at] - arcs[at - 1]), 0.0, 1.0))
-            for position in self._positions:
-                pair = [self._stress(strip, own[k], position) for k in (at - 1, at)]
-                found.append(_mixed(pair, share))
+            found += [_mixed(pair, share) for pair in zip(own[at - 1], own[at], strict=True)]
         return found
 
-    @property
+    @cached_property
     def fillet(self) -> RootFillet:
         """Root points of tooth 0 under its loaded flank."""
         strip = self._strip(self._segment.section.fillets, (0, 1))
@@ -129,19 +130,16 @@ class SegmentReading:
         return RootFillet(point=points, arc=arcs, tangent=tangents)
 
 
-def _gauss_points(n_elements: int) -> list[tuple[int, float]]:
+def _stress_points(n_elements: int) -> list[tuple[int, float]]:
     return [(element, along) for element in range(n_elements) for along in BEST]
 
 
 def _arcs(strip: Strip) -> tuple[Array, Array, Array]:
     """Points (n, 2), arc lengths (n,) and angles (n,) against the tooth axis of the stress points of a fillet."""
     fine = np.linspace(0.0, 1.0, 65)
-    shape = np.column_stack(
-        [(1.0 - fine) * (1.0 - 2.0 * fine), 4.0 * fine * (1.0 - fine), fine * (2.0 * fine - 1.0)]
-    )
     points, arcs, tangents, start = [], [], [], 0.0
     for element in range(strip.n_elements):
-        course = shape @ strip.points[2 * element : 2 * element + 3]
+        course = strip.at(element, fine)
         length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(course, axis=0).T))])
         angle = np.abs(np.arctan2(*np.gradient(course, axis=0).T))
         for along in BEST:
@@ -152,7 +150,7 @@ def _arcs(strip: Strip) -> tuple[Array, Array, Array]:
     return np.array(points), np.array(arcs), np.array(tangents)
 
 
-def _mixed(pair: list[Entry], share: float) -> Entry:
+def _mixed(pair: tuple[Entry, Entry], share: float) -> Entry:
     (low, low_weight), (high, high_weight) = pair
     return _joined((low, (1.0 - share) * low_weight), (high, share * high_weight))
 

@@ -30,7 +30,7 @@ class Strip:
     """Strip over a curve of the section.
 
     curve : nodes of the section along it, corners and middles in turn
-    face : (n_face,) positions of the hat functions over the face, every plane among them [m]
+    face : (n_face,) positions of the hat functions over the face [m]
     """
 
     segment: GearSegment
@@ -47,10 +47,12 @@ class Strip:
         """(n, 2) points of the curve in the section [m]."""
         return self.segment.section.points[self.curve]
 
-    def at(self, element: int, along: float) -> Array:
-        """(2,) point in the section at a place along an element, 0 to 1 [m]."""
-        shape = np.array(
-            [(1.0 - along) * (1.0 - 2.0 * along), 4.0 * along * (1.0 - along), along * (2.0 * along - 1.0)]
+    def at(self, element: int, along: float | Array) -> Array:
+        """Points (..., 2) in the section at places (...,) along an element, 0 to 1 [m]."""
+        place = np.asarray(along)
+        shape = np.stack(
+            [(1.0 - place) * (1.0 - 2.0 * place), 4.0 * place * (1.0 - place), place * (2.0 * place - 1.0)],
+            axis=-1,
         )
         return np.asarray(shape @ self.points[2 * element : 2 * element + 3])
 

@@ -10,7 +10,6 @@ from dynamics.contact.contact_ratio import unloaded_contact_ratio
 from dynamics.contact.face import FaceGrid, default_positions
 from dynamics.contact.flank_gap import modified_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.local_approach import EdgeModel
 from dynamics.contact.root_course import root_course
 from dynamics.mesh.pair_gap import PairGap
 from rigdesign.coupling.loads import LEAST_TORQUE, mesh_microgeometry
@@ -37,9 +36,7 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
     grid = FaceGrid.over(pair.face_width, default_positions(pair, gap_varies=True))
     cold = rig.pairs[name]
     numbers, compliances = rig.tooth_influence.of_pair(cold), rig.tooth_influence.compliances(cold)
-    loaded = LoadedMesh(
-        pair=pair, gears=compliances, grid=grid, gap=modified_gap(gap), edges=EdgeModel(softer=False)
-    )
+    loaded = LoadedMesh(pair=pair, gears=compliances, grid=grid, gap=modified_gap(gap))
     cycle = loaded.cycle(abs(torque) / pair.base_radii[0])
     return LoadedContact(
         stage=point.point.stage,

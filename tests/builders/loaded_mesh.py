@@ -79,6 +79,7 @@ def influence_of(
         deflection={0: own, 1: next_one, -1: next_one.T},
         axis_depth=slices.depth(profile),
         local_excess=np.zeros(n_profile),
+        edge_counted=False,
     )
 
 

@@ -15,7 +15,6 @@ from threadpoolctl import threadpool_limits
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.local_approach import EdgeModel
 from rigdesign.case.loader import load_case
 from rigdesign.rig.influence_store import InfluenceStore
 from rigdesign.rig.model import build_rig
@@ -56,9 +55,7 @@ def test_reference_gear(tmp_path: Path):
         InterpolatedCompliance.of(again.reversed_face(), pair.base_helix_angle),
         InterpolatedCompliance.of(store.numbers(gear_model(pair, 1)), pair.base_helix_angle),
     )
-    mesh = LoadedMesh(
-        pair=pair, gears=gears, grid=FaceGrid.over(pair.face_width, 11), edges=EdgeModel(softer=False)
-    )
+    mesh = LoadedMesh(pair=pair, gears=gears, grid=FaceGrid.over(pair.face_width, 11))
     force = 180.0 / pair.base_radii[0]
     with threadpool_limits(1):
         mesh.cycle(force)

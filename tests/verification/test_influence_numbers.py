@@ -19,7 +19,6 @@ from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.local_approach import EdgeModel
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence import build, local_part
@@ -242,7 +241,6 @@ def loaded(name):
         grid=FaceGrid.over(case.width, 1),
         gap=flank_gap(PairGap.of_pair(pair, case.micro)),
         n_positions=96,
-        edges=EdgeModel(softer=False),  # the tip edge is in the local addition of the numbers
     )
     return mesh.cycle(case.force)
 

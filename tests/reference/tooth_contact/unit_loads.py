@@ -118,7 +118,7 @@ def _normal(section: _Section, roll: float, tooth: int) -> Array:
 
 def _axis_point(section: _Section, roll: float, tooth: int) -> Array:
     form = section.form
-    point = form.flank_point(roll) - form.axis_depth(roll) * form.flank_normal(roll)
+    point = form.axis_point(roll)
     return _turned(point * MM, 2.0 * np.pi * tooth / form.gear.teeth - 0.5 * np.pi)
 
 

@@ -61,7 +61,7 @@ def test_flank_is_the_involute(gear):
     assert points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0] == pytest.approx(-gear.base_radius)
     step = form.flank_point(roll + 1e-9) - points
     assert np.abs(np.einsum("nd,nd->n", step, normals)).max() < 1e-15
-    feet = points - form.axis_depth(roll)[:, None] * normals
+    feet = form.axis_point(roll)
     assert feet[:, 0] == pytest.approx(0.0, abs=1e-15)
     assert np.all(form.axis_depth(roll) > 0.0)
 
