@@ -38,4 +38,6 @@ def unloaded_contact_ratio(points: ContactPoints, separation: float = TOUCHING) 
     Flanks with crowning hand over from pair to pair, which is a contact ratio of 1.
     """
     gap = points.gap.min(axis=2)
-    return contact_ratio_of(separation - (gap - gap.min(axis=1, keepdims=True)))
+    nearest, second = np.partition(gap, 1, axis=1)[:, :2].T[:, :, None]
+    # against the nearest other pair: a hand-over crosses zero for both at one place
+    return contact_ratio_of(separation + np.where(gap > nearest, nearest, second) - gap)

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.influence.elastic_segment import solve_segment
+from dynamics.influence.gear_body import TEETH
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.local_part import local_excess
 from dynamics.influence.numbers import InfluenceNumbers
 from dynamics.influence.reading import SegmentReading
-from dynamics.influence.section import TEETH, gear_section
+from dynamics.influence.section import gear_section
 from dynamics.influence.segment import GearSegment
 from dynamics.influence.strips import rows
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence.elastic_segment import Elastic
-from dynamics.influence.section import STANDARD, GearBody, SectionDivision
+from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
 
 Array = NDArray[np.float64]
 FACE_POSITIONS = 11

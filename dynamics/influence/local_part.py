@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.influence.elastic_segment import Elastic, solve_segment
+from dynamics.influence.gear_body import SectionDivision
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.reading import SegmentReading
-from dynamics.influence.section import SectionDivision, gear_section
+from dynamics.influence.section import gear_section
 from dynamics.influence.segment import GearSegment
 from dynamics.influence.strips import rows
 

@@ -8,9 +8,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.influence.gear_body import TEETH
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import RootFillet
-from dynamics.influence.section import TEETH
 from dynamics.influence.segment import GearSegment, turned
 from dynamics.influence.strips import BEST, Entry, IndexArray, Strip, displacement_row, stress_row
 

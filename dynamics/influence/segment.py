@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.influence.section import GearBody, Section
+from dynamics.influence.gear_body import GearBody
+from dynamics.influence.section import Section
 
 Array = NDArray[np.float64]
 IndexArray = NDArray[np.int32]

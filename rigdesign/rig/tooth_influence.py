@@ -9,9 +9,9 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import PairGeometry
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence.elastic_segment import Elastic
+from dynamics.influence.gear_body import GearBody
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
-from dynamics.influence.section import GearBody
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.rig.influence_store import InfluenceStore, Progress, silent
 

@@ -10,9 +10,9 @@ from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.points import FlankGap, no_gap
 from dynamics.gear.pair import GearPair
 from dynamics.influence.build import influence_numbers
+from dynamics.influence.gear_body import SectionDivision
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
-from dynamics.influence.section import SectionDivision
 from rigdesign.rig.tooth_influence import gear_model
 
 COARSE = SectionDivision(profile=5, thickness=2, fillet=4, depth=2)

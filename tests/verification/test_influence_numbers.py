@@ -23,8 +23,8 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence import build, local_part
 from dynamics.influence.elastic_segment import Elastic
+from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
 from dynamics.influence.gear_model import GearModel
-from dynamics.influence.section import STANDARD, GearBody, SectionDivision
 from dynamics.mesh.pair_gap import PairGap
 from dynamics.rating.root_stress import root_influence
 from tests.builders.loaded_mesh import fzg_c

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from dynamics.influence.elastic_segment import solve_segment
+from dynamics.influence.gear_body import TEETH
 from dynamics.influence.reading import SegmentReading
-from dynamics.influence.section import TEETH, gear_section
+from dynamics.influence.section import gear_section
 from dynamics.influence.segment import GearSegment, turned
 from dynamics.influence.strips import rows
 from tests.builders.influence import STEEL, small_model

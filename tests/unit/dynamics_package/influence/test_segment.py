@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from dynamics.errors import DynamicsInputError
-from dynamics.influence.section import GearBody, gear_section
+from dynamics.influence.gear_body import GearBody
+from dynamics.influence.section import gear_section
 from dynamics.influence.segment import GearSegment
 from tests.builders.influence import COARSE, small_model
 from tests.unit.dynamics_package.influence.test_section import area

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.influence.section import GearBody
+from dynamics.influence.gear_body import GearBody
 from rigdesign.rig import influence_store
 from rigdesign.rig.influence_store import InfluenceStore, identity
 from rigdesign.rig.tooth_influence import ToothInfluence, gear_model
