@@ -184,7 +184,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__tooth_influence="outline of the fillet in the influence numbers",
     ),
     "gearboxes.*.meshes.*.rack.protuberance_angle": _at(
-        rig__tooth_influence="outline of the fillet in the influence numbers"
+        rig__gears="outline of the fillet, of which the active flank begins at its end",
+        rig__tooth_influence="outline of the fillet in the influence numbers",
     ),
     "gearboxes.*.oil": _at(rig__oil_supply="oil that is fed", coupling__oil=_OIL_FLOW),
     "gearboxes.*.oil.oil": _at(
