@@ -234,6 +234,12 @@ class GearMesh(Part):
     """Helix angle at the reference cylinder, without sign; zero for spur gears."""
     centre_distance: Size
     """Working distance of the axes, as drawn."""
+    axis_inclination: Deviation = 0.0
+    """Deviation of the axes as made, in their common plane, over the narrower face width; positive where they open
+    towards the rear. What the warm housing adds is computed."""
+    axis_skew: Deviation = 0.0
+    """The same across that plane: positive where the axis of the wheel, seen from the front, turns clockwise about that
+    of the pinion towards the rear. With ``rotation`` of the gearbox it says which flanks it parts there."""
     rack: RackInput = RackInput()
     """Basic rack of both gears."""
     profile_shift_split: Literal["equal"] | None = None

@@ -166,6 +166,13 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.meshes.*.tooth_offset": _at(coupling__loads="which teeth meet"),
     "gearboxes.*.meshes.*.phase": _at(coupling__loads="phase of the mesh against the others of the loop"),
+    **{
+        f"gearboxes.*.meshes.*.{key}": _at(
+            coupling__alignment="deviation of the axes, with that of the warm housing",
+            records__contact_gap="gap over the face in the loaded contact",
+        )
+        for key in ("axis_inclination", "axis_skew")
+    },
     "gearboxes.*.meshes.*.application_factor": _at(
         records__gear_loads="K_A of the ratings of root and flank",
         records__curves="load of K_V by ISO 6336-1",

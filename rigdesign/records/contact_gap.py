@@ -12,25 +12,24 @@ x by their inclination along e and by their skew along x cross e, the wheel agai
 The face position z is positive at the end that comes into mesh last. A right-hand tooth lies further on in the sense
 of rotation about +x at larger x: a right-hand pinion that turns about +x (sigma = 1) comes into mesh first at the
 rear, and z = -x; in general z = -sigma h x with h = 1 for a right-hand pinion and -1 for a left-hand one. Spur gears
-have z = x. Derived here; of the housing's expansion only the bores move the axes: clearances of the bearings and
-bending of the shafts are not in it.
+have z = x. Derived here. The axes stand as made (``axis_inclination``, ``axis_skew``) and are moved by the bores of the
+warm housing; clearances of the bearings and bending of the shafts are not in it.
 """
 
 from dataclasses import dataclass
 
 from dynamics.contact.flank_gap import face_sense, modified_gap
 from dynamics.contact.points import FlankGap
-from dynamics.flank.axes import PARALLEL, AxisMisalignment
+from dynamics.flank.axes import AxisMisalignment
 from dynamics.flank.field import Flank
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.pair_gap import PairGap
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.coupling.expansion import axes_of
+from rigdesign.coupling.alignment import AxisAngles, axis_angles
 from rigdesign.coupling.loads import mesh_microgeometry
 from rigdesign.coupling.loop import PointResult
 from rigdesign.rig.model import Rig
-from thermal.expansion.clearances import CentreDistance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,19 +72,14 @@ def held_flanks(rig: Rig, point: PointResult, mesh: int) -> HeldFlanks:
 
 
 def warm_axes(rig: Rig, point: PointResult, mesh: int) -> AxisMisalignment:
-    """Misalignment of a mesh by the expansion of its housing; parallel where that is not computed."""
-    name = rig.mesh_names[mesh]
-    box_name, own = name.split(".")
-    expansion = point.last.expansion.get(box_name)
-    if expansion is None:
-        return PARALLEL
-    box = rig.case.gearboxes[box_name]
-    entry = box.meshes[own]
-    shafts = box.gears[entry.pinion].shaft, box.gears[entry.wheel].shaft
-    return misalignment(box, own, axes_of(rig, box_name, expansion.deformed, shafts))
+    """Misalignment of a mesh as made and by the expansion of its housing, where that is computed."""
+    box, own = rig.mesh_names[mesh].split(".")
+    expansion = point.last.expansion.get(box)
+    shape = None if expansion is None else expansion.deformed
+    return misalignment(rig.case.gearboxes[box], own, axis_angles(rig, box, own, shape))
 
 
-def misalignment(box: Gearbox, mesh: str, axes: CentreDistance) -> AxisMisalignment:
+def misalignment(box: Gearbox, mesh: str, axes: AxisAngles) -> AxisMisalignment:
     """Axes of a mesh of a housing, counted over x from front to rear, over z of its face."""
     last = last_end(box, mesh)
     return AxisMisalignment(

@@ -19,7 +19,7 @@ class LoadedContact:
     flank: Flank
     """Which flanks carry."""
     axes: AxisMisalignment
-    """Of the warm housing, over z of the face."""
+    """As made and of the warm housing, over z of the face."""
     cycle: MeshCycle
     unloaded_contact_ratio: float
     """In the limit of no load, modifications included [-]."""

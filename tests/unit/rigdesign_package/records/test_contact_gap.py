@@ -10,11 +10,11 @@ import pytest
 from dynamics.flank.axes import PARALLEL
 from rigdesign.case import load_case
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.coupling.alignment import AxisAngles, axis_deviation
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.contact_gap import held_flanks, last_end, misalignment, pinion_sense, warm_axes
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base
-from thermal.expansion.clearances import CentreDistance
 
 Rotation = Literal["clockwise", "anticlockwise"]
 Hand = Literal["right", "left"]
@@ -30,8 +30,8 @@ def box_with(name: str = "reference", rotation: Rotation = "clockwise", hand: Ha
     return box.model_copy(update={"rotation": rotation, "gears": gears, "meshes": single})
 
 
-def axes(inclination: float = 0.0, skew: float = 0.0) -> CentreDistance:
-    return CentreDistance(gear_a="a", gear_b="b", undeformed=0.1, hot=0.1, inclination=inclination, skew=skew)
+def axes(inclination: float = 0.0, skew: float = 0.0) -> AxisAngles:
+    return AxisAngles(inclination=inclination, skew=skew)
 
 
 @pytest.mark.parametrize("rotation", ["clockwise", "anticlockwise"])
@@ -103,7 +103,8 @@ def test_held_mesh_takes_the_axes_of_its_warm_housing_and_the_flanks_that_carry(
     held = held_flanks(rig, result, 0)
     shape = result.last.expansion["test"].deformed.centre_distances[0]
     assert held.flank == "front" and held.face_sense == 1.0
-    assert held.axes == misalignment(rig.case.gearboxes["test"], "main", shape)
+    warm = AxisAngles(inclination=shape.inclination, skew=shape.skew)
+    assert held.axes == misalignment(rig.case.gearboxes["test"], "main", warm)
     assert held.axes != PARALLEL and abs(held.axes.skew) < 1e-3
     # the loop closes through both: in the reference gearbox the wheel drives
     assert held_flanks(rig, result, 1).flank == "back"
@@ -130,3 +131,25 @@ def test_gap_holds_the_misalignment_and_the_modifications_of_the_loaded_flanks()
         first, last = gap_at_ends(rig, result, mesh)
         modified = sum(micro.helix_slope for micro in held.micro)
         assert last - first == pytest.approx(slope * held.pair.face_width + modified, abs=1e-12)
+
+
+@pytest.mark.whole_run
+def test_axes_as_made_add_to_those_of_the_warm_housing() -> None:
+    rig, result = base()
+    case = rig.case.with_values(
+        {
+            "gearboxes.test.meshes.main.axis_inclination": "4 um",
+            "gearboxes.test.meshes.main.axis_skew": "-3 um",
+            "gearboxes.reference.meshes.main.axis_skew": "2 um",
+        }
+    )
+    made = replace(rig, case=case).with_models(rig.models)
+    width = rig.pairs["test.main"].face_width
+    before, after = warm_axes(rig, result, 0), warm_axes(made, result, 0)
+    assert after.inclination - before.inclination == pytest.approx(4e-6 / width)
+    assert after.skew - before.skew == pytest.approx(-3e-6 / width)
+    # no housing: as made alone
+    assert warm_axes(made, result, 1).skew == pytest.approx(2e-6 / rig.pairs["reference.main"].face_width)
+    shape = result.last.expansion["test"].deformed
+    deviations = [axis_deviation(entry, "test", "main", shape) for entry in (rig, made)]
+    assert deviations[1].skew - deviations[0].skew == pytest.approx(-3e-6)
