@@ -209,7 +209,7 @@ def _pitting(ratings: Ratings, index: int) -> Iterator[tuple[float, str]]:
             yield (
                 gear.safety,
                 f"nominal {MPA * gear.nominal:.0f} MPa, simulated K_V {rating.factors.dynamic:.3f}, K_Hbeta "
-                f"{rating.factors.face_load:.2f}, K_Halpha {rating.factors.transverse:.3f} ({rating.sharing_basis}), "
+                f"{rating.factors.face_load:.2f}, K_Halpha {rating.factors.transverse:.3f}, {rating.sharing_basis}, "
                 f"stage {rating.stage}; "
                 f"sigma_H {MPA * gear.stress:.0f} MPa of {MPA * gear.strength:.0f} MPa = sigma_Hlim {words}",
             )

@@ -174,7 +174,7 @@ def _iso_stresses(solved: SolvedRig, mesh: int, index: int) -> Iterator[tuple[fl
         yield (
             stress.sigma_F,
             f"nominal {stress.sigma_F0:.0f} MPa, simulated K_V {stress.K_V:.3f}, K_Fbeta {stress.K_Fbeta:.2f}, "
-            f"K_Falpha {stress.K_Falpha:.3f} ({load.sharing_basis}), stage {load.stage}",
+            f"K_Falpha {stress.K_Falpha:.3f}, {load.sharing_basis}, stage {load.stage}",
         )
 
 
