@@ -184,7 +184,8 @@ class Gear(Part):
     bore_diameter: Gap = 0.0
     """Bore of the gear body; zero for a solid disc."""
     rim_thickness: Length | None = None
-    """Radial, of the rim under the root circle; the body is solid down to the bore when left out."""
+    """Radial, of the rim under the root circle; the body is solid down to the bore when left out. Temperature field and
+    centrifugal expansion take any body as solid."""
     web_thickness: Length | None = None
     """Axial, of the web inside of the rim, in the middle of the face; as wide as the face when left out."""
     tip_edge: TipEdgeInput = TipEdgeInput()
@@ -210,7 +211,7 @@ class Gear(Part):
     flank: FlankModification = FlankModification()
     """Modifications and deviations of the flanks."""
     inertia: Inertia | None = None
-    """Polar inertia of the gear body; that of the bored disc when left out."""
+    """Polar inertia of the gear body; that of the bored disc, or of rim and web, when left out."""
     inertia_factor: float = Field(default=1.0, ge=0.1, le=10.0)
     """Times the inertia, stated or of the disc."""
     spline: Spline | None = None

@@ -94,7 +94,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.gears.*.quality_grade": _at(
         records__curves="K_V of ISO 6336-1",
-        records__gear_loads="K_Falpha and K_Halpha of ISO 6336-1",
+        records__gear_loads="base pitch deviation of K_Falpha and K_Halpha",
         coupling__alignment="tolerances of the axes",
     ),
     "gearboxes.*.gears.*.flank_roughness": _at(
@@ -102,11 +102,13 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         records__flank_rating="pitting strength, flash temperature and film thickness ratio",
     ),
     "gearboxes.*.gears.*.rim_thickness": _at(
-        rig__gears="mass and inertia of the body, rim factor of the root stress",
+        rig__gears="mass of the body, rim factor of the root stress",
+        rig__drivetrain="inertia of the gear body",
         rig__tooth_influence="body under the teeth in their influence numbers",
     ),
     "gearboxes.*.gears.*.web_thickness": _at(
-        rig__gears="mass and inertia of the body, gear blank factor of ISO 6336-1",
+        rig__gears="mass of the body, gear blank factor of ISO 6336-1",
+        rig__drivetrain="inertia of the gear body",
         rig__tooth_influence="body under the teeth in their influence numbers",
     ),
     "gearboxes.*.gears.*.tip_edge": _at(

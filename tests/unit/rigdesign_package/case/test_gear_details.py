@@ -1,12 +1,13 @@
 """Keys of tip edge, protuberance, body and hand of a gear: what they build, what is refused and how."""
 
 from dataclasses import replace
-from math import radians
+from math import pi, radians
 
 import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
+from rigdesign.rig.drivetrain import gear_inertia
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.tooth_influence import gear_model
 from rigdesign.run.solver_errors import solver_errors
@@ -132,3 +133,18 @@ def test_gears_that_cannot_be_made_end_as_faults_of_the_case(values: dict[str, o
     case = load_case(CASES / "fzg").with_values(values)
     with pytest.raises(CaseError, match=message), solver_errors(case):
         build_rig(case, "quick")
+
+
+def test_inertia_of_a_webbed_gear_is_that_of_rim_and_web() -> None:
+    values = {"rim_thickness": "9 mm", "web_thickness": "6 mm", "bore_diameter": "20 mm"}
+    rig = build_rig(fzg(**values), "quick")
+    gear, density = rig.pairs["test.main"].gears[0], rig.materials["case_hardened_steel"].density
+    inner = gear.root_radius - 9e-3
+    ring = 14e-3 * (gear.reference_radius**4 - inner**4)
+    web = 6e-3 * (inner**4 - 10e-3**4)
+    found = gear_inertia(rig.case, "test", "pinion", rig.pairs, rig.materials)
+    assert found == pytest.approx(0.5 * pi * density * (ring + web))
+    solid = build_rig(fzg(bore_diameter="20 mm", rim_thickness="9 mm"), "quick")
+    plain = build_rig(fzg(bore_diameter="20 mm"), "quick")
+    inertias = [gear_inertia(r.case, "test", "pinion", r.pairs, r.materials) for r in (solid, plain)]
+    assert inertias[0] == inertias[1] > found
