@@ -35,9 +35,17 @@ class TipEnd:
     rounding: float = 0.0
 
 
-def sharp_tips(pair: GearPair) -> tuple[TipEnd, TipEnd]:
-    """Flanks that reach to the tip circles and end there in a sharp edge, pinion first."""
-    first, second = (TipEnd(roll=gear.roll_length(gear.tip_radius)) for gear in pair.gears)
+def tip_ends(pair: GearPair) -> tuple[TipEnd, TipEnd]:
+    """Ends of the flanks of pinion and wheel: sharp on the tip circle, or where a rounding or chamfer begins."""
+    first, second = (
+        TipEnd(
+            roll=gear.roll_length(flank.tip_radius),
+            rounding=details.tip_edge.rounding * (1.0 + expansion),
+        )
+        for gear, flank, details, expansion in zip(
+            pair.gears, pair.flanks, pair.details, pair.expansion, strict=True
+        )
+    )
     return first, second
 
 
@@ -148,9 +156,9 @@ def contact_places(pair: GearPair, path: Array, tips: tuple[TipEnd, TipEnd] | No
     """Where tooth pairs at positions ``path`` [m] touch or would touch, in the transverse plane.
 
     path : any shape, of the pinion, from the pitch point to its tip; between the base tangent points
-    tips : ends of both flanks; None: sharp on the tip circles
+    tips : ends of both flanks; None: those of the pair
     """
-    ends = path_ends(pair, sharp_tips(pair) if tips is None else tips)
+    ends = path_ends(pair, tip_ends(pair) if tips is None else tips)
     (reach_1, reach_2), (base_1, base_2) = pair.rolling_radii, pair.base_radii
     zero = np.zeros_like(path)
     roll_1, roll_2 = np.maximum(reach_1 + path, 0.0), np.maximum(reach_2 - path, 0.0)

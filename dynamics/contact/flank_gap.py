@@ -8,22 +8,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.points import FlankGap
+from dynamics.flank.field import Flank
 from dynamics.mesh.pair_gap import PairGap
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-def modified_gap(gap: PairGap) -> FlankGap:
-    """What modifications, axes and unequal base pitches of a pair leave between its front flanks, all teeth alike."""
+def modified_gap(gap: PairGap, flank: Flank = "front") -> FlankGap:
+    """What modifications, axes and unequal base pitches of a pair leave between its flanks, all teeth alike.
+
+    flank : on which the pair runs. A gear turned about a tooth axis by half a turn is the same gear with its back
+        flanks in front and its face turned round: the face positions of the contact then count against z.
+    """
+    sense = face_sense(flank)
 
     def of_points(pair: Integers, face: Array, path: Array, rolls: tuple[Array, Array]) -> Array:
         pinion, wheel = gap.flanks
+        place = sense * face
         return (
-            gap.of_axes(path, face) + pinion.modification(rolls[0], face) + wheel.modification(rolls[1], face)
+            gap.of_axes(path, place, flank)
+            + pinion.modification(rolls[0], place, flank)
+            + wheel.modification(rolls[1], place, flank)
         )
 
     return of_points
+
+
+def face_sense(flank: Flank) -> float:
+    """Face position z of the gears per face position of the contact: 1 on the front flanks, -1 on the back flanks."""
+    return 1.0 if flank == "front" else -1.0
 
 
 def flank_gap(gap: PairGap) -> FlankGap:

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.corner import ContactPlace, contact_places, sharp_tips
+from dynamics.contact.corner import ContactPlace, contact_places, tip_ends
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import modified_gap
 from dynamics.contact.local_approach import SOFT_EDGES, LocalModel
@@ -153,7 +153,7 @@ class _Grid:
         """Where the modified flanks touch (n_slices, n_path), and the metal removed of them there [m]."""
         pair, shape = self.flanks.pair, (len(self.face), len(self.path))
         path, face = np.broadcast_to(self.path, shape), np.broadcast_to(self.face[:, None], shape)
-        number, tips, gap = np.zeros(shape, np.int64), sharp_tips(pair), modified_gap(self.flanks)
+        number, tips, gap = np.zeros(shape, np.int64), tip_ends(pair), modified_gap(self.flanks)
 
         def removed(rolls: tuple[Array, Array]) -> Array:
             return gap(number, face, path, rolls)
@@ -260,7 +260,7 @@ def _springs(elastic: ElasticPair, grid: _Grid, tooth: Array, body: float, line_
     pair, place, removed = elastic.pair, *grid.touching
     slant = cos(pair.base_helix_angle)
     model = LocalModel(
-        pair=pair, gears=elastic.gears, tips=sharp_tips(pair), edges=SOFT_EDGES, line_load=line_load
+        pair=pair, gears=elastic.gears, tips=tip_ends(pair), edges=SOFT_EDGES, line_load=line_load
     )
     local = model.at(place, np.full(tooth.shape, grid.width))
     weight = slant * place.lever[1] / pair.base_radii[1]

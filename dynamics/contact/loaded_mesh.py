@@ -53,7 +53,7 @@ class LoadedMesh:
     gears : compliance of pinion and wheel
     grid : positions over the common face width
     gap : of the flanks beyond the involutes, see ``FlankGap``
-    tips : ends of both flanks; None: sharp on the tip circles
+    tips : ends of both flanks; None: those of the pair
     edges : how tip edges act
     n_positions : of a mesh cycle
     """

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.corner import ContactPlace, TipEnd, contact_places, sharp_tips
+from dynamics.contact.corner import ContactPlace, TipEnd, contact_places, tip_ends
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.touching import Profiles, settled
 from dynamics.errors import DynamicsInputError
@@ -84,7 +84,7 @@ def contact_points(
 ) -> ContactPoints:
     """Points of all tooth pairs that touch under an approach up to ``reach`` [m], over one base pitch.
 
-    gap : of the flanks, see ``FlankGap``; tips : ends of the flanks, None: sharp on the tip circles
+    gap : of the flanks, see ``FlankGap``; tips : ends of the flanks, None: those of the pair
 
     Raises DynamicsInputError for a reach or number of positions that is not positive, or a gap that is not finite.
     """
@@ -100,7 +100,7 @@ def contact_points(
     inside = (path >= first) & (path <= last)
     used = np.any(inside, axis=(0, 2))
     pairs, path, inside = pairs[used], path[:, used], inside[:, used]
-    ends = sharp_tips(pair) if tips is None else tips
+    ends = tip_ends(pair) if tips is None else tips
     place = contact_places(pair, np.clip(path, first, last), ends)
     numbers = np.broadcast_to(pairs[:, None], path.shape)
     face = np.broadcast_to(grid.position, path.shape)

@@ -208,7 +208,7 @@ def require_whole_flanks(pair: PairGeometry) -> None:
     The flank field ends at the active profile: what touches beyond the end of an undercut flank is no involute.
     """
     lost = (pair.path.start - pair.path.tip_start, pair.path.tip_end - pair.path.end)
-    for name, gear, missing in zip(NAMES, pair.gears, lost, strict=True):
+    for name, gear, details, missing in zip(NAMES, pair.gears, pair.details, lost, strict=True):
         if not gear.tip_thickness > 0.0:
             raise GearGeometryError(
                 f"{name}: tip thickness {1e3 * gear.tip_thickness:.4f} mm must be positive (pointed tooth); "
@@ -218,6 +218,11 @@ def require_whole_flanks(pair: PairGeometry) -> None:
             raise GearGeometryError(
                 f"{name}: undercut takes {1e3 * missing:.3f} mm of the path of contact (limit 0 mm); "
                 "raise its profile shift or shorten the mating tip"
+            )
+        if details.protuberance and missing > 0.0:
+            raise GearGeometryError(
+                f"{name}: protuberance = {1e3 * details.protuberance:.3f} mm takes {1e3 * missing:.3f} mm of the path "
+                "of contact (limit 0 mm); reduce it or shorten the mating tip"
             )
 
 

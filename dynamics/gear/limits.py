@@ -40,17 +40,40 @@ def require_sizes(pair: PairGeometry) -> None:
                 f"{2e3 * pair.gears[i].form_radius:.3f} mm; no involute is left: "
                 "increase tip diameter or shift"
             )
-        if pair.bore_diameters[i] and rim_in_tooth_heights(pair, i) <= NO_RIM:
-            raise GearGeometryError(
-                f"bore_diameters[{i}] = {1e3 * pair.bore_diameters[i]:.3f} mm leaves a rim of "
-                f"{rim_in_tooth_heights(pair, i):.3f} tooth heights under the root, must exceed {NO_RIM}; reduce "
-                "the bore"
-            )
+        _require_rim(pair, i)
     if not sum(pair.base_radii) < pair.centre_distance:
         raise GearGeometryError(
             f"centre_distance = {1e3 * pair.centre_distance:.4f} mm gives no working pressure angle: it must "
             f"exceed the sum of the base radii, {1e3 * sum(pair.base_radii):.4f} mm; "
             "increase it or reduce module, teeth or helix angle"
+        )
+
+
+def _require_rim(pair: PairGeometry, index: int) -> None:
+    """Raise GearGeometryError for a rim that is too thin for its teeth or reaches into the bore."""
+    rim, bore = pair.details[index].rim_thickness, pair.bore_diameters[index]
+    web = pair.details[index].web_thickness
+    if rim is not None and pair.root_radii[index] - rim <= 0.5 * bore:
+        raise GearGeometryError(
+            f"{NAMES[index]}: rim_thickness = {1e3 * rim:.3f} mm reaches into the bore, limit "
+            f"{1e3 * (pair.root_radii[index] - 0.5 * bore):.3f} mm between root circle and bore; reduce it, or leave "
+            "it out for a solid body"
+        )
+    if web is not None and (rim is None or not 0.0 < web <= pair.face_widths[index]):
+        raise GearGeometryError(
+            f"{NAMES[index]}: web_thickness = {1e3 * web:.3f} mm needs a rim_thickness and must lie above 0 and at "
+            f"most at the face width {1e3 * pair.face_widths[index]:.3f} mm; correct it"
+        )
+    height = rim_in_tooth_heights(pair, index)
+    if (bore or rim is not None) and height <= NO_RIM:
+        what = (
+            f"bore_diameters[{index}] = {1e3 * bore:.3f} mm leaves a rim"
+            if rim is None
+            else f"{NAMES[index]}: rim_thickness = {1e3 * rim:.3f} mm is a rim"
+        )
+        raise GearGeometryError(
+            f"{what} of {height:.3f} tooth heights under the root, must exceed {NO_RIM}; "
+            + ("reduce the bore" if rim is None else "make it thicker")
         )
 
 
@@ -86,8 +109,9 @@ def require_meshing(pair: PairGeometry) -> None:
 
 
 def rim_in_tooth_heights(pair: PairGeometry, index: int) -> float:
-    """Rim between bore and root circle of a gear, per height of its teeth [-]."""
-    rim = pair.root_radii[index] - 0.5 * pair.bore_diameters[index]
+    """Rim under the root circle of a gear, stated or down to the bore, per height of its teeth [-]."""
+    stated = pair.details[index].rim_thickness
+    rim = pair.root_radii[index] - 0.5 * pair.bore_diameters[index] if stated is None else stated
     return rim / (pair.tip_radii[index] - pair.root_radii[index])
 
 
@@ -112,10 +136,11 @@ def unusual(pair: PairGeometry) -> tuple[str, ...]:
             )
     for i, name in enumerate(NAMES):
         rim = rim_in_tooth_heights(pair, i)
-        if pair.bore_diameters[i] and rim < THIN_RIM:
+        stated = pair.details[i].rim_thickness is not None
+        if (stated or pair.bore_diameters[i]) and rim < THIN_RIM:
             found.append(
                 f"{name}: rim under the root {rim:.2f} tooth heights (limit {THIN_RIM}): it adds to the root stress; "
-                "reduce the bore"
+                + ("make the rim thicker" if stated else "reduce the bore")
             )
     if pair.transverse_backlash < -1e-9:
         found.append(

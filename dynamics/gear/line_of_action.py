@@ -7,6 +7,7 @@ from typing import Literal
 from scipy.optimize import brentq
 
 from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, involute, require_angles
+from dynamics.gear.details import PLAIN, FlankEnds, GearDetails
 
 TipCut = Literal["both", "wheel", "pinion"]
 
@@ -16,7 +17,7 @@ class PathOfContact:
     """Points on the transverse line of action, measured from the pitch point, growing to the pinion tip [m].
 
     ``start`` (A) and ``end`` (E) bound the active path; both may lie on one side of the pitch point.
-    ``tip_start`` and ``tip_end`` are where the tip circles alone would put them; ``start`` or ``end`` lies
+    ``tip_start`` and ``tip_end`` are where the tips alone would put them; ``start`` or ``end`` lies
     inside of them where the generated flank of the mating root ends earlier.
     """
 
@@ -46,18 +47,25 @@ class PathOfContact:
         return self.end - self.start
 
 
-def path_between(pinion: CylindricalGear, wheel: CylindricalGear, centre_distance: float) -> PathOfContact:
-    """Path of contact of two gears from tip circles and generated form circles (ISO 21771:2007).
+def path_between(
+    pinion: CylindricalGear,
+    wheel: CylindricalGear,
+    centre_distance: float,
+    flanks: tuple[FlankEnds, FlankEnds] | None = None,
+) -> PathOfContact:
+    """Path of contact of two gears from the ends of their flanks (ISO 21771:2007).
 
     centre_distance : [m], above the sum of the base radii; a smaller one raises ValueError
+    flanks : ends of the involutes; None: generated form circles and tip circles
     """
+    ends_1, ends_2 = flanks or (PLAIN.flank_of(pinion), PLAIN.flank_of(wheel))
     ratio = tan(acos((pinion.base_radius + wheel.base_radius) / centre_distance))
     reach_1, reach_2 = pinion.base_radius * ratio, wheel.base_radius * ratio
-    tip_end = pinion.roll_length(pinion.tip_radius) - reach_1
-    tip_start = reach_2 - wheel.roll_length(wheel.tip_radius)
+    tip_end = pinion.roll_length(ends_1.tip_radius) - reach_1
+    tip_start = reach_2 - wheel.roll_length(ends_2.tip_radius)
     return PathOfContact(
-        start=max(tip_start, pinion.roll_length(pinion.form_radius) - reach_1),
-        end=min(tip_end, reach_2 - wheel.roll_length(wheel.form_radius)),
+        start=max(tip_start, pinion.roll_length(ends_1.form_radius) - reach_1),
+        end=min(tip_end, reach_2 - wheel.roll_length(ends_2.form_radius)),
         tip_start=tip_start,
         tip_end=tip_end,
         base_pitch=0.5 * (pinion.base_pitch + wheel.base_pitch),
@@ -93,12 +101,17 @@ def shift_sum(
 
 
 def tip_cut_for_contact_ratio(
-    gears: tuple[CylindricalGear, CylindricalGear], centre_distance: float, wanted: float, tip_cut: TipCut
+    gears: tuple[CylindricalGear, CylindricalGear],
+    centre_distance: float,
+    wanted: float,
+    tip_cut: TipCut,
+    details: tuple[GearDetails, GearDetails] = (PLAIN, PLAIN),
 ) -> tuple[float, float]:
     """Radial shortening of both tips [m] that brings the transverse contact ratio down to ``wanted``.
 
-    The tips named by ``tip_cut`` are shortened equally, by one module at most. Raises GearGeometryError if
-    the uncut tips do not reach the ratio or a cut of one module does not bring it down.
+    The tips named by ``tip_cut`` are shortened equally, by one module at most; tip edges go with them.
+
+    Raises GearGeometryError if the uncut tips do not reach the ratio or a cut of one module does not bring it down.
     """
     pinion, wheel = gears
     share = {"both": (1.0, 1.0), "pinion": (1.0, 0.0), "wheel": (0.0, 1.0)}[tip_cut]
@@ -108,7 +121,8 @@ def tip_cut_for_contact_ratio(
             replace(pinion, tip_diameter=pinion.tip_diameter - 2.0 * cut * share[0]),
             replace(wheel, tip_diameter=wheel.tip_diameter - 2.0 * cut * share[1]),
         )
-        path = path_between(*shorter, centre_distance)
+        first, second = (part.flank_of(gear) for part, gear in zip(details, shorter, strict=True))
+        path = path_between(*shorter, centre_distance, (first, second))
         return path.length / path.base_pitch
 
     deepest = pinion.normal_module

@@ -6,6 +6,7 @@ from math import acos, cos, pi, radians, tan
 from typing import Literal, Self, TypedDict, Unpack
 
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack, involute
+from dynamics.gear.details import PLAIN, FlankEnds, GearDetails
 from dynamics.gear.line_of_action import (
     PathOfContact,
     TipCut,
@@ -13,6 +14,7 @@ from dynamics.gear.line_of_action import (
     shift_sum,
     tip_cut_for_contact_ratio,
 )
+from dynamics.gear.tooth_form import ToothForm
 
 Pair = tuple[float, float]
 
@@ -28,6 +30,7 @@ class GearBodies(TypedDict, total=False):
     youngs_moduli: Pair
     poisson_ratios: Pair
     densities: Pair
+    details: tuple[GearDetails, GearDetails]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,8 +54,8 @@ FULL_TIPS = TipShortening()
 class PairGeometry:
     """Two external cylindrical gears on a fixed centre distance. Lengths [m], angles [rad], pinion first.
 
-    Tip diameters, shifts, widths, bores and allowances are those at the reference temperature; ``expansion`` is the
-    relative linear expansion of each gear body, set by :meth:`warm`, and every property includes it.
+    Tip diameters, shifts, widths, bores, allowances and details are those at the reference temperature; ``expansion``
+    is the relative linear expansion of each gear body, set by :meth:`warm`, and every property includes it.
     Whether they can mesh is asked by `dynamics.gear.pair.GearPair`.
     """
 
@@ -70,6 +73,7 @@ class PairGeometry:
     youngs_moduli: Pair = (206e9, 206e9)
     poisson_ratios: Pair = (0.3, 0.3)
     densities: Pair = (7830.0, 7830.0)
+    details: tuple[GearDetails, GearDetails] = (PLAIN, PLAIN)
     expansion: Pair = (0.0, 0.0)
 
     @classmethod
@@ -119,7 +123,11 @@ class PairGeometry:
         cut = (0.0, 0.0)
         if tips.contact_ratio is not None:
             cut = tip_cut_for_contact_ratio(
-                (pinion, wheel), centre_distance, tips.contact_ratio, tips.cut_gear
+                (pinion, wheel),
+                centre_distance,
+                tips.contact_ratio,
+                tips.cut_gear,
+                bodies.get("details", (PLAIN, PLAIN)),
             )
         return cls(
             normal_module=normal_module,
@@ -220,9 +228,30 @@ class PairGeometry:
         return self.base_radii[0] * ratio, self.base_radii[1] * ratio
 
     @cached_property
+    def forms(self) -> tuple[ToothForm, ToothForm]:
+        """Tooth outlines of pinion and wheel at their present size.
+
+        Raises GearGeometryError for a pointed tooth and for tip edges or protuberances that leave no flank.
+        """
+        first, second = (
+            details.form_of(gear, 1.0 + expansion)
+            for details, gear, expansion in zip(self.details, self.gears, self.expansion, strict=True)
+        )
+        return first, second
+
+    @cached_property
+    def flanks(self) -> tuple[FlankEnds, FlankEnds]:
+        """Where the involutes of pinion and wheel end: at fillet and tip edge."""
+        first, second = (
+            details.flank_of(gear, 1.0 + expansion)
+            for details, gear, expansion in zip(self.details, self.gears, self.expansion, strict=True)
+        )
+        return first, second
+
+    @cached_property
     def path(self) -> PathOfContact:
-        """Path of contact from tip circles and generated form circles."""
-        return path_between(*self.gears, self.centre_distance)
+        """Path of contact from the ends of both flanks: tip edges and generated form circles."""
+        return path_between(*self.gears, self.centre_distance, self.flanks)
 
     @property
     def transverse_contact_ratio(self) -> float:
@@ -231,7 +260,7 @@ class PairGeometry:
 
     @property
     def tip_contact_ratio(self) -> float:
-        """eps_alpha that the tip circles alone would give [-]."""
+        """eps_alpha that the tips alone would give [-]."""
         return (self.path.tip_end - self.path.tip_start) / self.base_pitch
 
     @property
@@ -272,7 +301,7 @@ class PairGeometry:
 
     @property
     def masses(self) -> Pair:
-        """Masses of the bored bodies with the mean tooth diameter as outside [kg]."""
+        """Masses of the bored bodies, rim and web, with the mean tooth diameter as outside [kg]."""
         return self._body(0)[0], self._body(1)[0]
 
     @property
@@ -282,17 +311,28 @@ class PairGeometry:
 
     def _body(self, index: int) -> Pair:
         outer, bore = self.gears[index].mean_radius, 0.5 * self.bore_diameters[index]
-        mass = pi * self.densities[index] * self.face_widths[index] * (outer**2 - bore**2)
-        return mass, 0.5 * mass * (outer**2 + bore**2)
+        rim, web = self.details[index].rim_thickness, self.details[index].web_thickness
+        if rim is None:
+            return self._ring(index, outer, bore, self.face_widths[index])
+        inner = max(self.gears[index].root_radius - rim, bore)
+        ring = self._ring(index, outer, inner, self.face_widths[index])
+        disc = self._ring(index, inner, bore, self.face_widths[index] if web is None else web)
+        return ring[0] + disc[0], ring[1] + disc[1]
+
+    def _ring(self, index: int, outer: float, inner: float, width: float) -> Pair:
+        mass = pi * self.densities[index] * width * (outer**2 - inner**2)
+        return mass, 0.5 * mass * (outer**2 + inner**2)
 
     @property
     def fillet_overlaps(self) -> Pair:
         """Overlap of the mating tip with the fillet of pinion and wheel along the line of action [m]."""
         reach_1, reach_2 = self.rolling_radii
-        return (
-            self.gears[0].fillet_overlap(reach_1 + self.path.tip_start),
-            self.gears[1].fillet_overlap(reach_2 - self.path.tip_end),
+        rolls = reach_1 + self.path.tip_start, reach_2 - self.path.tip_end
+        first, second = (
+            0.0 if details.protuberance else gear.fillet_overlap(roll)  # the tool leaves metal out there
+            for gear, details, roll in zip(self.gears, self.details, rolls, strict=True)
         )
+        return first, second
 
     def warm(
         self,

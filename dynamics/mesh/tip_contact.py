@@ -4,7 +4,7 @@ Before A the wheel's tip corner faces the pinion flank, beyond E the pinion's ti
 gap is the approach along the line of action at which they would meet; it grows from zero with the square
 of the distance to the end of the path, so that loaded, deflected teeth enter and leave the mesh smoothly
 (premature engagement). Derived from the involutes of both gears, no small-angle approximation; an undercut
-flank ends in a corner too, which is treated alike.
+flank ends in a corner too, which is treated alike. A tip edge is taken as the sharp corner at which it begins.
 """
 
 from dataclasses import dataclass
@@ -93,14 +93,14 @@ def _before(pair: GearPair) -> _End:
     limits, pinion = pair.path, pair.gears[0]
     if pinion.undercut and limits.start > limits.tip_start:
         return _End(place=limits.start, corner=_corner(pair, 0, pinion.form_radius), of_wheel=False)
-    return _End(place=limits.tip_start, corner=_corner(pair, 1, pair.gears[1].tip_radius), of_wheel=True)
+    return _End(place=limits.tip_start, corner=_corner(pair, 1, pair.flanks[1].tip_radius), of_wheel=True)
 
 
 def _after(pair: GearPair) -> _End:
     limits, wheel = pair.path, pair.gears[1]
     if wheel.undercut and limits.end < limits.tip_end:
         return _End(place=limits.end, corner=_corner(pair, 1, wheel.form_radius), of_wheel=True)
-    return _End(place=limits.tip_end, corner=_corner(pair, 0, pair.gears[0].tip_radius), of_wheel=False)
+    return _End(place=limits.tip_end, corner=_corner(pair, 0, pair.flanks[0].tip_radius), of_wheel=False)
 
 
 def tip_separation(pair: GearPair, path: Array) -> Array:
@@ -129,12 +129,15 @@ def _corner(pair: GearPair, owner: int, radius: float) -> CornerMesh:
 def path_reach(pair: GearPair, gap: float) -> tuple[float, float]:
     """Path positions [m] before and beyond the active path where the tip separation has grown to ``gap`` [m].
 
-    At most two base pitches beyond each end, and short of the base tangent points.
+    At most two base pitches beyond each end, and short of the base tangent points. A rounded tip edge touches before
+    the corner where it begins, by a tenth of the gap for a radius of a ninth of the module: the path is longer by it.
     """
     if not gap > 0.0:
         raise DynamicsInputError(
             f"gap = {gap} m must be positive; give the largest approach that the teeth may see"
         )
+    rounding = max(details.tip_edge.rounding for details in pair.details)
+    gap = gap * (1.0 + 3.0 * rounding / pair.normal_module)
     path, steps = pair.path, np.linspace(0.0, 2.0 * pair.base_pitch, 801)[1:]
     inner = path.tangent_1 * 0.999 - path.start
     before = _before(pair).open_by(path.start + np.maximum(-steps, inner), gap)

@@ -75,7 +75,15 @@ def mesh_data(pair: GearPair) -> MeshData:
         q_2=bores[1],
         E_1=pair.youngs_moduli[0] * 1e-6,
         E_2=pair.youngs_moduli[1] * 1e-6,
+        b_s_over_b=(_web(pair, 0), _web(pair, 1)),
+        s_R_over_m_n=(_rim(pair, 0) / pair.normal_module, _rim(pair, 1) / pair.normal_module),
     )
+
+
+def _web(pair: GearPair, index: int) -> float | None:
+    """Web over face width of a gear with a thin web [-]; None for a solid one."""
+    web = pair.details[index].web_thickness
+    return None if web is None else web / pair.face_widths[index]
 
 
 def tangential_force(pair: GearPair, torque: float) -> float:
@@ -175,7 +183,8 @@ def tooth_root(pair: GearPair, index: int) -> ToothRoot:
         x=gear.generating_profile_shift,
         h_fP=gear.rack.dedendum,
         rho_fP=gear.rack.tip_radius,
-        d_a=gear.tip_diameter * MM,
+        d_a=2.0 * pair.flanks[index].tip_radius * MM,
+        s_pr=pair.details[index].protuberance * MM,
     )
 
 
@@ -198,7 +207,10 @@ def root_width(pair: GearPair, index: int) -> float:
 
 
 def _rim(pair: GearPair, index: int) -> float:
-    """Rim between bore and root circle [m]; inf for a solid gear."""
+    """Rim under the root circle [m], stated or down to the bore; inf for a solid gear."""
+    stated = pair.details[index].rim_thickness
+    if stated is not None:
+        return stated
     bore = 0.5 * pair.bore_diameters[index]
     return pair.root_radii[index] - bore if bore else inf
 
@@ -219,7 +231,7 @@ def root_stress(
     torque : of the pinion [N m]
     factors : K_A, K_V, K_Fbeta, K_Falpha
     grade : ISO 1328-1 tolerance grade, for the deep tooth factor
-    rim_thickness : [m]; None: what the bore leaves under the root
+    rim_thickness : [m]; None: that of the gear, or what the bore leaves under the root
 
     Raises DynamicsInputError for a rim of half a tooth height or less, and where the 30 degree tangent is not found.
     """

@@ -7,6 +7,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.rating.flank_contact import FlankLoad, single_contact_ratio
 from dynamics.rating.iso_rating import MM, UM, tangential_force
 from dynamics.standards import iso6336_2_2006 as iso
+from dynamics.standards import iso6336_3_2006
 from dynamics.standards.iso6336_1_2006 import DynamicFactor, RunIn
 
 R_Z_OVER_RA = 6.0
@@ -146,5 +147,24 @@ def transverse_load_factor(
 
 def face_load_factor(pair: GearPair, root_factor: float) -> float:
     """K_Hbeta that belongs to the K_Fbeta ``root_factor`` (ISO 6336-1:2006, 7.3), b/h of the lower of both [-]."""
+    return iso.K_Hbeta(root_factor, _width_over_height(pair))
+
+
+def root_face_load_factor(pair: GearPair, contact_factor: float) -> float:
+    """K_Fbeta that follows from the K_Hbeta ``contact_factor`` (ISO 6336-1:2006, 7.3), b/h of the lower of both [-]."""
+    return iso6336_3_2006.K_Fbeta(contact_factor, _width_over_height(pair))
+
+
+def _width_over_height(pair: GearPair) -> float:
+    """b/h of the gear with the higher teeth [-]."""
     heights = [tip - root for tip, root in zip(pair.tip_radii, pair.root_radii, strict=True)]
-    return iso.K_Hbeta(root_factor, pair.face_width / max(heights))
+    return pair.face_width / max(heights)
+
+
+def transverse_limits(pair: GearPair) -> tuple[float, float]:
+    """Largest K_Halpha and K_Falpha (ISO 6336-1:2006, 8.3.4 and 8.3.5) [-]."""
+    transverse, total = pair.transverse_contact_ratio, pair.total_contact_ratio
+    return (
+        iso.K_Halpha_limit(transverse, total, contact_ratio_factor(pair)),
+        iso6336_3_2006.K_Falpha_limit(transverse, total),
+    )

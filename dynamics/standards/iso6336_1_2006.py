@@ -47,9 +47,9 @@ class MeshData:
     q_2: float = 0.0
     E_1: float = E_ST
     E_2: float = E_ST
-    b_s_over_b: float | None = None
+    b_s_over_b: tuple[float | None, float | None] = (None, None)
     """Web thickness over face width; None: solid disc gears."""
-    s_R_over_m_n: float = 1.0
+    s_R_over_m_n: tuple[float, float] = (1.0, 1.0)
 
     @property
     def u(self) -> float:
@@ -168,7 +168,7 @@ def stiffness(data: MeshData, specific_load: float, choices: StiffnessChoices = 
             f"x2 = {data.x_2:.3f}; use measured or finite-element stiffness"
         )
     C_B_mean = 0.5 * (C_B(data.h_fP1, data.alpha_Pn) + C_B(data.h_fP2, data.alpha_Pn))
-    C_R_value = C_R(data.b_s_over_b, data.s_R_over_m_n)
+    C_R_value = 0.5 * sum(map(C_R, data.b_s_over_b, data.s_R_over_m_n))
     C_L = min(specific_load / 100.0, 1.0) ** 0.25 if choices.low_load_factor else 1.0
     E = 2.0 * data.E_1 * data.E_2 / (data.E_1 + data.E_2)
     c_prime = C_M * C_R_value * C_B_mean * cos(radians(data.beta)) / q * (E / E_ST) * C_L

@@ -116,7 +116,12 @@ def K_Halpha(
     Arguments as `iso6336_3_2006.K_Falpha`.
     """
     found = transverse_sharing(epsilon_gamma, c_gamma_alpha * f_pb_eff / specific_load)
-    return min(max(found, 1.0), max(epsilon_gamma / (epsilon_alpha * Z_epsilon**2), 1.0))
+    return min(max(found, 1.0), K_Halpha_limit(epsilon_alpha, epsilon_gamma, Z_epsilon))
+
+
+def K_Halpha_limit(epsilon_alpha: float, epsilon_gamma: float, Z_epsilon: float) -> float:
+    """Largest transverse load factor for contact (ISO 6336-1:2006, 8.3.4): one pair carries the whole load."""
+    return max(epsilon_gamma / (epsilon_alpha * Z_epsilon**2), 1.0)
 
 
 def K_Hbeta(K_Fbeta: float, b_over_h: float) -> float:

@@ -214,7 +214,12 @@ def K_Falpha(
     epsilon_gamma / (0.25 epsilon_alpha + 0.75).
     """
     K = transverse_sharing(epsilon_gamma, c_gamma_alpha * f_pb_eff / specific_load)
-    return min(max(K, 1.0), epsilon_gamma / (0.25 * epsilon_alpha + 0.75))
+    return min(max(K, 1.0), K_Falpha_limit(epsilon_alpha, epsilon_gamma))
+
+
+def K_Falpha_limit(epsilon_alpha: float, epsilon_gamma: float) -> float:
+    """Largest transverse load factor for root stress (ISO 6336-1:2006, 8.3.5): one pair carries the whole load."""
+    return epsilon_gamma / (0.25 * epsilon_alpha + 0.75)
 
 
 def transverse_sharing(epsilon_gamma: float, X: float) -> float:

@@ -70,6 +70,9 @@ class Gearbox(Part):
     """Shares of the gear oil that take another way."""
     oil_state: OilState = OilState()
     """How both oils differ from their data sheet."""
+    rotation: Literal["clockwise", "anticlockwise"] = "clockwise"
+    """Sense in which the pinion of the first mesh turns, seen from the front of the housing; the other gears follow.
+    It says to which side an inclination of the warm axes across their plane loads the faces."""
     housing: Housing | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
 

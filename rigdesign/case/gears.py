@@ -1,10 +1,12 @@
 """Gears and meshes of a gearbox."""
 
 from collections.abc import Mapping
+from math import radians
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from rigdesign.base.units import show
 from rigdesign.case.fields import (
     Angle,
     Count,
@@ -41,6 +43,10 @@ class RackInput(Part):
     """Dedendum of the basic rack in normal modules."""
     tip_radius: float = Field(default=0.38, ge=0.0, le=0.6)
     """Fillet radius of the basic rack (tip radius of the tool) in normal modules."""
+    protuberance: float = Field(default=0.0, ge=0.0, le=0.3)
+    """s_pr in normal modules: undercut by a protuberance tool that is left once the flanks are finished."""
+    protuberance_angle: Angle = radians(10.0)
+    """Of the protuberance flank of that tool, above zero and below the normal pressure angle."""
 
     @model_validator(mode="after")
     def _radius_fits(self) -> "RackInput":
@@ -48,6 +54,25 @@ class RackInput(Part):
             raise fault(
                 f"a tip radius of {self.tip_radius} modules does not fit a dedendum of {self.dedendum}",
                 "write a dedendum above the tip radius and above 0.2, e.g. 1.25 and 0.38",
+            )
+        return self
+
+
+class TipEdgeInput(Part):
+    """What is taken off the edge between flank and tip of a gear, in its transverse section; one of the two."""
+
+    rounding: Small = 0.0
+    """Radius of the edge."""
+    chamfer: Small = 0.0
+    """Radial height of a chamfer of 45 deg."""
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> "TipEdgeInput":
+        if self.rounding and self.chamfer:
+            raise fault(
+                f"rounding = {show(self.rounding, 'length')} and chamfer = {show(self.chamfer, 'length')} exclude "
+                "each other",
+                "write one of the two",
             )
         return self
 
@@ -110,7 +135,7 @@ class FlankModification(Part):
     end_relief_exponent: ReliefExponent = 1.0
     """How it grows with the distance: 1 linear, 2 parabolic."""
     end_relief_at: Literal["both", "front", "rear"] = "both"
-    """Ends of the face that are relieved."""
+    """Ends of the face that are relieved; the rear end is the one that comes into mesh last."""
     profile_slope: Deviation = 0.0
     """f_Halpha over the active profile, positive where the tip stands out of the flank."""
     profile_slope_scatter: tuple[Deviation, ...] = ()
@@ -129,7 +154,8 @@ class FlankModification(Part):
     the rear end; removed (metal missing is positive) or deviation (metal standing out is positive); tooth from 0 where
     every tooth was measured. Replaces crownings, reliefs and twist of the gear."""
     back_topography: Text | None = None
-    """The same of the back flanks. The analytic mesh law has one table for both and takes the front flanks for it."""
+    """The same of the back flanks, for the loaded contact of a mesh that runs on them. The analytic mesh law has one
+    table for both and takes the front flanks for it."""
     topography_interpolation: Literal["bilinear", "bicubic"] = "bilinear"
     """Between the places of the topography; bicubic: cubic spline, at least 4 places each way."""
     run_out: Small = 0.0
@@ -157,6 +183,16 @@ class Gear(Part):
     """Width of the toothing; of one half for a double-helical gear."""
     bore_diameter: Gap = 0.0
     """Bore of the gear body; zero for a solid disc."""
+    rim_thickness: Length | None = None
+    """Radial, of the rim under the root circle; the body is solid down to the bore when left out. Temperature field and
+    centrifugal expansion take any body as solid."""
+    web_thickness: Length | None = None
+    """Axial, of the web inside of the rim, in the middle of the face; as wide as the face when left out."""
+    tip_edge: TipEdgeInput = TipEdgeInput()
+    """Rounding or chamfer between flank and tip, where the active flank ends; sharp unless stated."""
+    helix_hand: Literal["right", "left"] | None = None
+    """Hand of the teeth of a single-helical gear; its partner has the other one. With ``rotation`` of the gearbox it
+    says which end of the face comes into mesh last; that at the rear of the housing when left out."""
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
@@ -175,7 +211,7 @@ class Gear(Part):
     flank: FlankModification = FlankModification()
     """Modifications and deviations of the flanks."""
     inertia: Inertia | None = None
-    """Polar inertia of the gear body; that of the bored disc when left out."""
+    """Polar inertia of the gear body; that of the bored disc, or of rim and web, when left out."""
     inertia_factor: float = Field(default=1.0, ge=0.1, le=10.0)
     """Times the inertia, stated or of the disc."""
     spline: Spline | None = None
@@ -199,6 +235,12 @@ class GearMesh(Part):
     """Helix angle at the reference cylinder, without sign; zero for spur gears."""
     centre_distance: Size
     """Working distance of the axes, as drawn."""
+    axis_inclination: Deviation = 0.0
+    """Deviation of the axes as made, in their common plane, over the narrower face width; positive where they open
+    towards the rear. What the warm housing adds is computed."""
+    axis_skew: Deviation = 0.0
+    """The same across that plane: positive where the axis of the wheel, seen from the front, turns clockwise about that
+    of the pinion towards the rear. With ``rotation`` of the gearbox it says which flanks it parts there."""
     rack: RackInput = RackInput()
     """Basic rack of both gears."""
     profile_shift_split: Literal["equal"] | None = None
@@ -226,7 +268,8 @@ class GearMesh(Part):
     application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
     """K_A of ISO 6336: load from outside the gearbox over the nominal one."""
     face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)
-    """K_Fbeta of ISO 6336-3: uneven load over the face width. K_Hbeta of the flanks follows from it."""
+    """K_Fbeta of ISO 6336-3: uneven load over the face width. K_Hbeta of the flanks follows from it. It counts where no
+    loaded contact is computed (fidelity quick); where one is, its own K_Hbeta, K_Fbeta, K_Halpha and K_Falpha do."""
     phase: Share = 0.0
     """Where the pinion's teeth stand when all shafts stand at zero, as a share of a pitch; how the gears are put on
     their shafts decides it. A pinion in a second mesh of its gearbox counts from there on, by the place of its axes

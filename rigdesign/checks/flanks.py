@@ -27,7 +27,10 @@ def _mean_of_gear(solved: SolvedRig, check: Check) -> Omissions:
         yield Omission(f"teeth of gearbox {name} above the mean of their gear: heat_split.mesh = assumed")
 
 
-GIVEN_FACE_LOAD = "K_Hbeta from the K_Fbeta of the case, K_Halpha of ISO 6336-1"
+LOAD_SHARING = (
+    "K_Hbeta and K_Halpha of the loaded contact where that is computed, else from the K_Fbeta of the case and of "
+    "ISO 6336-1"
+)
 
 
 def _all_gears(case: Case) -> Iterator[str]:
@@ -42,14 +45,14 @@ PITTING = GearFamily(
     group="dynamics",
     source="limits.flanks.pitting_safety_minimum; ISO 6336-2:2006 method B with the simulated K_V",
     procedure="sigma_H of ISO 6336-2:2006 at every held stage: contact stress of the mean torque at the pitch point or "
-    f"at the inner point of single contact, with K_A, simulated K_V, {GIVEN_FACE_LOAD}. The strength is sigma_Hlim of "
+    f"at the inner point of single contact, with K_A, simulated K_V, {LOAD_SHARING}. The strength is sigma_Hlim of "
     "the material times the factors of life (planned cycles of all specimens), oil, speed, roughness and size. Safety: "
     "strength over stress.",
     places=rig_gears,
     comparison=">=",
     needs=LOADS,
     leaves_out=(long_periods,),
-    moved_by=OF_SAFETY | {"gear rating"},
+    moved_by=OF_SAFETY | {"gear rating", "housing"},
 )
 OVER_ROOT = GearFamily(
     key="flank.over_specimen_root",
@@ -64,7 +67,7 @@ OVER_ROOT = GearFamily(
     comparison=">=",
     needs=LOADS,
     leaves_out=(long_periods,),
-    moved_by=OF_SAFETY | {"gear rating"},
+    moved_by=OF_SAFETY | {"gear rating", "housing"},
     across_gearboxes=True,
 )
 SCUFFING = RuleFamily(
@@ -74,7 +77,7 @@ SCUFFING = RuleFamily(
     group="dynamics",
     source="limits.flanks.scuffing_safety_minimum; ISO/TS 6336-20:2017 with the simulated K_V",
     procedure="Contact temperature at every held stage, ISO/TS 6336-20: temperature of the teeth from our own field "
-    f"plus the flash temperature over the path, load shared by that document, K_A, simulated K_V, {GIVEN_FACE_LOAD}. "
+    f"plus the flash temperature over the path, load shared by that document, K_A, simulated K_V, {LOAD_SHARING}. "
     "Scuffing temperature as stated, or from the FZG load stage of the oil. Safety: scuffing over contact temperature, "
     "both above the oil, or above the teeth where these are colder.",
     places=meshes,
@@ -206,7 +209,8 @@ def _pitting(ratings: Ratings, index: int) -> Iterator[tuple[float, str]]:
             yield (
                 gear.safety,
                 f"nominal {MPA * gear.nominal:.0f} MPa, simulated K_V {rating.factors.dynamic:.3f}, K_Hbeta "
-                f"{rating.factors.face_load:.2f}, K_Halpha {rating.factors.transverse:.3f}, stage {rating.stage}; "
+                f"{rating.factors.face_load:.2f}, K_Halpha {rating.factors.transverse:.3f}, {rating.sharing_basis}, "
+                f"stage {rating.stage}; "
                 f"sigma_H {MPA * gear.stress:.0f} MPa of {MPA * gear.strength:.0f} MPa = sigma_Hlim {words}",
             )
 

@@ -47,8 +47,9 @@ ISO = StressMethod(
     "ISO 6336-3",
     "ISO 6336-3:2006 method B with the simulated K_V",
     "sigma_F of ISO 6336-3:2006 at every held stage: nominal stress of the mean torque at the outer point of single "
-    "contact times K_A, simulated K_V, K_Fbeta and K_Falpha; the highest stage counts.",
-    frozenset({"gear rating"}),
+    "contact times K_A, simulated K_V, K_Fbeta and K_Falpha, those of the loaded contact where it is computed; the "
+    "highest stage counts.",
+    frozenset({"gear rating", "housing"}),
 )
 PATH = StressMethod(
     "path",
@@ -173,7 +174,7 @@ def _iso_stresses(solved: SolvedRig, mesh: int, index: int) -> Iterator[tuple[fl
         yield (
             stress.sigma_F,
             f"nominal {stress.sigma_F0:.0f} MPa, simulated K_V {stress.K_V:.3f}, K_Fbeta {stress.K_Fbeta:.2f}, "
-            f"K_Falpha {stress.K_Falpha:.3f}, stage {load.stage}",
+            f"K_Falpha {stress.K_Falpha:.3f}, {load.sharing_basis}, stage {load.stage}",
         )
 
 

@@ -58,8 +58,33 @@ def clearance_share(peak_to_valley: float, clearance: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
+class AxisAngles:
+    """Angles between the axes of wheel and pinion [rad], over x from front to rear.
+
+    inclination : in their common plane, positive when they open towards the rear
+    skew : across it, positive along x cross the direction from pinion to wheel: the wheel's axis turns about that of
+        the pinion in the right-hand sense about x
+    """
+
+    inclination: float
+    skew: float
+
+
+def axis_angles(rig: Rig, name: str, mesh: str, shape: Expansion | None) -> AxisAngles:
+    """Angles between the axes of a mesh: as made, and as the expansion of its housing adds, where there is one."""
+    box = rig.case.gearboxes[name]
+    entry = box.meshes[mesh]
+    width = min(box.gears[gear].face_width for gear in (entry.pinion, entry.wheel))
+    made = AxisAngles(inclination=entry.axis_inclination / width, skew=entry.axis_skew / width)
+    if shape is None:
+        return made
+    warm = axes_of(rig, name, shape, (box.gears[entry.pinion].shaft, box.gears[entry.wheel].shaft))
+    return AxisAngles(inclination=made.inclination + warm.inclination, skew=made.skew + warm.skew)
+
+
+@dataclass(frozen=True, kw_only=True)
 class AxisDeviation:
-    """Hot axes of a mesh over its face width, with what is recommended for its gears [m]."""
+    """Hot axes of a mesh over its face width, as made and expanded, with what is recommended for its gears [m]."""
 
     face_width: float
     inclination: float
@@ -79,7 +104,7 @@ def axis_deviation(rig: Rig, name: str, mesh: str, shape: Expansion) -> AxisDevi
     box = rig.case.gearboxes[name]
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
-    axes = axes_of(rig, name, shape, (gears[0].shaft, gears[1].shaft))
+    axes = axis_angles(rig, name, mesh, shape)
     width = min(gear.face_width for gear in gears)
     recommended = axis_tolerances(_helix_tolerance(rig, name, mesh))
     return AxisDeviation(

@@ -271,7 +271,8 @@ def _tooth_stiffness(gear: Gear) -> tuple[float, ...]:
 def _tip_path(height: float, pair: GearPair, index: int) -> float:
     """Path length of a tip relief from its radial height [m]."""
     gear = pair.gears[index]
-    return gear.roll_length(gear.tip_radius) - gear.roll_length(gear.tip_radius - height)
+    tip = pair.flanks[index].tip_radius
+    return gear.roll_length(tip) - gear.roll_length(tip - height)
 
 
 def _root_path(height: float, pair: GearPair, index: int) -> float:

@@ -94,12 +94,32 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.gears.*.quality_grade": _at(
         records__curves="K_V of ISO 6336-1",
-        records__gear_loads="K_Falpha and K_Halpha of ISO 6336-1",
+        records__gear_loads="base pitch deviation of K_Falpha and K_Halpha",
         coupling__alignment="tolerances of the axes",
     ),
     "gearboxes.*.gears.*.flank_roughness": _at(
         coupling__loads="friction coefficient of the teeth",
         records__flank_rating="pitting strength, flash temperature and film thickness ratio",
+    ),
+    "gearboxes.*.gears.*.rim_thickness": _at(
+        rig__gears="mass of the body, rim factor of the root stress",
+        rig__drivetrain="inertia of the gear body",
+        rig__tooth_influence="body under the teeth in their influence numbers",
+    ),
+    "gearboxes.*.gears.*.web_thickness": _at(
+        rig__gears="mass of the body, gear blank factor of ISO 6336-1",
+        rig__drivetrain="inertia of the gear body",
+        rig__tooth_influence="body under the teeth in their influence numbers",
+    ),
+    "gearboxes.*.gears.*.tip_edge": _at(
+        rig__gears="end of the active flank: path of contact, tip corner",
+        rig__tooth_influence="outline of the tooth in its influence numbers",
+    ),
+    "gearboxes.*.gears.*.helix_hand": _at(
+        records__contact_gap="end of the face that comes into mesh last: sign of the misalignment over the face"
+    ),
+    "gearboxes.*.rotation": _at(
+        records__contact_gap="flanks and end of the face that a misalignment of the warm axes loads"
     ),
     "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),
@@ -110,6 +130,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.gears.*.flank.back_topography": _at(
         rig__flank_topography="grid of the measured back flanks, read and held against the gear",
+        records__contact_gap="gap of a mesh that runs on its back flanks",
     ),
     "gearboxes.*.gears.*.flank.topography_interpolation": _at(
         rig__flank_topography="deviations between the places of the grid"
@@ -147,18 +168,33 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.meshes.*.tooth_offset": _at(coupling__loads="which teeth meet"),
     "gearboxes.*.meshes.*.phase": _at(coupling__loads="phase of the mesh against the others of the loop"),
+    **{
+        f"gearboxes.*.meshes.*.{key}": _at(
+            coupling__alignment="deviation of the axes, with that of the warm housing",
+            records__contact_gap="gap over the face in the loaded contact",
+        )
+        for key in ("axis_inclination", "axis_skew")
+    },
     "gearboxes.*.meshes.*.application_factor": _at(
         records__gear_loads="K_A of the ratings of root and flank",
         records__curves="load of K_V by ISO 6336-1",
     ),
     "gearboxes.*.meshes.*.face_load_factor": _at(
-        records__gear_loads="K_Fbeta of the root stress, K_Hbeta of the flanks"
+        records__gear_loads="K_Fbeta of the root stress, K_Hbeta of the flanks, where no loaded contact is computed"
     ),
     "gearboxes.*.meshes.*.low_load_factor": _at(
         coupling__loads="mean mesh stiffness of ISO 6336-1", records__curves="K_V of ISO 6336-1"
     ),
     "gearboxes.*.meshes.*.rack": _at(
         rig__gears="outline of the tooth with its fillet: stiffness and root stress"
+    ),
+    "gearboxes.*.meshes.*.rack.protuberance": _at(
+        rig__gears="start of the active flank, root section of ISO 6336-3",
+        rig__tooth_influence="outline of the fillet in the influence numbers",
+    ),
+    "gearboxes.*.meshes.*.rack.protuberance_angle": _at(
+        rig__gears="outline of the fillet, of which the active flank begins at its end",
+        rig__tooth_influence="outline of the fillet in the influence numbers",
     ),
     "gearboxes.*.oil": _at(rig__oil_supply="oil that is fed", coupling__oil=_OIL_FLOW),
     "gearboxes.*.oil.oil": _at(

@@ -40,10 +40,11 @@ def flank_ratings(rig: Rig, points: Sequence[PointResult], mesh: int) -> Iterato
         if load.torque and load.speed > 0.0:
             point = by_stage[load.stage]
             drives = point.last.coupling_state.mesh_torque[rig.mesh_names[mesh]] > 0.0
-            yield _rating(rig, point, mesh, flank_load(rig, mesh, load, pinion_drives=drives))
+            rated = flank_load(rig, mesh, load, pinion_drives=drives)
+            yield _rating(rig, point, mesh, rated, load.sharing_basis)
 
 
-def _rating(rig: Rig, point: PointResult, mesh: int, load: FlankLoad) -> FlankRating:
+def _rating(rig: Rig, point: PointResult, mesh: int, load: FlankLoad, sharing_basis: str) -> FlankRating:
     name = rig.mesh_names[mesh]
     feed, (bulk, basis) = _feed(rig, point, name), bulk_temperature(rig, point, mesh)
     state = _film_state(rig, mesh, feed, bulk)
@@ -57,6 +58,7 @@ def _rating(rig: Rig, point: PointResult, mesh: int, load: FlankLoad) -> FlankRa
     return FlankRating(
         stage=point.point.stage,
         factors=load.factors,
+        sharing_basis=sharing_basis,
         oil_temperature=feed.inlet,
         bulk_temperature=bulk,
         bulk_basis=basis,

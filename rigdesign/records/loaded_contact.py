@@ -1,50 +1,125 @@
-"""Loaded contact of the meshes from influence numbers: quasi-static, warm, at the test.
+"""Loaded contact of the meshes from influence numbers: quasi-static, warm, at the held points.
 
-All teeth alike, with their modifications; axes parallel. The dynamic loads are those of the mesh law, which this does
-not enter yet; K_Hbeta of the ratings is still that of the case.
+All teeth alike, with the modifications of the flanks that carry and the axes of the warm housing. The load is the mean
+torque: a dynamic load on top of it evens out face and pairs, so that K_Hbeta and K_Halpha are on the safe side.
 """
 
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import radians
 
 from dynamics.contact.contact_ratio import unloaded_contact_ratio
 from dynamics.contact.face import FaceGrid, default_positions
-from dynamics.contact.flank_gap import modified_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.root_course import root_course
-from dynamics.mesh.pair_gap import PairGap
-from rigdesign.coupling.loads import LEAST_TORQUE, mesh_microgeometry
+from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.contact.pitch_deviation import transverse_load_factor
+from dynamics.contact.root_course import RootCourse, root_course
+from dynamics.gear.pair import GearPair
+from rigdesign.coupling.loads import LEAST_TORQUE
 from rigdesign.coupling.loop import PointResult
+from rigdesign.records.contact_gap import HeldFlanks, held_flanks
 from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.rig.model import Rig
+from rigdesign.rig.tooth_influence import ToothInfluence
 
 ROOT = radians(15.0)
 """Least angle between fillet and tooth axis of the root: nearer to the flank the stress is that of the contact."""
 FINE = 1024
 """Positions of a mesh cycle for the contact ratio without load."""
+KEPT = 16
+"""Contacts that are kept: those of the meshes of a rig at its held points."""
 
 
-def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | None:
+@dataclass(frozen=True, kw_only=True)
+class HeldContact:
+    """A mesh under its mean load at a held point, and what follows from it, each computed when it is asked for.
+
+    cold : the pair as drawn, of whose teeth the influence numbers are; force : transverse mesh force [N]
+    """
+
+    cold: GearPair
+    flanks: HeldFlanks
+    force: float
+    influence: ToothInfluence
+
+    @cached_property
+    def mesh(self) -> LoadedMesh:
+        """The warm pair on its compliant flanks."""
+        pair = self.flanks.pair
+        return LoadedMesh(
+            pair=pair,
+            gears=self.influence.compliances(self.cold),
+            grid=FaceGrid.over(pair.face_width, default_positions(pair, gap_varies=True)),
+            gap=self.flanks.gap,
+        )
+
+    @cached_property
+    def cycle(self) -> MeshCycle:
+        """Contact over one mesh cycle."""
+        return self.mesh.cycle(self.force)
+
+    @cached_property
+    def unloaded_contact_ratio(self) -> float:
+        """In the limit of no load, modifications included [-]."""
+        return unloaded_contact_ratio(self.mesh.points(self.cycle.points.reach, FINE))
+
+    @cached_property
+    def roots(self) -> tuple[RootCourse, RootCourse]:
+        """Root stress under the loaded flanks of pinion and wheel."""
+        numbers, gears = self.influence.of_pair(self.cold), self.influence.compliances(self.cold)
+        return (
+            root_course(self.cycle, numbers[0], gears[0], 0).within(numbers[0].fillet.tangent >= ROOT),
+            root_course(self.cycle, numbers[1], gears[1], 1).within(numbers[1].fillet.tangent >= ROOT),
+        )
+
+    def transverse_load_factor(self, deviation: float) -> float:
+        """K_Halpha with a base pitch deviation [m]."""
+        return _transverse_load_factor(self, deviation)
+
+
+def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
     """Contact of one mesh, by its number, at a held point; None without load and where the teeth are analytic."""
     response = point.last.response
     if rig.mesh_stiffness != "influence_numbers" or response is None:
         return None
-    torque = float(response.mean[mesh])
-    if abs(torque) < LEAST_TORQUE:
+    torque = abs(float(response.mean[mesh]))
+    if torque < LEAST_TORQUE:
         return None
-    name, pair = rig.mesh_names[mesh], point.last.models[mesh].pair
-    gap = PairGap.of_pair(pair, mesh_microgeometry(rig, name, pair))
-    grid = FaceGrid.over(pair.face_width, default_positions(pair, gap_varies=True))
-    cold = rig.pairs[name]
-    numbers, compliances = rig.tooth_influence.of_pair(cold), rig.tooth_influence.compliances(cold)
-    loaded = LoadedMesh(pair=pair, gears=compliances, grid=grid, gap=modified_gap(gap))
-    cycle = loaded.cycle(abs(torque) / pair.base_radii[0])
+    flanks = held_flanks(rig, point, mesh)
+    return _kept(
+        HeldContact(
+            cold=rig.pairs[rig.mesh_names[mesh]],
+            flanks=flanks,
+            force=torque / flanks.pair.base_radii[0],
+            influence=rig.tooth_influence,
+        )
+    )
+
+
+@lru_cache(maxsize=KEPT)
+def _kept(contact: HeldContact) -> HeldContact:
+    """The first contact that was equal: what is computed of it serves ratings, checks and report alike."""
+    return contact
+
+
+@lru_cache(maxsize=KEPT)
+def _transverse_load_factor(contact: HeldContact, deviation: float) -> float:
+    return transverse_load_factor(contact.mesh, contact.cycle, deviation)
+
+
+def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | None:
+    """Record of the contact of one mesh, by its number, at a held point; None where there is none."""
+    contact = held_contact(rig, point, mesh)
+    if contact is None:
+        return None
+    response = point.last.response
+    assert response is not None
     return LoadedContact(
         stage=point.point.stage,
-        torque=torque,
-        cycle=cycle,
-        unloaded_contact_ratio=unloaded_contact_ratio(loaded.points(cycle.points.reach, FINE)),
-        roots=(
-            root_course(cycle, numbers[0], compliances[0], 0).within(numbers[0].fillet.tangent >= ROOT),
-            root_course(cycle, numbers[1], compliances[1], 1).within(numbers[1].fillet.tangent >= ROOT),
-        ),
+        torque=float(response.mean[mesh]),
+        flank=contact.flanks.flank,
+        axes=contact.flanks.axes,
+        cycle=contact.cycle,
+        unloaded_contact_ratio=contact.unloaded_contact_ratio,
+        roots=contact.roots,
     )

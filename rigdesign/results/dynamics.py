@@ -64,11 +64,12 @@ class GearboxDynamics:
     geometry: dict[str, float | str]
     """Gear data, as drawn and warm, for the report."""
     flank_ratings: list[dict[str, Any]] = field(default_factory=list)
-    """Per held stage: {stage, sigma_H_pinion_MPa, S_H_pinion, sigma_H_wheel_MPa, S_H_wheel, bulk_degC, bulk_basis,
-    contact_degC, contact_friction, scuffing_degC, S_B, film_ratio_least, film_ratio_at, film_ratio: {point: ratio}};
-    what is not rated is None."""
+    """Per held stage: {stage, K_H_beta, K_H_alpha, K_H_basis, sigma_H_pinion_MPa, S_H_pinion, sigma_H_wheel_MPa,
+    S_H_wheel, bulk_degC, bulk_basis, contact_degC, contact_friction, scuffing_degC, S_B, film_ratio_least,
+    film_ratio_at, film_ratio: {point: ratio}}; what is not rated is None."""
     loaded_contact: dict[str, Any] | None = None
-    """Quasi-static contact of the warm teeth at the test, from influence numbers: {stage, torque_Nm,
+    """Quasi-static contact of the warm teeth at the test, from influence numbers: {stage, torque_Nm, flank,
+    misalignment_um (gap of the axes over the face, at its end that comes into mesh last),
     contact_ratio_geometric, contact_ratio_no_load, contact_ratio, largest_share, early_contact, late_contact,
     transmission_error_um, approach_um, mesh_stiffness_N_um, K_H_beta, line_load_N_mm, flank_pressure_MPa,
     edge_pressure_MPa, pattern: {rolling_angle_deg, face_mm, pressure_MPa, edge}, root_stress: {pinion, wheel:

@@ -14,6 +14,8 @@ class FlankRating:
 
     stage: str
     factors: ContactFactors
+    sharing_basis: str
+    """Where K_Hbeta and K_Halpha come from, in words."""
     oil_temperature: float
     """As it reaches the mesh, or of the sump [K]."""
     bulk_temperature: float

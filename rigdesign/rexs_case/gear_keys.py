@@ -91,6 +91,9 @@ def gear_entries(origins: Origins, stage: GearStage, seated: SeatedGear) -> Iter
         yield origins.stated("tip_shortening", millimetres(cut), f"{at}.tip_diameter", note=note)
     if gear.bore_diameter:
         yield origins.stated("bore_diameter", millimetres(gear.bore_diameter), f"{at}.bore_diameter")
+    if side == 0 and gear.helix_angle:
+        hand = '"right"' if gear.helix_angle > 0.0 else '"left"'
+        yield origins.stated("helix_hand", hand, f"{at}.helix_angle")
     if gear.quality_grade is not None and gear.quality_grade <= 11:
         yield origins.stated("quality_grade", str(gear.quality_grade), f"{at}.quality_grade")
     if gear.flank_roughness is not None:

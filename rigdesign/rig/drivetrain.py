@@ -15,6 +15,7 @@ from dynamics.drivetrain.parts import (
 )
 from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
 from dynamics.drivetrain.shaft_torque import ShaftTorque
+from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import HarmonicTorqueInput
 from rigdesign.case.model import Case
@@ -116,15 +117,21 @@ def _gear_bodies(
 def gear_inertia(
     case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
 ) -> float:
-    """Polar inertia of a gear body [kg m2]: as the case states it, else that of the bored disc; times its factor."""
+    """Polar inertia of a gear body [kg m2]: as the case states it, else that of bored disc, or rim and web; times its
+    factor."""
     gearbox = case.gearboxes[box]
     part = gearbox.gears[gear]
     inertia = part.inertia
     if inertia is None:
-        diameter = 2.0 * _reference_radius(gear, box, case, pairs)
-        inertia = disc_inertia(
-            diameter, part.bore_diameter, gearbox.body_width(gear), materials[part.material].density
-        )
+        toothing, density = _toothing(gear, box, case, pairs), materials[part.material].density
+        outer, width = 2.0 * toothing.reference_radius, gearbox.body_width(gear)
+        inner = part.bore_diameter
+        if part.rim_thickness is not None and part.web_thickness is not None:
+            inner = max(2.0 * (toothing.root_radius - part.rim_thickness), inner)
+        inertia = disc_inertia(outer, inner, width, density)
+        if inner > part.bore_diameter:
+            web = (part.web_thickness or 0.0) * gearbox.halves(gear)
+            inertia += disc_inertia(inner, part.bore_diameter, web, density)
     return part.inertia_factor * inertia
 
 
@@ -133,11 +140,11 @@ def disc_inertia(outer_diameter: float, bore_diameter: float, width: float, dens
     return math.pi * density * width * (outer_diameter**4 - bore_diameter**4) / 32.0
 
 
-def _reference_radius(gear: str, box: str, case: Case, pairs: Mapping[str, GearPair]) -> float:
+def _toothing(gear: str, box: str, case: Case, pairs: Mapping[str, GearPair]) -> CylindricalGear:
     for mesh_name, mesh in case.gearboxes[box].meshes.items():
         for member, name in enumerate((mesh.pinion, mesh.wheel)):
             if name == gear:
-                return pairs[f"{box}.{mesh_name}"].gears[member].reference_radius
+                return pairs[f"{box}.{mesh_name}"].gears[member]
     raise DrivetrainError(f"gear {box}.{gear} is in no mesh; state its inertia or remove it")
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from dynamics.errors import DynamicsInputError
 from dynamics.flank.topography import Topography
 from dynamics.gear.cylindrical_gear import CylindricalGear
+from dynamics.gear.details import FlankEnds
 from dynamics.gear.pair import GearPair
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.faults import written
@@ -32,18 +33,21 @@ def flank_topographies(case: Case, pairs: Mapping[str, GearPair]) -> dict[str, F
     found = {}
     for box_name, box in case.gearboxes.items():
         for mesh_name, mesh in box.meshes.items():
-            members = zip((mesh.pinion, mesh.wheel), pairs[f"{box_name}.{mesh_name}"].gears, strict=True)
-            for name, toothing in members:
+            pair = pairs[f"{box_name}.{mesh_name}"]
+            for name, toothing, ends in zip((mesh.pinion, mesh.wheel), pair.gears, pair.flanks, strict=True):
                 gear = box.gears[name]
                 if gear.flank.topography is None and gear.flank.back_topography is None:
                     continue
                 at = f"gearboxes.{box_name}.gears.{name}.flank"
-                front, back = (_topography(case, gear, toothing, f"{at}.{key}") for key in KEYS)
+                front, back = (_topography(case, gear, (toothing, ends), f"{at}.{key}") for key in KEYS)
                 found[f"{box_name}.{name}"] = front, back
     return found
 
 
-def _topography(case: Case, gear: Gear, toothing: CylindricalGear, at: str) -> Topography | None:
+def _topography(
+    case: Case, gear: Gear, flank: tuple[CylindricalGear, FlankEnds], at: str
+) -> Topography | None:
+    toothing, involute = flank
     name = getattr(gear.flank, at.rpartition(".")[2])
     if name is None:
         return None
@@ -58,7 +62,7 @@ def _topography(case: Case, gear: Gear, toothing: CylindricalGear, at: str) -> T
             removed=np.array(grid.removed),
             interpolation=gear.flank.topography_interpolation,
         )
-        ends = (toothing.roll_length(radius) for radius in (toothing.form_radius, toothing.tip_radius))
+        ends = (toothing.roll_length(radius) for radius in (involute.form_radius, involute.tip_radius))
         root, tip = (roll / toothing.base_radius for roll in ends)
         topography.require_cover((root, tip), gear.face_width)
     except DynamicsInputError as error:

@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping
 
+from dynamics.flank.field import require_whole_flanks
 from dynamics.gear.cylindrical_gear import Rack
+from dynamics.gear.details import GearDetails
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import GearBodies, TipShortening
+from dynamics.gear.tooth_form import TipEdge
 from rigdesign.base.errors import named
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.gears import GearMesh
+from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.model import Case
 from rigdesign.properties.materials import Material
 
@@ -18,13 +21,15 @@ def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, Gear
     Raises
     ------
     GearGeometryError
-        Gears that cannot be made or cannot mesh.
+        Gears that cannot be made or cannot mesh; pointed teeth; undercut or protuberance within the path of contact.
     """
     pairs = {}
     for box_name, box in case.gearboxes.items():
         for mesh_name, mesh in box.meshes.items():
             with named(f"gearboxes.{box_name}.meshes.{mesh_name}"):
-                pairs[f"{box_name}.{mesh_name}"] = build_pair(box, mesh, materials)
+                pair = build_pair(box, mesh, materials)
+                require_whole_flanks(pair)
+                pairs[f"{box_name}.{mesh_name}"] = pair
     return pairs
 
 
@@ -42,6 +47,7 @@ def build_pair(box: Gearbox, mesh: GearMesh, materials: Mapping[str, Material]) 
         "youngs_moduli": (solid[0].elastic_modulus, solid[1].elastic_modulus),
         "poisson_ratios": (solid[0].poisson_ratio, solid[1].poisson_ratio),
         "densities": (solid[0].density, solid[1].density),
+        "details": (_details(pinion, mesh), _details(wheel, mesh)),
     }
     first = mesh.profile_shift_split or _pinion_shift(box, mesh)
     assert first is not None
@@ -57,6 +63,17 @@ def build_pair(box: Gearbox, mesh: GearMesh, materials: Mapping[str, Material]) 
             cut_gear=mesh.tip_cut or "both",
         ),
         **bodies,
+    )
+
+
+def _details(gear: Gear, mesh: GearMesh) -> GearDetails:
+    edge, rack = gear.tip_edge, mesh.rack
+    return GearDetails(
+        tip_edge=TipEdge(rounding=edge.rounding, chamfer=edge.chamfer),
+        protuberance=rack.protuberance * mesh.normal_module,
+        protuberance_angle=rack.protuberance_angle,
+        rim_thickness=gear.rim_thickness,
+        web_thickness=gear.web_thickness,
     )
 
 

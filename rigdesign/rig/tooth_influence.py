@@ -7,7 +7,6 @@ from functools import lru_cache, partial
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import PairGeometry
-from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_body import GearBody
 from dynamics.influence.gear_model import GearModel
@@ -91,11 +90,18 @@ def _compliances(influence: ToothInfluence, pair: GearPair) -> Compliances:
 def gear_model(pair: GearPair, index: int) -> GearModel:
     """Cold gear of a pair as drawn, pinion (0) or wheel (1); of a warm pair, that at its reference temperature."""
     drawn = {entry.name: getattr(pair, entry.name) for entry in fields(PairGeometry)}
-    form = ToothForm(gear=PairGeometry(**drawn | {"expansion": (0.0, 0.0)}).gears[index])
-    bore = 0.5 * pair.bore_diameters[index]
+    form = PairGeometry(**drawn | {"expansion": (0.0, 0.0)}).forms[index]
+    bore, details = 0.5 * pair.bore_diameters[index], pair.details[index]
+    held = INTEGRAL * form.root_radius
+    if details.rim_thickness is not None:
+        held = min(held, INTEGRAL * (form.root_radius - details.rim_thickness))
     return GearModel(
         form=form,
-        body=GearBody(bore_radius=bore if bore > 0.0 else INTEGRAL * form.root_radius),
+        body=GearBody(
+            bore_radius=bore if bore > 0.0 else held,
+            rim_thickness=details.rim_thickness,
+            web_thickness=details.web_thickness,
+        ),
         material=Elastic(young=pair.youngs_moduli[index], poisson=pair.poisson_ratios[index]),
         face_width=pair.face_widths[index],
     )

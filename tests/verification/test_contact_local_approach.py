@@ -8,7 +8,7 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementQuad2, ElementVector, FacetBasis, LinearForm, MeshQuad, asm
 from skfem.models.elasticity import linear_elasticity
 
-from dynamics.contact.corner import contact_places, sharp_tips
+from dynamics.contact.corner import contact_places, tip_ends
 from dynamics.contact.local_approach import EdgeModel, LocalModel, elastic_moduli, wedge_factor
 from dynamics.kernels.loaded_contact import ContactProblem, local_approach, press_points
 from tests.builders.loaded_mesh import equal_gears, sliced_mesh
@@ -21,7 +21,7 @@ LOAD = 3e5
 def local_at_pitch_point(softer=False, path=0.0):
     mesh = sliced_mesh(PAIR, 1)
     model = LocalModel(
-        pair=PAIR, gears=mesh.gears, tips=sharp_tips(PAIR), edges=EdgeModel(softer=softer), line_load=LOAD
+        pair=PAIR, gears=mesh.gears, tips=tip_ends(PAIR), edges=EdgeModel(softer=softer), line_load=LOAD
     )
     place = contact_places(PAIR, np.array([path]))
     return model.at(place, np.array([PAIR.face_width])), mesh.gears, place

@@ -243,7 +243,10 @@ SCUFFING_STAGES = {
 }
 SCUFFING_TEMPERATURES = {
     "MIL-PRF-23699": assumed(
-        "220 degC", "mean for this oil on aviation gear steel, AGMA 925 (from memory)", "205 degC", "260 degC"
+        "220 degC",
+        "mean for this oil on aviation gear steel after AGMA 925-A03, from memory, not confirmed",
+        "205 degC",
+        "260 degC",
     ),
 }
 """What lets gears scuff in a built-in oil; none of these numbers is of its specification."""

@@ -1,6 +1,7 @@
 """Defaults of room, losses, schedule, test plan and numerics."""
 
 import math
+from dataclasses import dataclass
 
 from rigdesign.case.defaults.drivetrains import run_up_time
 from rigdesign.case.defaults.raw_tree import RawTree
@@ -122,3 +123,83 @@ def _curve_end(tree: RawTree) -> Filling:
 def _curve(tree: RawTree, share: float, reason: str) -> Filling:
     speed = tree.si("schedule.test_speed", "speed")
     return assumed(f"{share * speed / RPM:.4g} rpm", reason) if speed else None
+
+
+@book.default("numerics.response_period")
+def _response_period(tree: RawTree) -> Filling:
+    """Only of a loop whose meshes have no common tooth period; that of one mesh is the usual one."""
+    teeth = _teeth_in_a_turn(tree)
+    if teeth is None or all(_whole(passing / teeth[0], 1.0) for passing in teeth):
+        return None
+    passing = ", ".join(f"{number:.6g}" for number in dict.fromkeys(teeth))
+    reason = f"the meshes pass {passing} teeth in a turn of the first pinion"
+    if all(_whole(number, round(number)) for number in teeth):
+        return follows("revolution", f"{reason}: they meet again after it")
+    return follows("hunting_cycle", f"{reason}: they meet again after several turns")
+
+
+def _whole(number: float, nearest: float) -> bool:
+    return abs(number - nearest) < 1e-6
+
+
+def _teeth_in_a_turn(tree: RawTree) -> list[float] | None:
+    """Teeth that each mesh passes in a turn of the pinion of ``drivetrain.torque_at``, that mesh first.
+
+    None where tooth numbers, shafts or couplings do not say it.
+    """
+    meshes = {
+        (box, name): _members(tree, box, name)
+        for box in tree.names("gearboxes")
+        for name in tree.names(f"gearboxes.{box}.meshes")
+    }
+    box, _, gear = (tree.text("drivetrain.torque_at") or "").partition(".")
+    control = next(
+        (key for key, known in meshes.items() if key[0] == box and known and gear in known.gears), None
+    )
+    if control is None:
+        return None
+    speeds = _shaft_speeds(tree, [known for known in meshes.values() if known], meshes[control])
+    passing = [
+        None if known is None or known.shafts[0] not in speeds else known.teeth[0] * speeds[known.shafts[0]]
+        for known in (meshes[control], *meshes.values())
+    ]
+    return None if None in passing else [number for number in passing if number is not None]
+
+
+@dataclass(frozen=True)
+class _Members:
+    """Pinion and wheel of a mesh: names, shafts, tooth numbers."""
+
+    gears: tuple[str, str]
+    shafts: tuple[str, str]
+    teeth: tuple[float, float]
+
+
+def _members(tree: RawTree, box: str, mesh: str) -> _Members | None:
+    gears = [tree.text(f"gearboxes.{box}.meshes.{mesh}.{side}") for side in ("pinion", "wheel")]
+    shafts = [tree.text(f"gearboxes.{box}.gears.{gear}.shaft") for gear in gears]
+    teeth = [tree.number(f"gearboxes.{box}.gears.{gear}.teeth") for gear in gears]
+    match gears, shafts, teeth:
+        case [str(), str()], [str(), str()], [float(first), float(second)] if first > 0.0 and second > 0.0:
+            return _Members(
+                (gears[0] or "", gears[1] or ""), (shafts[0] or "", shafts[1] or ""), (first, second)
+            )
+    return None
+
+
+def _shaft_speeds(tree: RawTree, meshes: list[_Members], first: _Members | None) -> dict[str, float]:
+    """Speed of every shaft per speed of the first pinion, along meshes and couplings."""
+    assert first is not None
+    joints = [(known.shafts, known.teeth[0] / known.teeth[1]) for known in meshes]
+    for coupling in tree.names("drivetrain.couplings"):
+        ends = [tree.text(f"drivetrain.couplings.{coupling}.shafts.{end}") for end in (0, 1)]
+        if ends[0] is not None and ends[1] is not None:
+            joints.append(((ends[0], ends[1]), 1.0))
+    speeds = {first.shafts[0]: 1.0}
+    for _ in joints:
+        for (here, there), ratio in joints:
+            if here in speeds:
+                speeds.setdefault(there, speeds[here] * ratio)
+            elif there in speeds:
+                speeds[here] = speeds[there] / ratio
+    return speeds

@@ -87,6 +87,7 @@ def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
                 f"{at}.strain_gauges.{name}.tooth", str(gauge.tooth),
                 f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
             )  # fmt: skip
+    yield from _body(at, gear)
     yield from _modifications(at, gear)
     for index, wave in enumerate(flank.pitch_waves):
         if 2 * wave.order > gear.teeth:
@@ -95,6 +96,22 @@ def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
                 f"{gear.teeth} teeth show no wave above order {gear.teeth // 2}",
                 f"write 1 to {gear.teeth // 2}, or single_pitch",
             )  # fmt: skip
+
+
+def _body(at: str, gear: "Gear") -> Iterator[Fault]:
+    """A web belongs inside of a rim and is no wider than the face."""
+    if gear.web_thickness is None:
+        return
+    if gear.rim_thickness is None:
+        yield Fault(
+            f"{at}.web_thickness", show(gear.web_thickness, "length"), "begins inside of a rim, and none is stated",
+            "write rim_thickness too, or leave web_thickness out",
+        )  # fmt: skip
+    elif gear.web_thickness > gear.face_width:
+        yield Fault(
+            f"{at}.web_thickness", show(gear.web_thickness, "length"),
+            f"is above the face width, {show(gear.face_width, 'length')}", "correct one of them",
+        )  # fmt: skip
 
 
 def _modifications(at: str, gear: "Gear") -> Iterator[Fault]:
@@ -137,6 +154,13 @@ def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
             "call the gear with fewer teeth the pinion",
         )  # fmt: skip
     yield from _profile_shifts(at, mesh, pinion, wheel)
+    yield from _hands(at.rpartition(".meshes.")[0], mesh, pinion, wheel)
+    if mesh.rack.protuberance and not 0.0 < mesh.rack.protuberance_angle < mesh.pressure_angle:
+        yield Fault(
+            f"{at}.rack.protuberance_angle", show(mesh.rack.protuberance_angle, "angle"),
+            f"does not lie above 0 deg and below the pressure angle, {show(mesh.pressure_angle, 'angle')}",
+            'write that of the tool, e.g. "10 deg"',
+        )  # fmt: skip
     if mesh.contact_ratio is not None and (pinion.tip_shortening or wheel.tip_shortening):
         yield Fault(
             f"{at}.contact_ratio", str(mesh.contact_ratio),
@@ -144,6 +168,23 @@ def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
             "keep contact_ratio or tip_shortening",
         )  # fmt: skip
     yield from _too_close(at, mesh, pinion.teeth + wheel.teeth)
+
+
+def _hands(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator[Fault]:
+    """Helical gears of parallel axes are of opposite hand; spur and double-helical ones have none."""
+    if not mesh.helix_angle or mesh.double_helical:
+        for name, gear in ((mesh.pinion, pinion), (mesh.wheel, wheel)):
+            if gear.helix_hand:
+                yield Fault(
+                    f"{at}.gears.{name}.helix_hand", f'"{gear.helix_hand}"',
+                    "the gear is double-helical" if mesh.double_helical else "the gear has spur teeth",
+                    "leave it out",
+                )  # fmt: skip
+    elif pinion.helix_hand and pinion.helix_hand == wheel.helix_hand:
+        yield Fault(
+            f"{at}.gears.{mesh.wheel}.helix_hand", f'"{wheel.helix_hand}"',
+            f"is that of its partner {mesh.pinion}", "write the opposite hand, or leave one of the two out",
+        )  # fmt: skip
 
 
 def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator[Fault]:

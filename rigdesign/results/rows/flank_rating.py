@@ -12,6 +12,9 @@ def flank_rating_row(rating: FlankRating) -> dict[str, Any]:
     contact, films = rating.contact, rating.films
     return {
         "stage": rating.stage,
+        "K_H_beta": rating.factors.face_load,
+        "K_H_alpha": rating.factors.transverse,
+        "K_H_basis": rating.sharing_basis,
         "sigma_H_pinion_MPa": None if pinion is None else MPA * pinion.stress,
         "S_H_pinion": None if pinion is None else pinion.safety,
         "sigma_H_wheel_MPa": None if wheel is None else MPA * wheel.stress,

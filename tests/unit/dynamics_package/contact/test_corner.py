@@ -5,7 +5,7 @@ from math import atan2, cos, hypot
 import numpy as np
 import pytest
 
-from dynamics.contact.corner import TipEnd, contact_places, sharp_tips
+from dynamics.contact.corner import TipEnd, contact_places, tip_ends
 from dynamics.gear.tooth_form import TipEdge, ToothForm
 from dynamics.mesh.tip_contact import tip_separation
 from tests.builders.loaded_mesh import equal_gears, fzg_c
@@ -23,7 +23,7 @@ def around(pair, margin=0.25, n=301):
 
 
 @PAIRS
-def test_gap_of_sharp_tips_is_that_of_the_mesh_law(pair):
+def test_gap_of_tip_ends_is_that_of_the_mesh_law(pair):
     path = around(pair)
     assert contact_places(pair, path).gap == pytest.approx(tip_separation(pair, path), abs=2e-12)
 
@@ -94,7 +94,7 @@ def test_rounding_moves_the_ends_of_the_path_and_opens_more_slowly_than_a_sharp_
     soft, hard = contact_places(pair, path, tips), contact_places(pair, path, sharp)
     assert soft.gap[0] < 1e-9
     assert np.all((soft.gap[1:] > 0.0) & (soft.gap[1:] < hard.gap[1:]))
-    full = contact_places(pair, path, sharp_tips(pair))
+    full = contact_places(pair, path, tip_ends(pair))
     assert np.all(soft.gap[1:] >= full.gap[1:])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from dynamics.contact.corner import contact_places, sharp_tips
+from dynamics.contact.corner import contact_places, tip_ends
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.points import contact_points, no_gap
@@ -73,7 +73,7 @@ def test_crowned_flanks_touch_nearer_than_on_the_line_of_action(gears):
         return flank_gap(gap)(np.zeros(2, dtype=np.int64), np.zeros(2), path, rolls)
 
     on_line = removed(place.roll)
-    moved, there = settled(Profiles(pair=gears, place=place, tips=sharp_tips(gears)), removed)
+    moved, there = settled(Profiles(pair=gears, place=place, tips=tip_ends(gears)), removed)
     assert on_line == pytest.approx([13.4e-6, 14.0e-6], abs=0.8e-6)
     assert moved.gap + there == pytest.approx([8.9e-6, 9.0e-6], abs=0.5e-6)
     for k, s in enumerate(path):
@@ -100,7 +100,7 @@ def test_unmodified_flanks_stay_where_they_are(pair):
 def test_even_metal_removed_moves_nothing(gears):
     path = np.linspace(gears.path.start - 1e-3, gears.path.end + 1e-3, 41)
     place = contact_places(gears, path)
-    profiles = Profiles(pair=gears, place=place, tips=sharp_tips(gears))
+    profiles = Profiles(pair=gears, place=place, tips=tip_ends(gears))
     moved, there = settled(profiles, lambda rolls: np.full(41, 5e-6))
     assert np.array_equal(moved.corner, place.corner)
     assert moved.gap == pytest.approx(place.gap, abs=1e-15)
@@ -151,6 +151,6 @@ def test_the_larger_gear_may_be_called_pinion(gears):
             return whole(np.zeros(25, dtype=np.int64), np.zeros(25), places, rolls)
 
         place = contact_places(pair, places)
-        moved, there = settled(Profiles(pair=pair, place=place, tips=sharp_tips(pair)), removed)
+        moved, there = settled(Profiles(pair=pair, place=place, tips=tip_ends(pair)), removed)
         found.append(moved.gap + there)
     assert found[0] == pytest.approx(found[1], abs=2e-8)

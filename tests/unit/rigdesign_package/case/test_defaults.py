@@ -11,7 +11,9 @@ from rigdesign.base.errors import CaseError
 from rigdesign.base.units import parse
 from rigdesign.case import Case, load_case
 from rigdesign.case.defaults.fill import rules, with_defaults
-from rigdesign.case.defaults.rule import BY_THE_TOOL
+from rigdesign.case.defaults.raw_tree import RawTree
+from rigdesign.case.defaults.rule import BY_THE_TOOL, Given
+from rigdesign.case.defaults.runs import _response_period
 from rigdesign.case.loader import changed_together
 from rigdesign.case.shipped import shipped_cases
 from tests.builders.minimal_case import MINIMAL, MOST_LINES, minimal_case
@@ -262,3 +264,45 @@ centre_distance = "91.5 mm"
     with pytest.raises(CaseError) as caught:
         load_case(tmp_path)
     assert not any("profile shifts" in fault.problem for fault in caught.value.faults)
+
+
+def _loop(first: tuple[int, int], second: tuple[int, int], near: str = "pinion") -> RawTree:
+    """Two gearboxes; near : gear of the second one on the shaft of the first one's wheel."""
+    boxes = {
+        name: {
+            "gears": {
+                gear: {"teeth": number, "shaft": f"{name}_{gear}"}
+                for gear, number in zip(("pinion", "wheel"), teeth, strict=True)
+            },
+            "meshes": {"main": {"pinion": "pinion", "wheel": "wheel"}},
+        }
+        for name, teeth in (("test", first), ("slave", second))
+    }
+    couplings = {"line": {"shafts": ["test_wheel", f"slave_{near}"]}}
+    return RawTree({"gearboxes": boxes, "drivetrain": {"torque_at": "test.wheel", "couplings": couplings}})
+
+
+@pytest.mark.parametrize(
+    ("tree", "period"),
+    [
+        (_loop((16, 24), (16, 24), "wheel"), None),
+        (_loop((18, 18), (28, 28), "wheel"), "revolution"),
+        (_loop((16, 24), (32, 48), "wheel"), "revolution"),
+        # two stages: 17 * 16 / 24 teeth in a turn
+        (_loop((16, 24), (17, 30)), "hunting_cycle"),
+        (_loop((16, 24), (24, 30)), None),
+        (RawTree({}), None),
+    ],
+)
+def test_period_of_the_response_fits_the_tooth_numbers(tree: RawTree, period: str | None) -> None:
+    found = _response_period(tree)
+    assert (found.value if isinstance(found, Given) else found) == period
+
+
+def test_a_loop_of_18_and_28_teeth_is_sought_over_a_revolution(tmp_path: Path) -> None:
+    text = (shipped_cases()["strain_gauge_rig"] / "case.toml").read_text(encoding="utf-8")
+    file = tmp_path / "case.toml"
+    file.write_text("".join(row for row in text.splitlines(True) if not row.startswith("response_period")))
+    case = load_case(file)
+    assert case.numerics.response_period == "revolution"
+    assert "pass 18, 28 teeth in a turn" in case.origin.mark_of["numerics.response_period"].basis

@@ -243,3 +243,14 @@ def test_the_terminal_accounts_for_the_file(tmp_path: Path, rigdesign: Rigdesign
         "nothing more is needed",
     ):  # fmt: skip
         assert words in ended.out
+
+
+@pytest.mark.parametrize(("angle", "hand"), [("8.0", "right"), ("-8.0", "left")])
+def test_sign_of_the_helix_angle_becomes_the_hand_of_the_pinion(
+    tmp_path: Path, angle: str, hand: str
+) -> None:
+    name = '<attribute id="helix_angle_reference_diameter" unit="deg">'
+    of_changed(tmp_path, (f"{name}0.0<", f"{name}{angle}<"))
+    box = load_case(tmp_path / "case").gearboxes["test"]
+    assert box.meshes["main"].helix_angle == pytest.approx(math.radians(8.0))
+    assert (box.gears["pinion"].helix_hand, box.gears["wheel"].helix_hand) == (hand, None)
