@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from rigdesign.case.films import PublishedFilm
+from rigdesign.case.films import OilFluid, PublishedFilm
 from rigdesign.case.surface_place import SurfacePlace
 from thermal.films.bath import wetted_wall_film
 from thermal.films.convection import scaled
@@ -17,14 +17,7 @@ class BathFilm(PublishedFilm):
 
     law: Literal["bath"]
     """Selects the film of inner walls wetted by a sump."""
-    fluid: Literal[
-        "gear_oil_inlet",
-        "gear_oil_mean",
-        "gear_oil_outlet",
-        "bearing_oil_inlet",
-        "bearing_oil_mean",
-        "bearing_oil_outlet",
-    ] = "gear_oil_mean"
+    fluid: OilFluid = "gear_oil_mean"
     """Oil that wets the wall."""
 
     @property

@@ -18,8 +18,7 @@ from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
 from thermal.films import convection
 from thermal.films.law import FilmLaw
 
-UsualFluid = Literal[
-    "ambient",
+OilFluid = Literal[
     "gear_oil_inlet",
     "gear_oil_mean",
     "gear_oil_outlet",
@@ -27,6 +26,8 @@ UsualFluid = Literal[
     "bearing_oil_mean",
     "bearing_oil_outlet",
 ]
+"""Oil of the gears or bearings of a chamber at inlet, outlet or their mean."""
+UsualFluid = Literal["ambient", OilFluid]
 """What wets a surface: room air, or the oil of the chamber at inlet, outlet or their mean."""
 FLUIDS: tuple[str, ...] = get_args(UsualFluid)
 Fluid = Annotated[
