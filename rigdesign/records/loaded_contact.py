@@ -16,6 +16,7 @@ from dynamics.contact.root_course import root_course
 from dynamics.mesh.pair_gap import PairGap
 from rigdesign.coupling.loads import LEAST_TORQUE, mesh_microgeometry
 from rigdesign.coupling.loop import PointResult
+from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
 from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.rig.model import Rig
 
@@ -54,6 +55,12 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
         roots=(
             root_course(cycle, numbers[0], compliances[0], 0).within(numbers[0].fillet.tangent >= ROOT),
             root_course(cycle, numbers[1], compliances[1], 1).within(numbers[1].fillet.tangent >= ROOT),
+        ),
+        gauges=gauge_stresses(
+            rig,
+            name,
+            cycle,
+            (ElasticGear(numbers[0], compliances[0]), ElasticGear(numbers[1], compliances[1])),
         ),
     )
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.contact.root_course import RootCourse
+from rigdesign.results.gauge_stress import GaugeStress
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,3 +19,5 @@ class LoadedContact:
     """In the limit of no load, modifications included [-]."""
     roots: tuple[RootCourse, RootCourse]
     """Under the loaded flanks of pinion and wheel."""
+    gauges: tuple[GaugeStress, ...] = ()
+    """Of both gears, in the order of the case."""
