@@ -15,6 +15,8 @@ from rigdesign.strain_gauge.measuring_point import MeasuringPoint
 from rigdesign.strain_gauge.placement import grid_weights
 
 Array = NDArray[np.float64]
+RISEN = 0.05
+"""Share of the peak from which a gauge counts as strained by the force on its own tooth."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +39,14 @@ class GaugeCurve:
     def peak_angle(self) -> float:
         """Rolling angle of the peak [rad]."""
         return float(self.angle[self.stress.argmax()])
+
+    @property
+    def rise_angle(self) -> float:
+        """Rolling angle from which the stress rises to its peak [rad]: where the tooth itself begins to carry."""
+        risen = self.stress > RISEN * self.peak
+        highest = int(self.stress.argmax())
+        before = np.flatnonzero(~risen[:highest])
+        return float(self.angle[before[-1] if len(before) else 0])
 
     @property
     def lowest(self) -> float:

@@ -3,22 +3,20 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, words
 from rigdesign.report.palette import INK, CurveStyle, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MARGIN = 0.15
+MARGIN = 0.3
 """Shown on either side of what is strained, as a share of it."""
-STRAINED = 0.03
+STRAINED = 0.1
 """Stress that counts as strained, as a share of the highest of all."""
 
 
 def strain_gauge_figure(contact: dict[str, Any], style: CurveStyle | None = None) -> "Figure":
-    """Stress at every gauge, a panel for each gear that has some; by rolling angle in degrees and radians."""
+    """Stress at every gauge, a panel for each gear that has some."""
     style = style or curve_style(0)
     gauges = contact["strain_gauges"]
     gears = list(dict.fromkeys(gauge["gear"] for gauge in gauges))
@@ -31,17 +29,16 @@ def strain_gauge_figure(contact: dict[str, Any], style: CurveStyle | None = None
                 gauge["rolling_angle_deg"],
                 gauge["stress_MPa"],
                 **curve_style(number).drawn,
-                label=f"{label(gauge)}, z = {gauge['face_position_mm']:+.3g} mm",
+                label=f"{label(gauge)}, z = {gauge['face_position_mm']:.3g} mm".replace(
+                    "-", "\N{MINUS SIGN}"
+                ),
             )
         axes.axhline(0.0, color=INK, linewidth=0.4)
         axes.set_xlim(*_range(shown))
         finish(axes, "rolling angle φ [°]", "stress at the gauge [N/mm²]")
         gearbox_title(axes, f"{words(gear).capitalize()}, stage {words(contact['stage'])}", style)
         axes.legend(loc="upper left")
-        radians = axes.secondary_xaxis("top", functions=(np.radians, np.degrees))
-        radians.tick_params(labelsize=6)
-        radians.set_xlabel("φ [rad]", fontsize=7)
-    figure.subplots_adjust(left=0.075, right=0.985, top=0.80, bottom=0.17, wspace=0.25)
+    figure.subplots_adjust(left=0.075, right=0.985, top=0.90, bottom=0.17, wspace=0.25)
     return figure
 
 
