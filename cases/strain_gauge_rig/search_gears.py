@@ -297,8 +297,8 @@ def print_geometry() -> None:
 
 
 HEAD = (
-    "| {} | beta, deg | sum of x | eps_gamma, geometry | eps, no load | 1.03 at, N m | eps, 238 N m | sigma I, II, IV, V, MPa | "
-    "maxima in 0.1 rad | start to maximum, rad | blank / other corners, 140 and 483 N m | to the right, mm |\n"
+    "| {} | beta, deg | sum of x | eps_gamma, geometry | eps, no load | 1.03 at, N m | eps, 238 N m | "
+    "sigma I, II, IV, V, MPa | maxima in 0.1 rad | start to maximum, rad | blank / other corners, 140 and 483 N m | to the right, mm |\n"
     + "|---" * 12
     + "|"
 )
@@ -311,7 +311,8 @@ def row(name: str, gears: GearSet, divided: Divided = coarse) -> str:
     at = [f"{got.blank[k]:.2f}/{got.other[k]:.2f}" for k in (0, -1)]
     return (
         f"| {name} | {gears.helix:.2f} | {got.shift_sum:+.2f} | {got.geometric:.2f} | {got.unloaded:.2f} | "
-        f"{got.free_torque:.0f} | {got.loaded:.3f} | {stresses} | {got.together:.2f} | {got.rise:.2f} | {at[0]}, {at[1]} | "
+        f"{got.free_torque:.0f} | {got.loaded:.3f} | {stresses} | {got.together:.2f} | {got.rise:.2f} | "
+        f"{at[0]}, {at[1]} | "
         f"{1e3 * got.to_the_right[0]:.2f} to {1e3 * got.to_the_right[-1]:.2f} |"
     )
 

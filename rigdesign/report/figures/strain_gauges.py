@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, words
-from rigdesign.report.palette import INK, CurveStyle, curve_style
+from rigdesign.report.figures.drawing import finish, new_figure, words
+from rigdesign.report.palette import INK, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,9 +15,8 @@ STRAINED = 0.1
 """Stress that counts as strained, as a share of the highest of all."""
 
 
-def strain_gauge_figure(contact: dict[str, Any], style: CurveStyle | None = None) -> "Figure":
+def strain_gauge_figure(contact: dict[str, Any]) -> "Figure":
     """Stress at every gauge, a panel for each gear that has some."""
-    style = style or curve_style(0)
     gauges = contact["strain_gauges"]
     gears = list(dict.fromkeys(gauge["gear"] for gauge in gauges))
     figure = new_figure(2.9)
@@ -36,7 +35,7 @@ def strain_gauge_figure(contact: dict[str, Any], style: CurveStyle | None = None
         axes.axhline(0.0, color=INK, linewidth=0.4)
         axes.set_xlim(*_range(shown))
         finish(axes, "rolling angle φ [°]", "stress at the gauge [N/mm²]")
-        gearbox_title(axes, f"{words(gear).capitalize()}, stage {words(contact['stage'])}", style)
+        axes.set_title(f"{words(gear).capitalize()}, stage {words(contact['stage'])}")
         axes.legend(loc="upper left")
     figure.subplots_adjust(left=0.075, right=0.985, top=0.90, bottom=0.17, wspace=0.25)
     return figure

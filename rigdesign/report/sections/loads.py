@@ -92,7 +92,7 @@ def _gauges(result: RunResult, draw: Draw) -> "dict[str, Markup]":
     found = {name: gearbox.loaded_contact for name, gearbox in result.dynamics.gearboxes.items()}
     return {
         name: draw(
-            strain_gauge_figure(contact, gearbox_styles(result)[name]),
+            strain_gauge_figure(contact),
             f"Root stress at the strain gauges of gearbox {name} over the rolling angle",
         )
         for name, contact in found.items()

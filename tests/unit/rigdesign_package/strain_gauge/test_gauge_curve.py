@@ -5,6 +5,7 @@ import pytest
 
 from dynamics.contact.root_course import RootCourse
 from rigdesign.base.errors import CaseError
+from rigdesign.report.figures.strain_gauges import strain_gauge_figure
 from rigdesign.results.gauge_stress import GaugeStress
 from rigdesign.results.rows.gauge_stress import gauge_stress_row
 from rigdesign.strain_gauge.gauge_curve import gauge_curve
@@ -79,3 +80,20 @@ def test_record_has_the_output_of_the_bridge_at_the_peak():
     assert row["bridge"]["output_mV"] == pytest.approx(5.0 * row["bridge"]["output_mV_V"])
     back = point.stress(found.output, zero=0.0)
     assert back == pytest.approx(curve.stress, abs=1e-3)
+
+
+def test_picture_shows_every_gauge_where_it_is_strained():
+    point = measuring_point()
+    curve = gauge_curve(course(lambda p, s, z: over_path(p)), PLACES, point, 20.0)
+    rows = [
+        gauge_stress_row(GaugeStress(name=name, gear=gear, tooth=0, front=True, point=point, curve=curve))
+        for name, gear in (("ii", "pinion"), ("near_end", "pinion"), ("i", "wheel"))
+    ]
+    figure = strain_gauge_figure({"stage": "test", "strain_gauges": rows})
+    first, second = figure.axes
+    assert [line.get_label() for line in first.get_lines()[:2]] == ["II, z = −5 mm", "near end, z = −5 mm"]
+    assert len(second.get_lines()) == 2
+    low, high = first.get_xlim()
+    peak = float(np.degrees(curve.peak_angle))
+    assert low < peak < high
+    assert high - low < np.ptp(np.degrees(curve.angle))
