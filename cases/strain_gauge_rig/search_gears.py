@@ -298,7 +298,8 @@ def print_geometry() -> None:
 
 HEAD = (
     "| {} | beta, deg | sum of x | eps_gamma, geometry | eps, no load | 1.03 at, N m | eps, 238 N m | "
-    "sigma I, II, IV, V, MPa | maxima in 0.1 rad | start to maximum, rad | blank / other corners, 140 and 483 N m | to the right, mm |\n"
+    "sigma I, II, IV, V, MPa | maxima in 0.1 rad | "
+    "start to maximum, rad | blank / other corners, 140 and 483 N m | to the right, mm |\n"
     + "|---" * 12
     + "|"
 )
