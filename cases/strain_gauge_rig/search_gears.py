@@ -29,7 +29,7 @@ from threadpoolctl import threadpool_limits
 from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.flank.field import FlankField
 from dynamics.flank.microgeometry import Microgeometry
-from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from rigdesign.case import load_case
@@ -63,6 +63,7 @@ SHOWN = ("I", "II", "IV", "V")
 MAXIMA_WITHIN = 0.1
 """Rolling angle in which the maxima of Figure 9 lie, 0.3 to 0.4 rad."""
 TEETH = (15, 16, 17, 18, 19, 20)
+USUAL_RACK = Rack()
 OTHER_PRESSURE_ANGLES = (18.0, 22.5)
 """Normal pressure angles [deg] besides 20."""
 SLOPE_STEP, MOST_STEP = 0.25, 4.0
@@ -102,6 +103,7 @@ class GearSet:
 
     shift_difference : x1 - x2; their sum follows from the centre distance
     helix_slope : f_Hbeta by which the gap opens towards the end that P1 has on the left
+    rack : of the tool, in normal modules
     """
 
     teeth: int
@@ -110,6 +112,7 @@ class GearSet:
     pressure_angle: float = 20.0
     shift_difference: float = 0.0
     helix_slope: float = HELIX_SLOPE
+    rack: Rack = USUAL_RACK
 
     @property
     def pair(self) -> GearPair:
@@ -128,6 +131,7 @@ class GearSet:
             profile_shift_1=first_shift,  # type: ignore[arg-type]
             pressure_angle=radians(self.pressure_angle),
             helix_angle=radians(self.helix),
+            racks=(self.rack, self.rack),
             tips=TipShortening(shortening=(TIP_SHORTENING if self.reading.both_cut else 0.0, TIP_SHORTENING)),
         )
 
@@ -360,6 +364,9 @@ def print_chosen() -> None:
         "f_Hbeta 0": {"helix_slope": 0.0},
         "f_Hbeta to the other end": {"helix_slope": -HELIX_SLOPE},
         "twist 10 % less": {"reading": Reading("", -0.9 * TWIST / 4.0)},
+        "twist 30 % more": {"reading": Reading("", -1.3 * TWIST / 4.0)},
+        "tip radius of the tool 0.25 m_n": {"rack": Rack(tip_radius=0.25)},
+        "dedendum of the tool 1.4 m_n": {"rack": Rack(dedendum=1.4)},
     }
     print(HEAD.format("z1 = z2 = 18"))
     for name, change in changes.items():
