@@ -2,7 +2,8 @@
 
 Stress across the tooth trace in the free surface, in plane stress there (no stress normal to the surface), mean over
 the grid of the gauge. Numbers of the fillet hold this stress alone: the strain that goes with it follows from the
-stress state that the measuring point states, as in `SurfaceStress`.
+stress state that the measuring point states, as in `SurfaceStress`. A tooth lies between its states: on the pinion of
+P1's rig E eps is 0.93 to 0.96 of the stress (uniaxial: 1, plane strain: 0.91).
 """
 
 from dataclasses import dataclass
