@@ -72,13 +72,16 @@ def elastic_gears(pair: GearPair, divided: Divided = standard) -> tuple[ElasticG
 
 
 def elastic_contact(
-    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], gears: tuple[ElasticGear, ElasticGear]
+    pair: GearPair,
+    micro: tuple[Microgeometry, Microgeometry],
+    gears: tuple[ElasticGear, ElasticGear],
+    n_face: int = FACE_POSITIONS,
 ) -> LoadedMesh:
     """Loaded mesh on influence numbers."""
     return LoadedMesh(
         pair=pair,
         gears=(gears[0].compliance, gears[1].compliance),
-        grid=FaceGrid.over(pair.face_width, FACE_POSITIONS),
+        grid=FaceGrid.over(pair.face_width, n_face),
         gap=flank_gap(PairGap.of_pair(pair, micro)),
         edges=EdgeModel(softer=False),
     )
