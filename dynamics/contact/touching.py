@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 Removed = Callable[[tuple[Array, Array]], Array]
 """Metal removed of both flanks (n,) at roll lengths of pinion and wheel (n,) [m]."""
 
+SHORT_OF_BASE = 0.9999
+"""Share of the profile down to the base circle on which flanks may touch: no involute has zero radius of curvature."""
 SCAN = 17
 """Places over the profile that are looked at first."""
 REFINED = 6
@@ -51,10 +53,15 @@ class Profiles:
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Distances (n,) along the profile at which the tip of the wheel and of the pinion is reached [m]."""
+        """Distances (n,) along the profile at which the tip of the wheel and of the pinion is reached [m].
+
+        Short of the base circle of the other gear, where its involute ends.
+        """
         (first, second), (base_1, base_2) = self.place.roll, self.pair.base_radii
         low = -np.maximum(self.tips[1].roll ** 2 - second**2, 0.0) / (2.0 * base_2)
         high = np.maximum(self.tips[0].roll ** 2 - first**2, 0.0) / (2.0 * base_1)
+        low = np.maximum(low, -SHORT_OF_BASE * first**2 / (2.0 * base_1))
+        high = np.minimum(high, SHORT_OF_BASE * second**2 / (2.0 * base_2))
         return np.where(self.place.corner == 2, 0.0, low), np.where(self.place.corner == 1, 0.0, high)
 
     @property

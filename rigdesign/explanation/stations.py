@@ -142,7 +142,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__loads="stiffness of the pairs of one tooth: orders of the shaft"
     ),
     "gearboxes.*.gears.*.strain_gauges.*": _at(
-        rig__strain_gauges="place in the tooth root, held against face width and fillet"
+        rig__strain_gauges="place in the tooth root, held against face width and fillet",
+        records__gauge_stress="root stress there from influence numbers",
     ),
     "gearboxes.*.gears.*.strain_gauges.*.gauge_factor": _at(strain_gauge__bridge="strain to bridge voltage"),
     "gearboxes.*.gears.*.strain_gauges.*.resistance": _at(strain_gauge__bridge="strain to bridge voltage"),

@@ -18,6 +18,7 @@ from dynamics.gear.pair import GearPair
 from rigdesign.coupling.loads import LEAST_TORQUE
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.contact_gap import HeldFlanks, held_flanks
+from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
 from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import ToothInfluence
@@ -43,12 +44,20 @@ class HeldContact:
     influence: ToothInfluence
 
     @cached_property
+    def gears(self) -> tuple[ElasticGear, ElasticGear]:
+        """Influence numbers of pinion and wheel with their compliance."""
+        pinion, wheel = zip(
+            self.influence.of_pair(self.cold), self.influence.compliances(self.cold), strict=True
+        )
+        return ElasticGear(*pinion), ElasticGear(*wheel)
+
+    @cached_property
     def mesh(self) -> LoadedMesh:
         """The warm pair on its compliant flanks."""
         pair = self.flanks.pair
         return LoadedMesh(
             pair=pair,
-            gears=self.influence.compliances(self.cold),
+            gears=(self.gears[0].compliance, self.gears[1].compliance),
             grid=FaceGrid.over(pair.face_width, default_positions(pair, gap_varies=True)),
             gap=self.flanks.gap,
         )
@@ -66,10 +75,10 @@ class HeldContact:
     @cached_property
     def roots(self) -> tuple[RootCourse, RootCourse]:
         """Root stress under the loaded flanks of pinion and wheel."""
-        numbers, gears = self.influence.of_pair(self.cold), self.influence.compliances(self.cold)
+        pinion, wheel = self.gears
         return (
-            root_course(self.cycle, numbers[0], gears[0], 0).within(numbers[0].fillet.tangent >= ROOT),
-            root_course(self.cycle, numbers[1], gears[1], 1).within(numbers[1].fillet.tangent >= ROOT),
+            root_course(self.cycle, *pinion, 0).within(pinion.numbers.fillet.tangent >= ROOT),
+            root_course(self.cycle, *wheel, 1).within(wheel.numbers.fillet.tangent >= ROOT),
         )
 
     def transverse_load_factor(self, deviation: float) -> float:
@@ -122,4 +131,5 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
         cycle=contact.cycle,
         unloaded_contact_ratio=contact.unloaded_contact_ratio,
         roots=contact.roots,
+        gauges=gauge_stresses(rig, rig.mesh_names[mesh], contact.cycle, contact.gears, contact.flanks.flank),
     )

@@ -7,6 +7,7 @@ from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.contact.root_course import RootCourse
 from dynamics.flank.axes import AxisMisalignment
 from dynamics.flank.field import Flank
+from rigdesign.results.gauge_stress import GaugeStress
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +29,9 @@ class LoadedContact:
 
     Face positions of cycle and roots are those of the contact, z times `face_sense`.
     """
+
+    gauges: tuple[GaugeStress, ...] = ()
+    """Of both gears, in the order of the case."""
 
     @property
     def face_sense(self) -> float:

@@ -116,13 +116,13 @@ def grid_average(field: StressField, gauge: StrainGauge, placement: GaugePlaceme
 
 
 def grid_weights(s: Array, z: Array, gauge: StrainGauge, placement: GaugePlacement) -> Array:
-    """Weights (n_s, n_z), sum 1, that make the mean over the grid from stresses at nodes, linear in between.
+    """Weights (n_s, n_z), sum 1, that make the mean over the grid from stresses at nodes, cubic splines in between.
 
     Found once, they serve every rolling angle: ``np.einsum("sz,...sz->...", weights, stress)``.
 
     Parameters
     ----------
-    s, z : (n_s,), (n_z,) nodes, increasing [m]; the grid must lie between them
+    s, z : (n_s,), (n_z,) nodes, increasing [m]; the grid may reach beyond the outer ones by half an interval
 
     Raises
     ------
@@ -130,24 +130,22 @@ def grid_weights(s: Array, z: Array, gauge: StrainGauge, placement: GaugePlaceme
         The nodes do not increase or do not cover the grid.
     """
     points = grid_points(gauge, placement)
-    weights = np.zeros((len(s), len(z)))
-    i, share_i = _cells("fillet positions", s, points.s)
-    j, share_j = _cells("face positions", z, points.z)
-    for di, part_i in ((0, 1.0 - share_i), (1, share_i)):
-        for dj, part_j in ((0, 1.0 - share_j), (1, share_j)):
-            np.add.at(weights, (i + di, j + dj), points.weight * part_i * part_j)
-    return weights
+    along = _shares("fillet positions", s, points.s)
+    across = _shares("face positions", z, points.z)
+    return np.asarray(np.einsum("q,qs,qz->sz", points.weight, along, across, optimize=True))
 
 
-def _cells(what: str, nodes: Array, at: Array) -> tuple[NDArray[np.intp], Array]:
-    """Cell of each point and its place in that cell, 0 to 1."""
-    if len(nodes) < 2 or not np.all(np.diff(nodes) > 0.0):
+def _shares(what: str, nodes: Array, at: Array) -> Array:
+    """(m, n) share of every node in (m,) places; a spline through two or three nodes is a line or parabola."""
+    from scipy.interpolate import CubicSpline
+
+    steps = np.diff(nodes)
+    if len(nodes) < 2 or not np.all(steps > 0.0):
         refuse(what, f"{len(nodes)} nodes", "must be at least 2 and increase", "sort them")
-    if at.min() < nodes[0] or at.max() > nodes[-1]:
+    if at.min() < nodes[0] - 0.5 * steps[0] or at.max() > nodes[-1] + 0.5 * steps[-1]:
         refuse(
             what, f"{1e3 * nodes[0]:.4g} to {1e3 * nodes[-1]:.4g} mm",
             f"do not cover the grid from {1e3 * at.min():.4g} to {1e3 * at.max():.4g} mm",
             "compute the stress further out or correct the position of the gauge",
         )  # fmt: skip
-    cell = np.clip(np.searchsorted(nodes, at, "right") - 1, 0, len(nodes) - 2)
-    return cell, (at - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
+    return np.asarray(CubicSpline(nodes, np.eye(len(nodes)))(at))

@@ -30,7 +30,8 @@ def validation_rows(
 
     Parameters
     ----------
-    with_run : run the shipped prototype at quick fidelity for the rows that need it
+    with_run : run the shipped prototype at quick fidelity for the rows that need it, standard influence numbers; else
+        coarse ones
     progress : called with the topic that is being computed
 
     Raises
@@ -83,7 +84,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
         ("ISO/TR 6336-30 example 1", iso_example.iso_example_rows),
         ("conduction benchmarks", benchmarks.benchmark_rows),
         ("oscillator, energy and closure", partial(mechanics.mechanics_rows, prototype)),
-        ("strain-gauge paper", p1.p1_rows),
+        ("strain-gauge paper", partial(p1.p1_rows, quick=not with_run)),
     ]
     if with_run:
         topics.append(("run of the prototype", partial(_run, prototype, say)))

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
     from rigdesign.report.figures.ramp import ramp_figure
+    from rigdesign.report.figures.strain_gauges import label
 
-    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}, "contact": {}}
+    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}, "contact": {}, "gauges": {}}
     dynamics = result.dynamics
     if dynamics is None:
         return shown
@@ -32,6 +33,8 @@ def _loads(result: RunResult, draw: Draw) -> Values:
     first = [name for name in dynamics.gearboxes if _shown_first(result, name)]
     shown["root_stress"] = _root_stress(result, draw, first)
     shown["contact"] = _contact(result, draw, first)
+    shown["gauges"] = _gauges(result, draw)
+    shown["gauge_label"] = label
     return shown
 
 
@@ -78,6 +81,22 @@ def _contact(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, 
         )
         for name, contact in found.items()
         if contact
+    }
+
+
+def _gauges(result: RunResult, draw: Draw) -> "dict[str, Markup]":
+    """Stress at the strain gauges of every gearbox that has some and whose contact is known."""
+    from rigdesign.report.figures.strain_gauges import strain_gauge_figure
+
+    assert result.dynamics is not None
+    found = {name: gearbox.loaded_contact for name, gearbox in result.dynamics.gearboxes.items()}
+    return {
+        name: draw(
+            strain_gauge_figure(contact),
+            f"Root stress at the strain gauges of gearbox {name} over the rolling angle",
+        )
+        for name, contact in found.items()
+        if contact and contact.get("strain_gauges")
     }
 
 

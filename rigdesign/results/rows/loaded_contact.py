@@ -9,6 +9,7 @@ from dynamics.contact.mesh_cycle import ContactPattern
 from dynamics.contact.root_course import RootCourse
 from dynamics.gear.pair import GearPair
 from rigdesign.results.loaded_contact import LoadedContact
+from rigdesign.results.rows.gauge_stress import gauge_stress_row
 from rigdesign.results.units import MPA
 
 Array = NDArray[np.float64]
@@ -45,6 +46,7 @@ def loaded_contact_row(contact: LoadedContact) -> dict[str, Any]:
             gear: _root(course, pair.base_radii[index], -1.0 if index else 1.0, contact.face_sense)
             for index, (gear, course) in enumerate(zip(GEARS, contact.roots, strict=True))
         },
+        "strain_gauges": [gauge_stress_row(gauge) for gauge in contact.gauges],
     }
 
 

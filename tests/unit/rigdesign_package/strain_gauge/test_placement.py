@@ -6,10 +6,20 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.strain_gauge.placement import GaugePlacement, grid_average, grid_weights
+from rigdesign.strain_gauge.placement import GaugePlacement, StressField, grid_average, grid_weights
 from tests.builders.strain_gauge import gauge, measuring_point
 
 PLACED = GaugePlacement(face_position=3e-3, fillet_position=0.2e-3, misalignment=math.radians(15.0))
+
+
+def fine_mean(field: StressField, count: int = 400) -> float:
+    """Mean over the turned grid by a fine midpoint rule of its own."""
+    middle = (np.arange(count) + 0.5) / count - 0.5
+    along, across = np.meshgrid(0.6e-3 * middle, 1e-3 * middle)
+    cos, sin = math.cos(PLACED.misalignment), math.sin(PLACED.misalignment)
+    s = PLACED.fillet_position + cos * along - sin * across
+    z = PLACED.face_position + sin * along + cos * across
+    return float(np.mean(field(s, z)))
 
 
 def test_linear_field_has_its_value_at_the_centre() -> None:
@@ -38,17 +48,18 @@ def test_weights_at_nodes_serve_every_angle() -> None:
     assert means == pytest.approx(by_field, rel=1e-12)
 
 
-def test_nodes_converge_to_the_field_at_second_order() -> None:
+def test_nodes_converge_to_a_fine_integral_at_fourth_order() -> None:
     def field(s: np.ndarray, z: np.ndarray) -> np.ndarray:
         return np.exp(-((s / 1e-3) ** 2)) * np.cos(z / 4e-3)
 
-    exact, errors = float(grid_average(field, gauge(), PLACED)), []
-    for count in (21, 41, 81):
+    exact, errors = fine_mean(field), []
+    assert float(grid_average(field, gauge(), PLACED)) == pytest.approx(exact, rel=1e-6)
+    for count in (11, 21, 41):
         s, z = np.linspace(-2e-3, 2e-3, count), np.linspace(-12.5e-3, 12.5e-3, 3 * count)
         weights = grid_weights(s, z, gauge(), PLACED)
         errors.append(abs(float(np.sum(weights * field(*np.meshgrid(s, z, indexing="ij")))) - exact))
-    assert errors[2] < 1e-3 * exact
-    assert errors[0] / errors[2] > 8.0  # 16 at second order
+    assert errors[2] < 1e-4 * exact
+    assert errors[0] / errors[2] > 100.0  # 256 at fourth order
 
 
 @pytest.mark.parametrize(
@@ -73,6 +84,6 @@ def test_gauge_turned_across_and_nodes_that_do_not_cover_it() -> None:
     with pytest.raises(CaseError, match="must lie within -45 to 45 deg"):
         GaugePlacement(face_position=0.0, misalignment=math.radians(80.0))
     with pytest.raises(CaseError, match="do not cover the grid"):
-        grid_weights(np.array([0.0, 1e-3]), np.array([-0.01, 0.01]), gauge(), PLACED)
+        grid_weights(np.array([0.4e-3, 1e-3]), np.array([-0.01, 0.01]), gauge(), PLACED)
     with pytest.raises(CaseError, match="at least 2 and increase"):
         grid_weights(np.array([1e-3, 0.0]), np.array([-0.01, 0.01]), gauge(), PLACED)
