@@ -42,6 +42,10 @@ class RootCourse:
         """The same at some points of the fillet (n_r,)."""
         return replace(self, stress=self.stress[:, points])
 
+    def turned(self) -> "RootCourse":
+        """The same with the face counted from its other end."""
+        return replace(self, face=-self.face[::-1], stress=self.stress[:, :, ::-1])
+
     @property
     def highest(self) -> float:
         """Largest tension [Pa]."""

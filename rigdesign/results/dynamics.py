@@ -30,6 +30,8 @@ class RootStressHistory:
     rolling_angle_deg: list[float]
     dynamic_MPa: list[float]  # noqa: N815
     quasi_static_MPa: list[float]  # noqa: N815
+    source: str = ""
+    """Where the stress per tooth force comes from: influence numbers or the factors of ISO 6336-3."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,73 @@
+"""Stress in both root fillets of one tooth over a turn of its gear, through all meshes that the gear is in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+PASS_POINTS = 241
+"""Points of a turn on the way through one mesh."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ToothPass:
+    """A tooth on its way through one mesh.
+
+    angle : (n,) rotation of the gear, growing [rad]
+    leading, trailing : (n, n_r, n_f) stress at the points of the fillet under the flank that faces the rotation, and
+        of that under the other flank [Pa]
+    """
+
+    angle: Array
+    leading: Array
+    trailing: Array
+
+    def at(self, fillet: str, place: tuple[int, int], angle: Array) -> Array:
+        """Stress at one point of a fillet over rotations of the same turn or others, shape of ``angle``; 0 outside."""
+        table = self.leading if fillet == "leading" else self.trailing
+        turned = self.angle[0] + np.mod(angle - self.angle[0], 2.0 * pi)
+        return np.asarray(np.interp(turned, self.angle, table[:, place[0], place[1]], left=0.0, right=0.0))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ToothTurn:
+    """Stress of one tooth over a turn at the most stressed point of each fillet.
+
+    angle : (n,) rotation of the gear, growing within [0, 2 pi] [rad]; leading, trailing : (n,) [Pa]
+    """
+
+    angle: Array
+    leading: Array
+    trailing: Array
+
+
+def tooth_turn(passes: Sequence[ToothPass]) -> ToothTurn:
+    """Put the ways through the meshes of a gear together; rotations are counted from one common zero.
+
+    Raises ValueError without any.
+    """
+    if not passes:
+        raise ValueError("a turn needs at least one way through a mesh; leave out gears that carry no load")
+    windows = [np.linspace(one.angle[0], one.angle[-1], PASS_POINTS) for one in passes]
+    angle = np.unique(np.concatenate([[0.0, 2.0 * pi], *(np.mod(window, 2.0 * pi) for window in windows)]))
+
+    def over_turn(fillet: str) -> Array:
+        tables = [one.leading if fillet == "leading" else one.trailing for one in passes]
+        most = max(tables, key=lambda table: float(table.max()))
+        _, point, face = np.unravel_index(int(most.argmax()), most.shape)
+        place = int(point), int(face)
+        return np.asarray(sum(one.at(fillet, place, angle) for one in passes))
+
+    return ToothTurn(angle=angle, leading=over_turn("leading"), trailing=over_turn("trailing"))
+
+
+def pitches_apart(coarse: float, fine: float, pitch: float) -> float:
+    """Rotation between two meshes: ``fine`` up to whole pitches, as near as can be to ``coarse`` [rad].
+
+    coarse : by the places of the axes; fine : by the teeth; pitch : angle of a tooth
+    """
+    off = (fine - coarse) / pitch
+    return coarse + pitch * (off - round(off))
