@@ -15,8 +15,15 @@ if TYPE_CHECKING:
 def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
     from rigdesign.report.figures.ramp import ramp_figure
+    from rigdesign.report.figures.tooth_history import tooth_history_figure
 
-    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}, "contact": {}}
+    shown: Values = {
+        "ramp_figure": None,
+        "kv_figure": None,
+        "root_stress": {},
+        "contact": {},
+        "turn_figure": None,
+    }
     dynamics = result.dynamics
     if dynamics is None:
         return shown
@@ -32,6 +39,10 @@ def _loads(result: RunResult, draw: Draw) -> Values:
     first = [name for name in dynamics.gearboxes if _shown_first(result, name)]
     shown["root_stress"] = _root_stress(result, draw, first)
     shown["contact"] = _contact(result, draw, first)
+    if bent := [history for history in dynamics.tooth_histories if history.rated]:
+        shown["turn_figure"] = draw(
+            tooth_history_figure(bent), "Root stress in both fillets of a tooth over a turn of its gear"
+        )
     return shown
 
 
