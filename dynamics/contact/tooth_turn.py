@@ -25,6 +25,13 @@ class ToothPass:
     leading: Array
     trailing: Array
 
+    @property
+    def window(self) -> Array:
+        """Rotations of the pass and the free ones before and after it [rad]."""
+        inside = np.linspace(self.angle[0], self.angle[-1], PASS_POINTS)
+        step = inside[1] - inside[0]
+        return np.concatenate(([inside[0] - step], inside, [inside[-1] + step]))
+
     def at(self, fillet: str, place: tuple[int, int], angle: Array) -> Array:
         """Stress at one point of a fillet over rotations of the same turn or others, shape of ``angle``; 0 outside."""
         table = self.leading if fillet == "leading" else self.trailing
@@ -51,7 +58,7 @@ def tooth_turn(passes: Sequence[ToothPass]) -> ToothTurn:
     """
     if not passes:
         raise ValueError("a turn needs at least one way through a mesh; leave out gears that carry no load")
-    windows = [np.linspace(one.angle[0], one.angle[-1], PASS_POINTS) for one in passes]
+    windows = [one.window for one in passes]
     angle = np.unique(np.concatenate([[0.0, 2.0 * pi], *(np.mod(window, 2.0 * pi) for window in windows)]))
 
     def over_turn(fillet: str) -> Array:
