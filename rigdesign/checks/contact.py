@@ -38,7 +38,8 @@ PRESSURE = RuleFamily(
     "limits.flanks.pitting_safety_minimum; loaded contact from influence numbers",
     procedure="Highest Hertzian pressure of the loaded contact over a mesh cycle and the face, away from tip edges, "
     "times the root of K_A and of the simulated K_V. Limit as stated; else the pitting stress limit of the weaker gear "
-    "after the planned cycles over the least pitting safety, which holds for gears of the rig.",
+    "after the planned cycles over the least pitting safety, for gears of the rig; that is a strength at the pitch "
+    "point and warns at most.",
     places=_held_meshes,
     limit_keys=("limits.flanks.contact_pressure_maximum", "limits.flanks.pitting_safety_minimum"),
     needs=LOADS,
@@ -95,6 +96,8 @@ def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
         if permissible is None:
             return not_applicable(rule, NO_LIMIT)
         limit, basis = permissible
+        # sigma_HG belongs to the pitch point and the inner point of single contact, not to the peak of a pattern
+        rule = replace(rule, warn_only=True)
     raised, words = _dynamic(solved, mesh)
     pressure = contact.cycle.flank_pressure
     return hold(

@@ -24,6 +24,8 @@ from rigdesign.results.tooth_history import ToothHistory
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
+FIRST_MESH = 0.5 * math.pi
+"""Rotation at which the tooth passes the pitch point of its first mesh [rad]: the turn begins where it is free."""
 
 
 @dataclass(frozen=True)
@@ -68,12 +70,12 @@ def tooth_history(
             continue
         front = bool(response.flank[place.mesh] > 0)
         passing = _Passing(model, place.index, front)
-        start = passing.start
+        start = FIRST_MESH
         if first is None:
-            first = start
+            first = passing.start
         else:
             coarse = _angle_between(rig, gear, loaded[0], place)
-            start = first + pitches_apart(coarse, start - first, passing.pitch)
+            start += pitches_apart(coarse, passing.start - first, passing.pitch)
         passes.append(_tooth_pass(rig, passing, forces, start))
         loaded.append(place)
     if not passes:
