@@ -131,7 +131,12 @@ def _tooth_pass(rig: Rig, passing: _Passing, forces: PairForces, start: float) -
     angle = start + sense * under.path / passing.radius
     order = slice(None, None, 1 if passing.front else -1)
     leading, trailing = (under, behind) if passing.leading else (behind, under)
-    return ToothPass(angle=angle[order], leading=leading.stress[order], trailing=trailing.stress[order])
+    return ToothPass(
+        angle=angle[order],
+        loaded="leading" if passing.leading else "trailing",
+        leading=leading.stress[order],
+        trailing=trailing.stress[order],
+    )
 
 
 def _both_fillets(rig: Rig, passing: _Passing, forces: PairForces) -> tuple[RootCourse, RootCourse]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.contact.tooth_turn import ToothTurn
+from dynamics.contact.tooth_turn import Fillet, ToothTurn
 from dynamics.rating.mean_stress import MeanRootStress
 from dynamics.standards.iso6336_3_2006 import Y_M
 from rigdesign.results.stress_source import StressSource
@@ -28,7 +28,7 @@ class ToothHistory:
     source: StressSource
 
     @property
-    def fillet(self) -> str:
+    def fillet(self) -> Fillet:
         """The fillet that is stressed most: ``leading`` or ``trailing`` flank."""
         return "leading" if self.turn.leading.max() >= self.turn.trailing.max() else "trailing"
 
