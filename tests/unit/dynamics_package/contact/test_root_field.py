@@ -70,11 +70,11 @@ def test_forces_of_the_loaded_contact_give_its_root_stress(gear: Any, side: Any)
     field = root_field(law_of(pair, found), pair, own, compliance, gear, side)
     course = field.course(forces_of(found))
     scale = float(np.abs(expected.stress).max())
-    np.testing.assert_allclose(
-        course.stress[np.isin(course.path.round(12), expected.path.round(12))],
-        expected.stress,
-        atol=2e-3 * scale,
-    )
+    stress = course.stress[np.isin(course.path.round(12), expected.path.round(12))]
+    np.testing.assert_allclose(stress, expected.stress, atol=5e-3 * scale)
+    # away from the flank, where the stress is not that of the contact
+    root = own.fillet.tangent >= np.radians(15.0)
+    np.testing.assert_allclose(stress[:, root], expected.stress[:, root], atol=1e-3 * scale)
 
 
 def test_neighbours_press_the_fillet_before_the_tooth_comes_in() -> None:
