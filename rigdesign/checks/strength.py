@@ -239,8 +239,7 @@ def _reversed_bending(
 ) -> ReversedBending | None:
     """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3."""
     gear = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index]
-    assert solved.loads is not None
-    history = solved.loads.teeth.get(gear)
+    history = None if solved.loads is None else solved.loads.teeth.get(gear)
     if method is PATH and history is not None:
         return of_history(solved.rig, gear, history)
     return by_standard(solved.rig, gear, stress, solved.test.point.speed)
