@@ -193,6 +193,9 @@ class Gear(Part):
     helix_hand: Literal["right", "left"] | None = None
     """Hand of the teeth of a single-helical gear; its partner has the other one. With ``rotation`` of the gearbox it
     says which end of the face comes into mesh last; that at the rear of the housing when left out."""
+    shaft_interference: Small = 0.0
+    """Press fit: effective interference of the bore on its shaft at rest, on the diameter, whose stress the root of an
+    idler holds as well. Zero for a seat without one."""
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
@@ -218,6 +221,12 @@ class Gear(Part):
     """Connection with the shaft; a gear without one is rigid with its shaft."""
     strain_gauges: Mapping[Name, StrainGaugeInput] = {}
     """Strain gauges in the root of its teeth, by name."""
+
+    @model_validator(mode="after")
+    def _seat(self) -> "Gear":
+        if self.shaft_interference > 0.0 and self.bore_diameter == 0.0:
+            raise fault("a press fit needs a seat", "write bore_diameter, or leave shaft_interference out")
+        return self
 
 
 class GearMesh(Part):

@@ -137,6 +137,11 @@ class FlankLimits(Part):
     film_ratio_minimum: Positive | None = None
     """Least film over roughness lambda_GF of every mesh, ISO/TS 6336-22. What an oil needs against micropitting its FZG
     test C-GF/8.3/90 says."""
+    contact_pressure_maximum: Stress | None = None
+    """Most pressure on the flanks of a mesh in the loaded contact, away from tip edges; the pitting stress limit over
+    ``pitting_safety_minimum`` for gears of the rig when left out."""
+    edge_pressure_maximum: Stress | None = None
+    """Most pressure at a tip edge in the loaded contact of a mesh; not held when left out."""
     flank_over_root_minimum: Positive | None = None
     """Least load that the flanks carry, those of specimens and those of the rig, over what the root of the weakest
     specimen carries: of tests that are to end with a broken tooth."""

@@ -18,6 +18,11 @@ def meshes(case: Case) -> Iterator[str]:
         yield label
 
 
+def meshes_of(role: Role, case: Case) -> Iterator[str]:
+    """Every mesh of the gearboxes with a role."""
+    return (label for box, label, _ in _meshes(case) if box.role == role)
+
+
 def gears_of(role: Role, case: Case) -> Iterator[str]:
     """Pinion and wheel of every mesh of the gearboxes with a role: ``mesh.gear``."""
     for box, label, mesh in _meshes(case):

@@ -1,4 +1,9 @@
-"""Checks of the teeth: root stress by standard and over the path, a window or a safety, load cycles."""
+"""Checks of the teeth: root stress by standard and over the path, a window or a safety, load cycles.
+
+Which stress governs: where the stress over the path comes from influence numbers it decides, as ISO 6336-1 ranks a
+comprehensive calculation (method A) above method B; the check by ISO 6336-3 is then a hand check beside it and warns at
+most. Where it comes from the factors of ISO 6336-3 itself, both count.
+"""
 
 import math
 from collections.abc import Iterator
@@ -11,12 +16,13 @@ from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.gear_loads import load_cycles, rated_cycles, rated_loads
+from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
+from rigdesign.results.loads import RootStressPath
+from rigdesign.results.stress_source import FROM_INFLUENCE
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
-
-REVERSED = 0.7
-"""Strength of a tooth that is bent both ways over that of one bent one way (ISO 6336-5, full reversal)."""
+from rigdesign.rig.model import Rig
 
 
 @dataclass(frozen=True)
@@ -56,8 +62,10 @@ PATH = StressMethod(
     "over the path",
     "sigma_F over the path from the dynamic tooth forces, local lever",
     "Forces on one tooth through its whole contact in the periodic response, shared between the pairs by their "
-    "stiffness and deviations; root stress of every force at the lever of its place; the peak of the path and of all "
-    "held stages counts.",
+    "stiffness and deviations. With influence numbers the stress of every force at all points of the fillet and over "
+    "the face, forces on both neighbours included: this one governs. Without them, and at fidelity quick, by the form "
+    "and stress correction factors of ISO 6336-3 at the lever of its place. The peak of the path and of all held "
+    "stages counts.",
 )
 METHODS = (ISO, PATH)
 OF_WINDOW: frozenset[Influence] = frozenset({"specimen limits"})
@@ -88,7 +96,9 @@ SAFETIES = {
         group="dynamics",
         source=f"{method.source}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
         procedure=f"{method.procedure} The strength is sigma_FE of the material times the factors of life (planned "
-        "cycles of all specimens), notch, surface and size; 0.7 of it for an idler. Safety: strength over stress.",
+        "cycles of all specimens), notch, surface and size. For an idler that is bent both ways they are those of its "
+        "highest stress: with the centrifugal stress and that of the press fit, and the mean stress influence "
+        "factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R. Safety: strength over stress.",
         places=rig_gears,
         limit_keys=("limits.strength.root_safety_minimum",),
         comparison=">=",
@@ -133,31 +143,57 @@ def _window(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> C
         family.rule(low, f"{label}.{gear}"),
         role="specimen",
         upper_limit=None if high is None else MPA * high,
+        warn_only=_by_hand(solved, mesh, method),
     )
     if solved.loads is None or low is None:
         return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
-    return hold(rule, *_stress(solved, mesh, index, method))
+    stress, how = _stress(solved, mesh, index, method)
+    return hold(rule, stress, f"{how}{_beside(solved, mesh, index, method)}")
 
 
 def _safety(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> Check:
     family, limit = SAFETIES[method.name], solved.case.limits.strength.root_safety_minimum
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
-    rule = family.rule(limit, f"{label}.{gear}")
+    rule = replace(family.rule(limit, f"{label}.{gear}"), warn_only=_by_hand(solved, mesh, method))
     if solved.loads is None or limit is None:
         return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
     found = root_safety(solved, mesh, index, method)
     if found is None:
         material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
         return not_applicable(rule, f"material {material.title} has no root strength")
-    return hold(rule, *found)
+    safety, how = found
+    return hold(rule, safety, f"{how}{_beside(solved, mesh, index, method)}")
+
+
+def _path(solved: SolvedRig, mesh: int, index: int) -> RootStressPath:
+    assert solved.loads is not None
+    return solved.loads.meshes[solved.label(mesh)].root_stress[index]
+
+
+def _by_hand(solved: SolvedRig, mesh: int, method: StressMethod) -> bool:
+    """Whether a method stands beside the one that governs."""
+    return method is ISO and solved.loads is not None and _path(solved, mesh, 0).source == FROM_INFLUENCE
+
+
+def _beside(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> str:
+    """Which of both stresses governs and why, in words."""
+    path = _path(solved, mesh, index)
+    if path.source != FROM_INFLUENCE:
+        return ""
+    field, nominal = max(path.dynamic) * MPA, worst(_iso_stresses(solved, mesh, index))[0]
+    if method is ISO:
+        return f"; a hand check: the computed field governs with {field:.0f} MPa where ISO 6336-3 has {nominal:.0f} MPa"
+    return (
+        f"; it governs: computed from {path.source} under the dynamic force of every tooth, {field:.0f} MPa, beside "
+        f"{nominal:.0f} MPa of ISO 6336-3 method B by hand"
+    )
 
 
 def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> tuple[float, str]:
     """Highest root stress [MPa] of one gear over the held stages and how it came about."""
     if method is ISO:
         return worst(_iso_stresses(solved, mesh, index))
-    assert solved.loads is not None
-    path = solved.loads.meshes[solved.label(mesh)].root_stress[index]
+    path = _path(solved, mesh, index)
     dynamic, static = max(path.dynamic), max(path.quasi_static)
     return (
         dynamic * MPA,
@@ -186,24 +222,37 @@ def root_safety(
     if material.root_strength is None:
         return None
     stress, how = _stress(solved, mesh, index, method)
-    share, factors = _strength_share(solved, mesh, index)
+    share, factors = _strength_share(solved.rig, mesh, index)
+    bending = _reversed_bending(solved, mesh, index, method, stress / MPA)
+    words = f"sigma_F {stress:.0f} MPa"
+    if bending is not None:
+        stress, share = stress + MPA * bending.mean, share * bending.strength_factor
+        words += f" + {MPA * bending.mean:.0f} MPa held all the time"
+        factors += (
+            f", Y_M {bending.strength_factor:.3f} for R {bending.stress_ratio:.2f} (idler, bent both ways)"
+        )
     strength = MPA * share * material.root_strength
-    return strength / stress, f"{how}; sigma_F {stress:.0f} MPa of {strength:.0f} MPa = sigma_FE {factors}"
+    return strength / stress, f"{how}; {words} of {strength:.0f} MPa = sigma_FE {factors}"
 
 
-def _strength_share(solved: SolvedRig, mesh: int, index: int) -> tuple[float, str]:
-    """Share of sigma_FE that the planned cycles, notch, size and reversed bending leave, and its factors."""
-    rig = solved.rig
+def _reversed_bending(
+    solved: SolvedRig, mesh: int, index: int, method: StressMethod, stress: float
+) -> ReversedBending | None:
+    """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3."""
+    gear = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index]
+    history = None if solved.loads is None else solved.loads.teeth.get(gear)
+    if method is PATH and history is not None:
+        return of_history(solved.rig, gear, history)
+    return by_standard(solved.rig, gear, stress, solved.test.point.speed)
+
+
+def _strength_share(rig: Rig, mesh: int, index: int) -> tuple[float, str]:
+    """Share of sigma_FE that the planned cycles, notch and size leave, and its factors."""
     cycles = rated_cycles(rig, mesh, index)
     factors = permissible_factors(rig.pairs[rig.mesh_names[mesh]], index, cycles)
     share = math.prod(factors.values())
     words = " ".join(f"{symbol} {value:.3f}" for symbol, value in factors.items())
-    words += f" at {cycles:.2e} cycles"
-    box, _ = rig.mesh(rig.mesh_names[mesh])
-    name = rig.mesh_gear_name(mesh, index)
-    if sum(name in (entry.pinion, entry.wheel) for entry in box.meshes.values()) > 1:
-        return REVERSED * share, f"{words}, {REVERSED} for bending both ways (idler)"
-    return share, words
+    return share, f"{words} at {cycles:.2e} cycles"
 
 
 def _load_cycles(solved: SolvedRig) -> Check:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from dynamics.contact.root_field import PairForces
 from dynamics.drivetrain.bracing import BracingDrift, LoopBracing, drift
 from dynamics.drivetrain.loop_crossings import loop_crossings
 from dynamics.drivetrain.loop_load import LoopLoad
@@ -15,8 +16,10 @@ from rigdesign.coupling.loads import laws_of, mesh_models, shifted_gear, signed_
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.records import root
 from rigdesign.records.curves import Curves, own_ratio
+from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS, LEAST_GAIN, mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
+from rigdesign.records.tooth_history import tooth_histories
 from rigdesign.results.loads import (
     DynamicLoads,
     MeshLoads,
@@ -63,6 +66,7 @@ def dynamic_loads(rig: Rig, run: DynamicRun, *, over_speed: bool = True) -> Dyna
         loop_crossings=tuple(mode_crossings(rig, modes, max(run.curves.response.speeds))),
         damping=tuple(damping_audit(rig.drivetrain, laws)),
         bracing=tuple(stage_bracing(rig, point) for point in run.points),
+        teeth={found.gear: found for found in tooth_histories(rig, run.test)},
     )
 
 
@@ -110,6 +114,7 @@ def mesh_loads(
         unsolved=tuple(unsolved(rig, run, mesh)),
         root_stress=paths,
         root_stress_ratios=ratios,
+        contact=loaded_contact(rig, run.test, mesh),
     )
 
 
@@ -120,37 +125,48 @@ def root_stresses(
 
     The ratio of the highest dynamic to the highest quasi-static stress belongs to the governing held stage.
     """
-    model = run.test.last.models[mesh]
     of_point = {point.point.stage: _stresses(rig, point, mesh) for point in run.points}
-    names = rig.mesh_gears(rig.mesh_names[mesh])
+    names, radii = rig.mesh_gears(rig.mesh_names[mesh]), run.test.last.models[mesh].pair.base_radii
     paths = []
     for gear in (0, 1):
-        stage = max(of_point, key=lambda held: root.peak(of_point[held][0][gear]))
-        dynamic, static = of_point[stage]
-        own = names[gear].split(".")[1]
-        paths.append(root.over_path(own, stage, model.pair.base_radii[gear], dynamic[gear], static[gear]))
-    static = of_point[run.test.point.stage][1]
-    return tuple(paths), tuple(_over_speed(rig, run, mesh, static)) if over_speed else ()
+        stage = max(of_point, key=lambda held: root.peak(of_point[held].dynamic[gear]))
+        found = of_point[stage]
+        own = root.StressedGear(names[gear].split(".")[1], stage, radii[gear], found.roots.source)
+        paths.append(root.over_path(own, found.dynamic[gear], found.static[gear]))
+    test = of_point[run.test.point.stage]
+    return tuple(paths), tuple(_over_speed(rig, run, mesh, test)) if over_speed else ()
 
 
-def _over_speed(rig: Rig, run: DynamicRun, mesh: int, static: root.Pair) -> Iterator[RootStressRatio]:
+@dataclass(frozen=True)
+class _HeldRoots:
+    """Root stress of pinion and wheel at a held point, and the static forces behind it."""
+
+    roots: root.MeshRoots
+    dynamic: root.Pair
+    static: root.Pair
+    forces: PairForces
+
+
+def _over_speed(rig: Rig, run: DynamicRun, mesh: int, test: _HeldRoots) -> Iterator[RootStressRatio]:
     """Highest dynamic over highest quasi-static root stress at every speed of the governing curve."""
     model, points = run.test.last.models[mesh], run.curves.response.points
-    for response, stresses in zip(points, root.dynamic_stresses(model, points, mesh)):
-        pinion, wheel = (root.peak(stresses[gear]) / root.peak(static[gear]) for gear in (0, 1))
+    roots = test.roots.at_highest(test.forces)
+    for response, forces in zip(points, root.dynamic_forces(model, points, mesh)):
+        stresses = roots.highest(forces)
+        pinion, wheel = (root.peak(stresses[gear]) / root.peak(test.static[gear]) for gear in (0, 1))
         speed = own_ratio(rig, mesh) * response.speed
         yield RootStressRatio(speed=speed, pinion=pinion, wheel=wheel)
 
 
-def _stresses(rig: Rig, point: PointResult, mesh: int) -> tuple[root.Pair, root.Pair]:
-    """Dynamic and quasi-static root stress of pinion and wheel at a held point."""
+def _stresses(rig: Rig, point: PointResult, mesh: int) -> _HeldRoots:
     assert rig.system is not None and point.last.response is not None
     ports = port_model(rig.system, laws_of(point.last.models))
     state = solve_static(ports, LoopLoad(torque=signed_torque(rig, point.point)))
     model = point.last.models[mesh]
-    return root.dynamic_stress(model, point.last.response, mesh), root.static_stress(
-        model, state, ports, mesh
-    )
+    roots = root.mesh_roots(rig, model)
+    (acting,) = root.dynamic_forces(model, [point.last.response], mesh)
+    still = root.static_forces(model, state, ports, mesh)
+    return _HeldRoots(roots, roots.highest(acting), roots.highest(still), still)
 
 
 def unsolved(rig: Rig, run: DynamicRun, mesh: int) -> Iterator[UnsolvedSpeed]:

@@ -10,14 +10,15 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import factor_points, iso_factor, own_ratio
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
-from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS
+from rigdesign.records.reversed_bending import of_history
 from rigdesign.records.time_run import ramp_history
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.results.rows.flank_rating import flank_rating_row
 from rigdesign.results.rows.loaded_contact import loaded_contact_row
+from rigdesign.results.rows.tooth_history import tooth_history_row
 from rigdesign.rig.model import Rig
 
 
@@ -51,6 +52,10 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
         bracing=[rows.bracing_row(bracing) for bracing in loads.bracing],
         ramp=ramp_history(rig, run.ramp),
         torque_balance=[torque_balance(rig, point) for point in run.points],
+        tooth_histories=[
+            tooth_history_row(history, rated=of_history(rig, gear, history) is not None)
+            for gear, history in loads.teeth.items()
+        ],
         loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
     )
 
@@ -63,7 +68,6 @@ def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> Gea
     speed = rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, run.test.point.speed)
     iso = iso_factor(rig, name, float(response.mean[mesh]), speed)
     main = next(iter(run.curves.named))
-    contact = loaded_contact(rig, run.test, mesh)
     return GearboxDynamics(
         role=loads.role,
         torque=main,
@@ -86,7 +90,7 @@ def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> Gea
         root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
         geometry=rows.geometry_row(rig.pairs[name], run.test.last.models[mesh]),
         flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, run.points, mesh)],
-        loaded_contact=None if contact is None else loaded_contact_row(contact),
+        loaded_contact=None if loads.contact is None else loaded_contact_row(loads.contact),
     )
 
 

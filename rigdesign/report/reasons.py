@@ -2,13 +2,14 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rigdesign.report.numbers import limit_text, number_text, percent_text, quantity_text, value_text
 from rigdesign.report.views import applicable, sorted_checks
 from rigdesign.results.check import Check
 from rigdesign.results.dynamics import GearboxDynamics
 from rigdesign.results.result import RunResult
+from rigdesign.results.stress_source import FROM_INFLUENCE
 
 AGREEMENT = 1.15
 """Ratio of two root stresses up to which the methods agree."""
@@ -21,10 +22,12 @@ class Why:
     """The first page of a report in words.
 
     sentences : at most two; decided_by : what would tell which way it goes, empty where nothing is open
+    root_stress : which root stress governs, with both figures; empty where the sentences say so or none is held
     """
 
     sentences: tuple[str, ...]
     decided_by: str = ""
+    root_stress: str = ""
 
 
 def why(result: RunResult) -> Why:
@@ -37,10 +40,38 @@ def why(result: RunResult) -> Why:
     if checks[0].verdict == "fail":
         failing = [check for check in checks if check.verdict == "fail"]
         methods = next((pair for check in failing if (pair := _two_methods(result.checks, check))), None)
-        return _methods_differ(result, failing, *methods) if methods else _limit_missed(failing)
-    if checks[0].verdict == "warn":
-        return _reserved(checks)
-    return Why(sentences=(f"All {len(checks)} checks that apply hold.", _nearest(checks)))
+        if methods:
+            return _methods_differ(result, failing, *methods)
+        return replace(_limit_missed(failing), root_stress=governing_stress(result))
+    held = _reserved(checks) if checks[0].verdict == "warn" else _all_hold(checks)
+    return replace(held, root_stress=governing_stress(result))
+
+
+def governing_stress(result: RunResult) -> str:
+    """Which root stress governs and why: of the gear with most of its limit used, specimens first; empty if none."""
+    pairs = [pair for check in applicable(result.checks) if (pair := _two_methods(result.checks, check))]
+    if not pairs:
+        return ""
+    iso, path = max(pairs, key=lambda pair: (pair[1].role == "specimen", pair[1].utilisation or 0.0))
+    subject = _capital(iso.title.partition(",")[0])
+    if _from_field(result, path):
+        return (
+            f"{subject}: the computed field governs with {value_text(path)}, from influence numbers under the dynamic "
+            f"force of every tooth; ISO 6336-3 method B has {value_text(iso)} as a hand check."
+        )
+    return (
+        f"{subject}: {value_text(iso)} by ISO 6336-3 method B and {value_text(path)} by its factors under the dynamic "
+        "force of every tooth; both count, as no stress field is computed here."
+    )
+
+
+def _from_field(result: RunResult, path: Check) -> bool:
+    """Whether the stress over the path of a check is that of influence numbers."""
+    label, _, gear = path.id.split(".", 2)[2].rpartition(".")
+    mesh = _mesh(result, label)
+    return mesh is not None and any(
+        history.gear == gear and history.source == FROM_INFLUENCE for history in mesh.root_stress
+    )
 
 
 def _two_methods(checks: Sequence[Check], failing: Check) -> tuple[Check, Check] | None:
@@ -65,9 +96,13 @@ def _methods_differ(result: RunResult, failing: Sequence[Check], iso: Check, pat
     """Two values of one root: what each is, and what of the two models makes them differ."""
     assert iso.value is not None and path.value is not None
     subject = _capital(iso.title.partition(",")[0])
+    by_field = _from_field(result, path)
     first = (
-        f"{subject} is {value_text(iso)} by ISO 6336-3 ({iso.verdict}) and {value_text(path)} over the path of contact "
-        f"({path.verdict}), against {limit_text(iso)}{_others(failing, iso, path)}."
+        f"{subject} is {value_text(path)} by the computed field, which governs ({path.verdict}), and {value_text(iso)} "
+        f"by ISO 6336-3 as a hand check ({iso.verdict}), against {limit_text(iso)}{_others(failing, iso, path)}."
+        if by_field
+        else f"{subject} is {value_text(iso)} by ISO 6336-3 ({iso.verdict}) and {value_text(path)} over the path of "
+        f"contact ({path.verdict}), against {limit_text(iso)}{_others(failing, iso, path)}."
     )
     stress = iso.id.startswith("specimen.")
     ratio = iso.value / path.value if stress else path.value / iso.value
@@ -87,7 +122,11 @@ def _methods_differ(result: RunResult, failing: Sequence[Check], iso: Check, pat
             f"{_contact_ratio(result, label)}, times load factors; "
             f"over the path the deflected teeth meet early and share the force{_engagement(result, label, gear)}."
         )
-    decided = f"A tooth contact analysis of the real pair by influence numbers, or {measured}."
+    decided = (
+        f"{_capital(measured)}."
+        if by_field
+        else f"A tooth contact analysis of the real pair by influence numbers, or {measured}."
+    )
     return Why(sentences=(first, second), decided_by=decided)
 
 
@@ -165,6 +204,11 @@ def _reserved(checks: Sequence[Check]) -> Why:
     often = reasons.most_common(1)
     decided = f"A model of what is left out most often: {often[0][0]}." if often else ""
     return Why(sentences=(f"{words}.", _nearest(checks)), decided_by=decided)
+
+
+def _all_hold(checks: Sequence[Check]) -> Why:
+    """Nothing is missed and nothing is open."""
+    return Why(sentences=(f"All {len(checks)} checks that apply hold.", _nearest(checks)))
 
 
 def _nearest(checks: Sequence[Check]) -> str:

@@ -68,6 +68,15 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
                     "quasi-static [N/mm2]": history.quasi_static_MPa,
                 },
             )
+    for turn in dynamics.tooth_histories:
+        yield (
+            file_stem("tooth_history", turn.gear),
+            {
+                "rotation [deg]": turn.rotation_deg,
+                "leading flank [N/mm2]": turn.leading_MPa,
+                "trailing flank [N/mm2]": turn.trailing_MPa,
+            },
+        )
     if dynamics.ramp is not None:
         yield "ramp", _ramp(dynamics.ramp)
 

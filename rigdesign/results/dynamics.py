@@ -30,6 +30,36 @@ class RootStressHistory:
     rolling_angle_deg: list[float]
     dynamic_MPa: list[float]  # noqa: N815
     quasi_static_MPa: list[float]  # noqa: N815
+    source: str = ""
+    """Where the stress per tooth force comes from: influence numbers or the factors of ISO 6336-3."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToothTurnHistory:
+    """Root stress of one tooth over a turn of its gear, and what it does to the strength."""
+
+    gear: str
+    """``gearbox.gear``"""
+    stage: str
+    meshes: list[str]
+    rotation_deg: list[float]
+    leading_MPa: list[float]  # noqa: N815
+    """Fillet under the flank that faces the rotation, at its most stressed point; mean stress included."""
+    trailing_MPa: list[float]  # noqa: N815
+    """The same under the other flank."""
+    mean_MPa: dict[str, float]  # noqa: N815
+    """Held all the time: {centrifugal, press_fit, total}."""
+    fillet: str
+    """The one that is stressed more: ``leading`` or ``trailing``."""
+    highest_MPa: float  # noqa: N815
+    lowest_MPa: float  # noqa: N815
+    R: float
+    """Lowest over highest stress of that fillet."""
+    Y_M: float
+    """Mean stress influence factor of ISO 6336-3 at R."""
+    rated: bool
+    """Whether the root safety counts mean stress and Y_M: an idler that is bent both ways."""
+    source: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +102,9 @@ class GearboxDynamics:
     misalignment_um (gap of the axes over the face, at its end that comes into mesh last),
     contact_ratio_geometric, contact_ratio_no_load, contact_ratio, largest_share, early_contact, late_contact,
     transmission_error_um, approach_um, mesh_stiffness_N_um, K_H_beta, line_load_N_mm, flank_pressure_MPa,
-    edge_pressure_MPa, pattern: {rolling_angle_deg, face_mm, pressure_MPa, edge}, root_stress: {pinion, wheel:
+    edge_pressure_MPa, edge_contact: {where, tip_pressure_pinion_MPa, tip_pressure_wheel_MPa, tip_share,
+    face_end_pressure_MPa, face_end_over_middle}, pattern: {rolling_angle_deg, face_mm, pressure_MPa, edge},
+    root_stress: {pinion, wheel:
     {rolling_angle_deg, highest_MPa, mid_face_MPa, largest_MPa, at_face_mm, stress_ratio}}}; None but at reference."""
 
 
@@ -111,6 +143,8 @@ class DynamicsResult:
     actuator_force_N, torque_cold_Nm, torque_hot_Nm}."""
     ramp: RampHistory | None
     torque_balance: list[dict[str, Any]]
+    tooth_histories: list[ToothTurnHistory] = field(default_factory=list)
+    """Of every loaded gear at the held stage that speaks for the rig."""
     loop_crossings: list[dict[str, Any]] = field(default_factory=list)
     """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain, excited}: mesh and shaft
     orders that meet a mode of the closed loop; order_of: gearbox or shaft, speed_rpm that of its pinion or its own;

@@ -2,12 +2,15 @@
 carries."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from dynamics.drivetrain.bracing import BracingDrift
 from dynamics.drivetrain.modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
+from rigdesign.results.loaded_contact import LoadedContact
+from rigdesign.results.stress_source import FROM_FACTORS, StressSource
+from rigdesign.results.tooth_history import ToothHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +115,8 @@ class RootStressPath:
     """(n,) [Pa]"""
     quasi_static: tuple[float, ...]
     """(n,) [Pa]"""
+    source: StressSource = FROM_FACTORS
+    """Of the stress per tooth force."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,6 +144,8 @@ class MeshLoads:
     root_stress: tuple[RootStressPath, ...] = ()
     """Of pinion and wheel."""
     root_stress_ratios: tuple[RootStressRatio, ...] = ()
+    contact: LoadedContact | None = None
+    """At the held stage that speaks for the rig; None without influence numbers."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,3 +167,5 @@ class DynamicLoads:
     loop_crossings: tuple[ModeCrossing, ...] = ()
     damping: tuple[DampingRecord, ...] = ()
     bracing: tuple[StageBracing, ...] = ()
+    teeth: Mapping[str, ToothHistory] = field(default_factory=dict)
+    """Of every loaded gear ``gearbox.gear``."""

@@ -49,8 +49,10 @@ def speed_effect(rig: Rig, mesh: str, curve: GaugeCurve) -> SpeedEffect:
     model = point.last.models[number]
     ports = port_model(rig.system, laws_of(point.last.models))
     state = solve_static(ports, LoopLoad(torque=signed_torque(rig, point.point)))
-    dynamic = root.dynamic_stress(model, response, number)[0]
-    static = root.static_stress(model, state, ports, number)[0]
+    roots = root.mesh_roots(rig, model)
+    (at_speed,) = root.dynamic_forces(model, [response], number)
+    dynamic = roots.highest(at_speed)[0]
+    static = roots.highest(root.static_forces(model, state, ports, number))[0]
     ratio = _ratio(dynamic, static, model.pair.base_radii[0] * curve.angle)
     moved = ratio * curve.stress
     first, last = static[0][0], static[0][-1]

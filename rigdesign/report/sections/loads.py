@@ -16,8 +16,16 @@ def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
     from rigdesign.report.figures.ramp import ramp_figure
     from rigdesign.report.figures.strain_gauges import label
+    from rigdesign.report.figures.tooth_history import tooth_history_figure
 
-    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}, "contact": {}, "gauges": {}}
+    shown: Values = {
+        "ramp_figure": None,
+        "kv_figure": None,
+        "root_stress": {},
+        "contact": {},
+        "gauges": {},
+        "turn_figure": None,
+    }
     dynamics = result.dynamics
     if dynamics is None:
         return shown
@@ -35,6 +43,10 @@ def _loads(result: RunResult, draw: Draw) -> Values:
     shown["contact"] = _contact(result, draw, first)
     shown["gauges"] = _gauges(result, draw)
     shown["gauge_label"] = label
+    if bent := [history for history in dynamics.tooth_histories if history.rated]:
+        shown["turn_figure"] = draw(
+            tooth_history_figure(bent), "Root stress in both fillets of a tooth over a turn of its gear"
+        )
     return shown
 
 

@@ -75,6 +75,7 @@ def root_stress_row(path: RootStressPath) -> RootStressHistory:
         rolling_angle_deg=[math.degrees(angle) for angle in path.rolling_angle],
         dynamic_MPa=[stress * MPA for stress in path.dynamic],
         quasi_static_MPa=[stress * MPA for stress in path.quasi_static],
+        source=path.source,
     )
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.contact.mesh_cycle import ContactPattern
 from dynamics.contact.root_course import RootCourse
 from dynamics.gear.pair import GearPair
-from rigdesign.results.loaded_contact import LoadedContact
+from rigdesign.results.loaded_contact import EdgeContact, LoadedContact
 from rigdesign.results.rows.gauge_stress import gauge_stress_row
 from rigdesign.results.units import MPA
 
@@ -40,7 +40,8 @@ def loaded_contact_row(contact: LoadedContact) -> dict[str, Any]:
         "K_H_beta": cycle.face_load_factor,
         "line_load_N_mm": 1e-3 * float(cycle.line_load.max()),
         "flank_pressure_MPa": MPA * cycle.flank_pressure,
-        "edge_pressure_MPa": MPA * float(cycle.pressure[cycle.edge_contact].max(initial=0.0)),
+        "edge_pressure_MPa": MPA * contact.edges.tip_pressure,
+        "edge_contact": _edges(contact.edges),
         "pattern": _pattern(cycle.pattern(0), pair, contact.face_sense),
         "root_stress": {
             gear: _root(course, pair.base_radii[index], -1.0 if index else 1.0, contact.face_sense)
@@ -54,6 +55,19 @@ def _misalignment(contact: LoadedContact) -> float:
     """Gap that the axes open over the common face width on the loaded flanks, positive at z > 0 [m]."""
     pair = contact.cycle.points.pair
     return contact.axes.gap_slope(pair)[0 if contact.flank == "front" else 1] * pair.face_width
+
+
+def _edges(edges: EdgeContact) -> dict[str, Any]:
+    """Where a flank carries at its ends, how high the pressure is and what it shares."""
+    ends = edges.end_pressures
+    return {
+        "where": edges.where,
+        "tip_pressure_pinion_MPa": MPA * edges.tip_pressures[0],
+        "tip_pressure_wheel_MPa": MPA * edges.tip_pressures[1],
+        "tip_share": edges.tip_share,
+        "face_end_pressure_MPa": None if ends is None else [MPA * pressure for pressure in ends],
+        "face_end_over_middle": edges.end_ratio,
+    }
 
 
 def _pattern(pattern: ContactPattern, pair: GearPair, sense: float) -> dict[str, Any]:

@@ -66,7 +66,9 @@ def test_the_other_fillet_is_pressed(rig: Rig, cycle: MeshCycle, gears: Gears) -
     assert abs(found.curve.peak) < 0.2 * drawn.curve.peak
 
 
-def test_on_back_flanks_a_gauge_there_reads_from_the_other_end(rig: Rig, cycle: MeshCycle, gears: Gears) -> None:
+def test_on_back_flanks_a_gauge_there_reads_from_the_other_end(
+    rig: Rig, cycle: MeshCycle, gears: Gears
+) -> None:
     """The gear turned round by half a turn: its back fillet in front, the face counted the other way."""
     front = rig.strain_gauges["test.pinion.ii"]
     place = front.point.placement

@@ -1,18 +1,24 @@
 """Factors between nominal stress, stress and strength of a tooth root, against hand numbers."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from dynamics.contact.tooth_turn import ToothTurn
 from dynamics.rating.iso_rating import permissible_factors, transverse_load_factor
+from dynamics.rating.mean_stress import MeanRootStress
 from dynamics.standards import iso6336_3_2006 as iso
 from rigdesign.case import load_case
 from rigdesign.checks import strength
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.tooth_history import GearInMesh, mean_stress, sensitivity
 from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.stress_source import FROM_FACTORS, StressSource
+from rigdesign.results.tooth_history import ToothHistory
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.loads import mesh_loads
 from tests.builders.paths import CASES
@@ -61,14 +67,16 @@ def test_pitch_errors_load_single_teeth_of_a_lightly_loaded_wide_gear(prototype:
     assert transverse_load_factor(narrow, other) == 1.0
 
 
-def rated(rig: Rig, meshes: int) -> SolvedRig:
+def rated(rig: Rig, meshes: int, source: StressSource = FROM_FACTORS) -> SolvedRig:
     """The rig held at 180 N m with a K_V of 1.1 in every mesh, and made-up histories."""
     response = SimpleNamespace(dynamic_factor=np.full(meshes, 1.1), mean=np.full(meshes, 180.0))
     point: Any = SimpleNamespace(
         point=SimpleNamespace(stage="test", speed=1256.6, torque=180.0),
         last=SimpleNamespace(response=response),
     )
-    loads = DynamicLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), mesh_loads()))
+    made = mesh_loads()
+    made = replace(made, root_stress=tuple(replace(path, source=source) for path in made.root_stress))
+    loads = DynamicLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), made))
     run: Any = SimpleNamespace()
     return SolvedRig(rig=rig, points=[point], run=run, loads=loads)
 
@@ -83,14 +91,74 @@ def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:
     assert check.value == pytest.approx(920.0 * life / (nominal * 1.1 * 1.1 * shared), rel=5e-3)
 
 
-def test_every_mesh_of_a_gearbox_is_rated_and_an_idler_bends_both_ways() -> None:
-    """The pinion of the main rig between its two wheels: two labels, and 0.7 of the strength."""
-    rig = build_rig(load_case(CASES / "uhcf_main"), "quick")
+@pytest.fixture(scope="module")
+def main_rig() -> Rig:
+    return build_rig(load_case(CASES / "uhcf_main"), "quick")
+
+
+def test_every_mesh_of_a_gearbox_is_rated_and_an_idler_bends_both_ways(main_rig: Rig) -> None:
+    """The pinion of the main rig between its two wheels: two labels, bent both ways by ISO 6336-3, Annex B.
+
+    Safety (strength Y_M) / (sigma_F + mean) with R = (mean - 1.2 sigma_F) / (mean + sigma_F).
+    """
+    rig = main_rig
     labels = [rig.mesh_labels[name] for name in rig.mesh_names]
     assert {"test.a", "test.b"} <= set(labels)
     found = {check.id: check for check in strength.checks(rated(rig, len(labels)))}
     for label in labels:
         assert any(f".{label}." in identity for identity in found)
-    idler, _ = strength._strength_share(rated(rig, len(labels)), labels.index("test.a"), 0)
-    wheel, _ = strength._strength_share(rated(rig, len(labels)), labels.index("test.a"), 1)
-    assert idler / wheel == pytest.approx(0.7, rel=0.02)
+    solved, mesh = rated(rig, len(labels)), labels.index("test.a")
+    idler, words = strength.root_safety(solved, mesh, 0) or (0.0, "")
+    stress = float(words.split("sigma_F ")[1].split(" MPa")[0])
+    mean = mean_stress(rig, GearInMesh(mesh, 0), solved.test.point.speed)
+    assert mean.total == pytest.approx(63e6, rel=0.02)
+    ratio = (1e-6 * mean.total - 1.2 * stress) / (1e-6 * mean.total + stress)
+    factor = iso.Y_M(ratio, sensitivity(rig, GearInMesh(mesh, 0)))
+    share, _ = strength._strength_share(rig, mesh, 0)
+    assert idler == pytest.approx(920.0 * share * factor / (stress + 1e-6 * mean.total), rel=5e-3)
+    assert f"Y_M {factor:.2f}" in words and "idler" in words
+    _, of_wheel = strength.root_safety(solved, mesh, 1) or (0.0, "")
+    assert "Y_M" not in of_wheel and "held all the time" not in of_wheel
+
+
+def test_stress_over_the_path_of_an_idler_takes_r_of_its_history(main_rig: Rig) -> None:
+    labels = [main_rig.mesh_labels[name] for name in main_rig.mesh_names]
+    solved, mesh = rated(main_rig, len(labels)), labels.index("test.a")
+    angle = np.linspace(0.0, 2.0 * np.pi, 5)
+    wave = 1e6 * np.array([0.0, 500.0, 0.0, -400.0, 0.0])
+    history = ToothHistory(
+        gear="test.pinion",
+        stage="test",
+        meshes=("test.a", "test.b"),
+        turn=ToothTurn(angle=angle, leading=wave, trailing=0.9 * wave),
+        mean=MeanRootStress(disc=50e6, teeth=10e6),
+        sensitivity=0.5,
+        source="finite-element influence numbers",
+    )
+    assert solved.loads is not None
+    loads = replace(solved.loads, teeth={"test.pinion": history})
+    safety, words = strength.root_safety(replace(solved, loads=loads), mesh, 0, strength.PATH) or (0.0, "")
+    assert history.stress_ratio == pytest.approx(-340.0 / 560.0)
+    share, _ = strength._strength_share(main_rig, mesh, 0)
+    stress = 1e-6 * max(loads.meshes["test.a"].root_stress[0].dynamic)
+    factor = 1.0 / (1.0 + 340.0 / 560.0 / 3.0)
+    assert safety == pytest.approx(920.0 * share * factor / (stress + 60.0))
+    assert "R -0.61" in words
+
+
+def test_the_computed_field_governs_and_the_standard_stands_beside_it(prototype: Rig) -> None:
+    """With stress from influence numbers ISO 6336-3 warns at most, and both say so with both figures."""
+    by_factors, by_field = (
+        {check.id: check for check in strength.checks(held)}
+        for held in (rated(prototype, 2), rated(prototype, 2, source="finite-element influence numbers"))
+    )
+    iso_id, path_id = (f"specimen.root_stress_{method}.test.pinion" for method in ("iso", "path"))
+    assert by_factors[iso_id].verdict == by_factors[path_id].verdict == by_field[path_id].verdict == "fail"
+    assert by_field[iso_id].verdict == "warn"
+    assert by_field[iso_id].value == by_factors[iso_id].value
+    for identity in (iso_id, path_id):
+        assert "governs" not in by_factors[identity].reason
+        for check in (by_field[iso_id], by_field[path_id]):
+            assert f"{check.value:.0f} MPa" in by_field[identity].reason
+    assert "hand check" in by_field[iso_id].reason
+    assert "it governs: computed from finite-element influence numbers" in by_field[path_id].reason

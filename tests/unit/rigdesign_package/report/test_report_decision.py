@@ -51,6 +51,32 @@ def test_two_root_stresses_are_told_apart_with_their_reason():
     assert "strain gauges in the root fillet of test pinion" in why.decided_by
 
 
+def by_field(result):
+    """The same with root stress from influence numbers."""
+    test = result.dynamics.gearboxes["test"]
+    histories = [replace(history, source="finite-element influence numbers") for history in test.root_stress]
+    gearboxes = result.dynamics.gearboxes | {"test": replace(test, root_stress=histories)}
+    return replace(result, dynamics=replace(result.dynamics, gearboxes=gearboxes))
+
+
+def test_a_computed_field_governs_and_the_standard_is_a_hand_check():
+    result = by_field(with_geometry(make_result(checks=two_methods(2033.0, 1140.0))))
+    why = reasons.why(result)
+    assert "1140 N/mm² by the computed field, which governs (fail)" in why.sentences[0]
+    assert "2033 N/mm² by ISO 6336-3 as a hand check" in why.sentences[0]
+    assert why.decided_by == "Strain gauges in the root fillet of test pinion."
+    assert why.root_stress == ""
+
+
+def test_a_sheet_without_a_failing_root_says_which_stress_governs():
+    held = make_result(checks=two_methods(1050.0, 900.0))
+    said = reasons.why(by_field(held)).root_stress
+    assert "the computed field governs with 900 N/mm²" in said and "1050 N/mm² as a hand check" in said
+    said = reasons.why(held).root_stress
+    assert "both count" in said and "900 N/mm²" in said and "1050 N/mm²" in said
+    assert reasons.why(make_result(checks=[make_check("oil.room", 1.0, 3.0)])).root_stress == ""
+
+
 def test_one_of_two_methods_failing_is_enough_and_others_are_counted():
     given = [*two_methods(2033.0, 900.0), make_check("oil.room", 4.0, 3.0)]
     first = reasons.why(make_result(checks=given)).sentences[0]

@@ -1,0 +1,163 @@
+"""Root stress of the teeth of a gear from the forces of a mesh law, by influence numbers.
+
+The forces on the slices of all tooth pairs at many states, dynamic or not, give the stress at the fillets of one tooth
+over its way through the mesh: its own force and those on both neighbours. The force of a slice acts evenly over its
+width, where the teeth touch at that position of the path, a tip corner included.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import ceil, cos, tan
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.contact.compliance import InterpolatedCompliance
+from dynamics.contact.corner import contact_places, tip_ends
+from dynamics.contact.root_course import RootCourse, RootNumbers
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.force import ToothForces
+from dynamics.mesh.law import MeshLaw
+
+Array = NDArray[np.float64]
+Gear = Literal[0, 1]
+Side = Literal[1, -1]
+FACE_POINTS = 12
+"""Least points over the face at which the slices act, where the influence numbers know the face."""
+ROWS = 100_000
+"""States and tooth pairs evaluated at a time."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairForces:
+    """Forces of consecutive tooth pairs at n states on the flank that carries.
+
+    path : (n, n_pairs) path position at mid-face, falling by a base pitch from pair to pair [m]
+    force : (n, n_pairs, n_slices) in the transverse line of action [N]
+    """
+
+    path: Array
+    force: Array
+
+    @classmethod
+    def of(cls, forces: ToothForces, states: slice = slice(None), *, front: bool = True) -> "PairForces":
+        """Forces on the front flanks or on the back flanks.
+
+        The back flank of a gear is the front flank of the same gear turned end for end: pairs and slices in reverse.
+        """
+        if front:
+            return cls(forces.path[states], forces.front[states])
+        return cls(forces.back_path[states][:, ::-1], forces.back[states][:, ::-1, ::-1])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RootField:
+    """Stress at one fillet of a tooth per transverse force on a slice of its own pair or a neighbouring one.
+
+    start, step : path positions of the table [m]; shift : (n_slices,) lag of the slices on the path [m]
+    table : column -> (n_slices, n_path, n_points) stress [Pa/N] at the tooth that many pairs after the loaded one
+    face : (n_f,) of the points, from mid-face [m]; n_points = n_r n_f, points of the fillet times face positions
+    base_pitch : [m]
+    """
+
+    start: float
+    step: float
+    shift: Array
+    table: Mapping[int, Array]
+    face: Array
+    base_pitch: float
+
+    def within(self, points: NDArray[np.bool_]) -> "RootField":
+        """The same at some points of the fillet (n_r,)."""
+        kept = np.repeat(points, len(self.face))
+        return replace(self, table={k: block[:, :, kept] for k, block in self.table.items()})
+
+    def at(self, points: NDArray[np.int64]) -> "RootField":
+        """The same at one point of the fillet for every face position (n_f,), given by its number."""
+        kept = points * len(self.face) + np.arange(len(self.face))
+        return replace(self, table={k: block[:, :, kept] for k, block in self.table.items()})
+
+    def course(self, forces: PairForces) -> RootCourse:
+        """Stress of one tooth, put together from all tooth pairs at all states.
+
+        The teeth before the first and after the last pair are followed too: their neighbours carry.
+        """
+        n, pairs, _ = forces.force.shape
+        ends = self.base_pitch
+        path = np.concatenate((forces.path[:, :1] + ends, forces.path, forces.path[:, -1:] - ends), axis=1)
+        block = max(1, ROWS // (pairs * len(self.shift)))
+        stress = np.concatenate(
+            [
+                self._of_teeth(PairForces(forces.path[k : k + block], forces.force[k : k + block]))
+                for k in range(0, n, block)
+            ]
+        )
+        order = np.argsort(path, axis=None, kind="stable")
+        return RootCourse(
+            path=path.ravel()[order],
+            face=self.face,
+            stress=stress.reshape(path.size, -1)[order].reshape(path.size, -1, len(self.face)),
+        )
+
+    def _of_teeth(self, forces: PairForces) -> Array:
+        """Stress at the teeth of all pairs and one more at each end (n, n_pairs + 2, n_points) [Pa]."""
+        n, pairs, _ = forces.force.shape
+        some = next(iter(self.table.values()))
+        stress = np.zeros((n, pairs + 2, some.shape[2]))
+        rows, columns = np.nonzero(forces.force.any(axis=2))
+        acting = forces.force[rows, columns]
+        place = (forces.path[rows, columns][:, None] - self.shift - self.start) / self.step
+        low = np.clip(np.floor(place).astype(np.int64), 0, some.shape[1] - 2)
+        share = np.clip(place - low, 0.0, 1.0)
+        number = np.arange(len(self.shift))
+        for after, block in self.table.items():
+            found = np.einsum("ks,ksp->kp", acting * (1.0 - share), block[number, low])
+            found += np.einsum("ks,ksp->kp", acting * share, block[number, low + 1])
+            # a pair is loaded once at a state: no row and column stands twice
+            stress[rows, columns + 1 + after] += found
+        return stress
+
+
+def root_field(
+    law: MeshLaw,
+    pair: GearPair,
+    numbers: RootNumbers,
+    compliance: InterpolatedCompliance,
+    gear: Gear,
+    side: Side = 1,
+) -> RootField:
+    """Stress numbers of pinion (0) or wheel (1) for the slices of a mesh law.
+
+    law : its path and slices; pair : warm; numbers, compliance : of the gear, on the same grid
+    side : 1 the fillet under the loaded flank, -1 the other
+    """
+    n_slices, n_path = law.stiffness.shape
+    path = law.path_start + law.path_step * np.arange(n_path)
+    n_f = len(numbers.face)
+    within = 1 if n_f == 1 else max(1, ceil(FACE_POINTS / n_slices))
+    width = pair.face_width / n_slices
+    inside = ((np.arange(within) + 0.5) / within - 0.5) * width
+    lag = inside * tan(pair.base_helix_angle)
+    place = contact_places(pair, path[:, None] - lag, tip_ends(pair))
+    slant = cos(pair.base_helix_angle)
+    per_force = pair.base_radii[1] / (slant * place.lever[1]) / within
+    middles = ((np.arange(n_slices) + 0.5) / n_slices - 0.5) * pair.face_width
+    # pinion teeth of later pairs stand behind the loaded flank, wheel teeth before it
+    sense = -1 if gear == 0 else 1
+    blocks = {sense * k: numbers.stress[k, side] for k in (-1, 0, 1) if (k, side) in numbers.stress}
+    table = {after: np.empty((n_slices, n_path, len(block))) for after, block in blocks.items()}
+    for i, middle in enumerate(middles):
+        face = np.broadcast_to(middle + inside, place.roll[gear].shape)
+        shapes = compliance.shapes(place.roll[gear].ravel(), face.ravel()).reshape(*face.shape, -1)
+        spread = np.einsum("kj,kjg->kg", per_force, shapes)
+        for after, block in blocks.items():
+            table[after][i] = spread @ block.T
+    return RootField(
+        start=law.path_start,
+        step=law.path_step,
+        shift=law.slice_shift,
+        table=table,
+        face=numbers.face,
+        base_pitch=law.base_pitch,
+    )

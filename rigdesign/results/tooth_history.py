@@ -1,0 +1,53 @@
+"""Root stress of one tooth over a turn of its gear: SI record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.contact.tooth_turn import Fillet, ToothTurn
+from dynamics.rating.mean_stress import MeanRootStress
+from dynamics.standards.iso6336_3_2006 import Y_M
+from rigdesign.results.stress_source import StressSource
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToothHistory:
+    """Both root fillets of a tooth at the held stage that speaks for the rig."""
+
+    gear: str
+    """``gearbox.gear``"""
+    stage: str
+    meshes: tuple[str, ...]
+    """Labels of the meshes that load it, in which it is rated."""
+    turn: ToothTurn
+    """Stress of the tooth forces."""
+    mean: MeanRootStress
+    """Held all the time, on top."""
+    sensitivity: float
+    """M of ISO 6336-3, Annex B [-]."""
+    source: StressSource
+
+    @property
+    def fillet(self) -> Fillet:
+        """The fillet that is stressed most: ``leading`` or ``trailing`` flank."""
+        return "leading" if self.turn.leading.max() >= self.turn.trailing.max() else "trailing"
+
+    @property
+    def highest(self) -> float:
+        """Highest stress with that at rest [Pa]."""
+        return float(np.max(getattr(self.turn, self.fillet))) + self.mean.total
+
+    @property
+    def lowest(self) -> float:
+        """Lowest stress of the same fillet with that at rest [Pa]."""
+        return float(np.min(getattr(self.turn, self.fillet))) + self.mean.total
+
+    @property
+    def stress_ratio(self) -> float:
+        """R, lowest over highest stress [-]."""
+        return self.lowest / self.highest
+
+    @property
+    def mean_stress_factor(self) -> float:
+        """Y_M of ISO 6336-3 at this stress ratio [-]."""
+        return Y_M(self.stress_ratio, self.sensitivity)
