@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.corner import contact_places, tip_ends
@@ -107,15 +108,19 @@ class RootField:
         stress = np.zeros((n, pairs + 2, some.shape[2]))
         rows, columns = np.nonzero(forces.force.any(axis=2))
         acting = forces.force[rows, columns]
+        slices, n_path, n_points = some.shape
         place = (forces.path[rows, columns][:, None] - self.shift - self.start) / self.step
-        low = np.clip(np.floor(place).astype(np.int64), 0, some.shape[1] - 2)
+        low = np.clip(np.floor(place).astype(np.int64), 0, n_path - 2)
         share = np.clip(place - low, 0.0, 1.0)
-        number = np.arange(len(self.shift))
+        first = n_path * np.arange(slices) + low
+        # entries of the table and their weights, those of a loaded pair in one row
+        weights = np.stack([acting * (1.0 - share), acting * share], axis=-1)
+        entries = np.stack([first, first + 1], axis=-1)
+        starts = 2 * slices * np.arange(len(rows) + 1)
+        acts = csr_array((weights.ravel(), entries.ravel(), starts), shape=(len(rows), slices * n_path))
         for after, block in self.table.items():
-            found = np.einsum("ks,ksp->kp", acting * (1.0 - share), block[number, low])
-            found += np.einsum("ks,ksp->kp", acting * share, block[number, low + 1])
             # a pair is loaded once at a state: no row and column stands twice
-            stress[rows, columns + 1 + after] += found
+            stress[rows, columns + 1 + after] += acts @ block.reshape(-1, n_points)
         return stress
 
 

@@ -270,7 +270,7 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
         run = None
         if stated.run is not None:
             run = DynamicRun(points=tuple(points), curves=stated.run.curves, ramp=stated.run.ramp)
-        loads = None if run is None else dynamic_loads(rig, run, over_speed=False)
+        loads = None if run is None else dynamic_loads(rig, run, checks_only=True)
         solved = with_records(rig, points, run, loads)
         topics = [
             topic for topic in REGISTRY.topics() if any(_follows(f.key, patterns) for f in topic.families)

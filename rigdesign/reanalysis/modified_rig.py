@@ -47,7 +47,7 @@ def modified_rig(
     ramp, solved = _time_run(rig, test, replace(again, parts=parts), (run, curves), motor_losses)
     run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
     if "curves" in parts or "time run" in parts:
-        loads = dynamic_loads(rig, run, over_speed=False)
+        loads = dynamic_loads(rig, run, checks_only=True)
     elif loads is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
         loads = replace(loads, bracing=tuple(stage_bracing(rig, point) for point in points))
     return with_records(rig, points, run, loads), solved

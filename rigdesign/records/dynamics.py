@@ -49,24 +49,25 @@ class DynamicRun:
         return governing_point(self.points)
 
 
-def dynamic_loads(rig: Rig, run: DynamicRun, *, over_speed: bool = True) -> DynamicLoads:
+def dynamic_loads(rig: Rig, run: DynamicRun, *, checks_only: bool = False) -> DynamicLoads:
     """All of them as SI records.
 
-    over_speed : with the ratio of dynamic to quasi-static root stress over speed, which no check asks for
+    checks_only : without the ratio of dynamic to quasi-static root stress over speed and the tooth histories of gears that
+        are no idlers, which no check asks for
     """
     assert rig.drivetrain is not None
     laws = laws_of(run.test.last.models)
     modes = loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)
     return DynamicLoads(
         meshes={
-            rig.mesh_labels[name]: mesh_loads(rig, run, mesh, modes, over_speed=over_speed)
+            rig.mesh_labels[name]: mesh_loads(rig, run, mesh, modes, checks_only=checks_only)
             for mesh, name in enumerate(rig.mesh_names)
         },
         modes=tuple(modes),
         loop_crossings=tuple(mode_crossings(rig, modes, max(run.curves.response.speeds))),
         damping=tuple(damping_audit(rig.drivetrain, laws)),
         bracing=tuple(stage_bracing(rig, point) for point in run.points),
-        teeth={found.gear: found for found in tooth_histories(rig, run.test)},
+        teeth={found.gear: found for found in tooth_histories(rig, run.test, 2 if checks_only else 1)},
     )
 
 
@@ -98,10 +99,10 @@ def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[
 
 
 def mesh_loads(
-    rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode], *, over_speed: bool
+    rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode], *, checks_only: bool
 ) -> MeshLoads:
     """Loads of one mesh, by its number."""
-    paths, ratios = root_stresses(rig, run, mesh, over_speed=over_speed)
+    paths, ratios = root_stresses(rig, run, mesh, checks_only=checks_only)
     return MeshLoads(
         role=rig.mesh(rig.mesh_names[mesh])[0].role,
         torque_peak=max(
@@ -119,7 +120,7 @@ def mesh_loads(
 
 
 def root_stresses(
-    rig: Rig, run: DynamicRun, mesh: int, *, over_speed: bool
+    rig: Rig, run: DynamicRun, mesh: int, *, checks_only: bool
 ) -> tuple[tuple[RootStressPath, ...], tuple[RootStressRatio, ...]]:
     """Root stress of pinion and wheel at the held stage that stresses them most, and its ratio over speed.
 
@@ -134,7 +135,7 @@ def root_stresses(
         own = root.StressedGear(names[gear].split(".")[1], stage, radii[gear], found.roots.source)
         paths.append(root.over_path(own, found.dynamic[gear], found.static[gear]))
     test = of_point[run.test.point.stage]
-    return tuple(paths), tuple(_over_speed(rig, run, mesh, test)) if over_speed else ()
+    return tuple(paths), tuple(_over_speed(rig, run, mesh, test)) if not checks_only else ()
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from rigdesign.rig.tooth_influence import ToothInfluence
 
 ROOT = radians(15.0)
 """Least angle between fillet and tooth axis of the root: nearer to the flank the stress is that of the contact."""
-FINE = 1024
+FINE = 256
 """Positions of a mesh cycle for the contact ratio without load."""
 KEPT = 16
 """Contacts that are kept: those of the meshes of a rig at its held points."""

@@ -8,7 +8,7 @@ place and the stress of the factors of ISO 6336-3.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,23 +111,21 @@ def mesh_roots(rig: Rig, model: MeshModel) -> MeshRoots:
     """Root stress as the tooth model of the rig has it."""
     if rig.mesh_stiffness != "influence_numbers":
         return FactorRoots(model)
-    return FieldRoots(root_fields(rig, model))
+    return FieldRoots((field_of(rig, model, 0), field_of(rig, model, 1)))
 
 
-def root_fields(rig: Rig, model: MeshModel, side: Side = 1) -> tuple[RootField, RootField]:
-    """Stress of pinion and wheel per slice force at the points of the fillet that are its root.
+def field_of(rig: Rig, model: MeshModel, gear: Literal[0, 1], side: Side = 1) -> RootField:
+    """Stress of pinion (0) or wheel (1) per slice force at the points of the fillet that are its root.
 
     side : 1 the fillet under the loaded flank, -1 the other
     """
     drawn = rig.pairs[model.name]
-    numbers, compliances = rig.tooth_influence.of_pair(drawn), rig.tooth_influence.compliances(drawn)
-
-    def of_gear(gear: int) -> RootField:
-        own = numbers[gear]
-        field = root_field(model.law, model.pair, own, compliances[gear], 1 if gear else 0, side)
-        return field.within(own.fillet.tangent >= ROOT)
-
-    return of_gear(0), of_gear(1)
+    numbers, compliance = (
+        rig.tooth_influence.of_pair(drawn)[gear],
+        rig.tooth_influence.compliances(drawn)[gear],
+    )
+    field = root_field(model.law, model.pair, numbers, compliance, gear, side)
+    return field.within(numbers.fillet.tangent >= ROOT)
 
 
 def dynamic_forces(model: MeshModel, points: Sequence[CurvePoint], mesh: int) -> list[PairForces]:

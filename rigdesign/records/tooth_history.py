@@ -35,9 +35,11 @@ class GearInMesh:
     index: int
 
 
-def tooth_histories(rig: Rig, point: PointResult) -> Iterator[ToothHistory]:
-    """Of every gear that carries load at a held point."""
+def tooth_histories(rig: Rig, point: PointResult, least_meshes: int = 1) -> Iterator[ToothHistory]:
+    """Of every gear that carries load at a held point and is in at least so many meshes."""
     for gear, places in gear_meshes(rig).items():
+        if len(places) < least_meshes:
+            continue
         found = tooth_history(rig, point, gear, places)
         if found is not None:
             yield found
@@ -153,7 +155,7 @@ def _both_fillets(rig: Rig, passing: _Passing, forces: PairForces) -> tuple[Root
         turned = not turned
 
     def of_side(side: Side) -> RootCourse:
-        course = root.root_fields(rig, model, side)[index].course(forces)
+        course = root.field_of(rig, model, 1 if index else 0, side).course(forces)
         return course.turned() if turned else course
 
     return of_side(1), of_side(-1)
