@@ -52,8 +52,8 @@ class DynamicRun:
 def dynamic_loads(rig: Rig, run: DynamicRun, *, checks_only: bool = False) -> DynamicLoads:
     """All of them as SI records.
 
-    checks_only : without the ratio of dynamic to quasi-static root stress over speed and the tooth histories of gears that
-        are no idlers, which no check asks for
+    checks_only : without what no check asks for, the ratio of dynamic to quasi-static root stress over speed and the
+        tooth histories of gears that are no idlers
     """
     assert rig.drivetrain is not None
     laws = laws_of(run.test.last.models)
