@@ -11,6 +11,7 @@ import pytest
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.flank.axes import PARALLEL
 from rigdesign.case import Case, load_case
 from rigdesign.checks import contact
 from rigdesign.records.solved_rig import SolvedRig
@@ -42,7 +43,13 @@ def cycle(mesh: str, n_face: int = 1) -> MeshCycle:
 def record(mesh: str) -> LoadedContact:
     roots: Any = ()
     return LoadedContact(
-        stage="test", torque=180.0, cycle=cycle(mesh), unloaded_contact_ratio=1.0, roots=roots
+        stage="test",
+        torque=180.0,
+        flank="front",
+        axes=PARALLEL,
+        cycle=cycle(mesh),
+        unloaded_contact_ratio=1.0,
+        roots=roots,
     )
 
 
