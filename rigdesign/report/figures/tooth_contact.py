@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 SIGMA_F = "σ_F"
 EDGE = "#c0392b"
 """Places where a tip edge carries."""
+ROOM = 1.3
+"""Top of a stress axis over the highest stress: the legend stands above the curves."""
 
 
 def tooth_contact_figure(contact: dict[str, Any], style: CurveStyle | None = None) -> "Figure":
@@ -38,7 +40,8 @@ def tooth_contact_figure(contact: dict[str, Any], style: CurveStyle | None = Non
         axes.axhline(0.0, color=INK, linewidth=0.4)
         finish(axes, "rolling angle φ [°]", f"root stress {SIGMA_F}(φ) [N/mm²]")
         gearbox_title(axes, f"{words(gear).capitalize()}, stage {words(contact['stage'])}", style)
-        axes.legend(loc="best")
+        axes.set_ylim(top=ROOM * max(course["highest_MPa"]))
+        axes.legend(loc="upper right")
     figure.subplots_adjust(left=0.065, right=0.985, top=0.90, bottom=0.17, wspace=0.46)
     return figure
 
@@ -53,12 +56,9 @@ def _pattern(figure: "Figure", axes: "Axes", contact: dict[str, Any], style: Cur
         across, angle, drawn, shading="nearest", cmap="cividis", vmin=0.0, rasterized=True
     )
     if edge.any():
-        axes.plot(
-            across[edge], angle[edge], linestyle="", marker=".", markersize=1.2, color=EDGE, label="tip edge"
-        )
-        axes.legend(loc="upper right")
+        axes.plot(across[edge], angle[edge], linestyle="", marker=".", markersize=1.2, color=EDGE)
     bar = figure.colorbar(shown, ax=axes, fraction=0.06, pad=0.03)
     bar.ax.tick_params(labelsize=6)
-    bar.set_label("p_H [N/mm²]", fontsize=7)
+    bar.ax.set_title("p_H [N/mm²]", fontsize=6.5, pad=4)
     finish(axes, "face position z [mm]", "rolling angle φ [°]")
-    gearbox_title(axes, "Contact on the pinion flank", style)
+    gearbox_title(axes, "Pinion flank", style)
