@@ -31,8 +31,12 @@ class Prototype:
 
     @cached_property
     def simulated(self) -> Rig:
-        """The rig of P2's own simulation: constant bearing drag, no motor (run_up_simulation.toml)."""
-        return build_rig(load_case(self.folder / "run_up_simulation.toml"))
+        """The rig of P2's own simulation: constant bearing drag, no motor (run_up_simulation.toml).
+
+        Its tooth stiffness is that of ISO 6336-1, as in a multi-body program: the analytic teeth.
+        """
+        rig = build_rig(load_case(self.folder / "run_up_simulation.toml"))
+        return replace(rig, mesh_stiffness="iso_6336_scaled")
 
     @cached_property
     def full_addendum(self) -> Case:
