@@ -21,7 +21,6 @@ from dynamics.contact.contact_ratio import unloaded_contact_ratio
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.local_approach import EdgeModel
 from dynamics.contact.mesh_cycle import ContactPattern, MeshCycle
 from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
 from dynamics.flank.microgeometry import Microgeometry
@@ -83,7 +82,6 @@ def elastic_contact(
         gears=(gears[0].compliance, gears[1].compliance),
         grid=FaceGrid.over(pair.face_width, n_face),
         gap=flank_gap(PairGap.of_pair(pair, micro)),
-        edges=EdgeModel(softer=False),
     )
 
 
