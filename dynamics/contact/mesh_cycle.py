@@ -36,6 +36,10 @@ class ContactPattern:
     line_load: Array
     edge: Flags
 
+    def path_at(self, base_helix_angle: float) -> Array:
+        """Path positions (n_path, n_face) at the face positions themselves, by the helix angle [rad] [m]."""
+        return np.asarray(self.path[:, None] - self.face * np.tan(base_helix_angle))
+
     @property
     def touched(self) -> Flags:
         """Where the flank carries load."""

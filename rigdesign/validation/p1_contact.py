@@ -10,7 +10,6 @@ the face whose root stays without load.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from math import tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -161,7 +160,7 @@ class CornerLoad:
 
 def corner_load(pair: GearPair, pattern: ContactPattern) -> CornerLoad:
     """Where the corners of the pinion flank carry, flank on flank; ``pattern`` : of the pinion."""
-    path = pattern.path[:, None] - pattern.face * tan(pair.base_helix_angle)
+    path = pattern.path_at(pair.base_helix_angle)
     along = (path - pair.path.start) / pair.path.length
     across = np.broadcast_to(pattern.face / pair.face_width + 0.5, along.shape)
     root, tip = (along >= 0.0) & (along <= CORNER), (along <= 1.0) & (along >= 1.0 - CORNER)

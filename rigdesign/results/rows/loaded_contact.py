@@ -75,7 +75,7 @@ def _pattern(pattern: ContactPattern, pair: GearPair, sense: float) -> dict[str,
 
     sense : face position z per face position of the contact
     """
-    path = pattern.path[:, None] - pattern.face * np.tan(pair.base_helix_angle)
+    path = pattern.path_at(pair.base_helix_angle)
     touched = np.flatnonzero(pattern.touched.any(axis=1))
     rows, over = slice(touched[0], touched[-1] + 1), slice(None, None, int(sense))
     return {
