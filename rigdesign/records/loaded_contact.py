@@ -1,7 +1,8 @@
 """Loaded contact of the meshes from influence numbers: quasi-static, warm, at the held points.
 
 All teeth alike, with the modifications of the flanks that carry and the axes of the warm housing. The load is the mean
-torque: a dynamic load on top of it evens out face and pairs, so that K_Hbeta and K_Halpha are on the safe side.
+torque: a dynamic load on top of it evens out face and pairs. Helix slope deviations of manufacture, bending of the
+shafts and clearance of the bearings are not in the axes, and so not in K_Hbeta.
 """
 
 from dataclasses import dataclass
@@ -27,7 +28,7 @@ ROOT = radians(15.0)
 """Least angle between fillet and tooth axis of the root: nearer to the flank the stress is that of the contact."""
 FINE = 256
 """Positions of a mesh cycle for the contact ratio without load."""
-KEPT = 16
+KEPT = 64
 """Contacts that are kept: those of the meshes of a rig at its held points."""
 
 

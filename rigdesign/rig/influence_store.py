@@ -28,6 +28,7 @@ Progress = Callable[[str], None]
 
 SCHEMA = 2
 """Of the numbers and of how they are computed; raise it with any change of either."""
+ABSENT = (FileNotFoundError, NotADirectoryError)
 SEAL = 64
 """Length of the hash at the beginning of a file [bytes]."""
 
@@ -52,15 +53,23 @@ class InfluenceStore:
 
         say : called before they are computed, and for a file that cannot be used
         """
-        file = self.file(model)
-        with suppress(FileNotFoundError):
-            found = _read(file, identity(model))
-            if found is not None:
-                return found
-            say(f"{file} is damaged or of another gear: its influence numbers are computed again")
+        found = self.stored(model, say)
+        if found is not None:
+            return found
         gear = model.form.gear
         say(f"influence numbers of the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm")
         return self.compute(model)
+
+    def stored(self, model: GearModel, say: Progress = silent) -> InfluenceNumbers | None:
+        """Numbers of a gear that are stored, or None; ``say`` is called for a file that cannot be used."""
+        file = self.file(model)
+        try:
+            found = _read(file, identity(model))
+        except ABSENT:
+            return None
+        if found is None:
+            say(f"{file} is damaged or of another gear: its influence numbers are computed again")
+        return found
 
     def compute(self, model: GearModel) -> InfluenceNumbers:
         """Numbers of a gear, computed now and stored."""
@@ -131,11 +140,11 @@ def _seal(key: str, archive: bytes) -> bytes:
 def _read(file: Path, key: str) -> InfluenceNumbers | None:
     """Numbers of a file; None for one that is damaged or of another gear.
 
-    Raises FileNotFoundError where there is none.
+    Raises one of `ABSENT` where there is none.
     """
     try:
         content = file.read_bytes()
-    except FileNotFoundError:
+    except ABSENT:
         raise
     except OSError:
         return None

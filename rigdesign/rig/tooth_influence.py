@@ -1,5 +1,6 @@
 """Influence numbers of the gears of a rig, of the cold teeth as drawn."""
 
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache, partial
@@ -17,6 +18,9 @@ from rigdesign.rig.influence_store import InfluenceStore, Progress, silent
 INTEGRAL = 0.5
 """Radius at which a gear that is one with its shaft is held, as a share of its root radius: the shaft has the rest."""
 
+NEEDED = 2.5e9
+"""Memory in which the numbers of a gear are computed [bytes]."""
+
 Numbers = tuple[InfluenceNumbers, InfluenceNumbers]
 Compliances = tuple[InterpolatedCompliance, InterpolatedCompliance]
 
@@ -30,16 +34,29 @@ class ToothInfluence:
 
     store: InfluenceStore = field(default_factory=InfluenceStore.default)
     near: tuple[GearModel, ...] = ()
+    _found: dict[GearModel, InfluenceNumbers] = field(default_factory=dict, compare=False, repr=False)
 
     def prepare(self, pairs: Iterable[GearPair], say: Progress = silent) -> None:
-        """Compute what is not stored of the gears of some pairs, a gear on each core."""
+        """Read the numbers of the gears of some pairs and compute what is missing, as many at a time as there is room.
+
+        In copies of this process: where a compiled library with threads of its own has run in it, GNU OpenMP ends the
+        copies, and their gears are computed here, one after the other.
+        """
         models = dict.fromkeys(self.known(gear_model(pair, index)) for pair in pairs for index in (0, 1))
-        missing = [model for model in models if not self.store.file(model).exists()]
-        if len(missing) < 2:
-            return
-        say(f"influence numbers of {len(missing)} gears: computed once, then kept")
-        with BackgroundTasks([partial(self.store.compute, model) for model in missing]) as tasks:
-            tasks.results()
+        for model in models:
+            found = None if model in self._found else self.store.stored(model, say)
+            if found is not None:
+                self._found[model] = found
+        missing = [model for model in models if model not in self._found]
+        if missing:
+            say(
+                f"influence numbers of {len(missing)} gear{'s' if len(missing) > 1 else ''}, half a minute each: computed once, then kept"
+            )
+        at_once = _at_once()
+        for first in range(0, len(missing), at_once):
+            batch = missing[first : first + at_once]
+            with BackgroundTasks([partial(self.store.compute, model) for model in batch]) as tasks:
+                self._found.update(zip(batch, tasks.results(), strict=True))
 
     def of_pair(self, pair: GearPair) -> Numbers:
         """Numbers of pinion and wheel on the face positions of the contact: positive z comes into mesh last."""
@@ -56,7 +73,11 @@ class ToothInfluence:
 
     def numbers(self, model: GearModel) -> InfluenceNumbers:
         """Numbers of one gear."""
-        return _numbers(self, model)
+        known = self.known(model)
+        if known not in self._found:
+            self._found[known] = self.store.numbers(known)
+        numbers = self._found[known]
+        return numbers if known == model else numbers.over_face_width(model.face_width)
 
     def known(self, model: GearModel) -> GearModel:
         """The gear itself, or the one whose numbers serve it."""
@@ -66,11 +87,10 @@ class ToothInfluence:
         return next(alike, model)
 
 
-@lru_cache(maxsize=32)
-def _numbers(influence: ToothInfluence, model: GearModel) -> InfluenceNumbers:
-    known = influence.known(model)
-    numbers = influence.store.numbers(known)
-    return numbers if known is model else numbers.over_face_width(model.face_width)
+def _at_once() -> int:
+    """Gears computed at a time: `NEEDED` each, in half of the memory of the machine."""
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else NEEDED
+    return max(1, int(0.5 * memory / NEEDED))
 
 
 @lru_cache(maxsize=16)

@@ -327,11 +327,12 @@ def not_modelled(solved: SolvedRig) -> list[str]:
     items = [
         "bending and tilting of shafts: the drivetrain is torsional, journal stiffness does not enter the loads",
         "static position of the journals in their films: axes run through the middle of the hot bores",
-        "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
+        "helix slope deviations of manufacture, shaft bending and bearing clearance in tooth contact and K_Hbeta"
+        if solved.rig.mesh_stiffness == "influence_numbers"
+        else "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
         "temperature over time: steady states at the held stages only",
         "oil flow distribution, aeration and sump level: films are given by surface",
-        "roughness of the tooth roots: Y_RrelT is 1, as for the test gears behind sigma_FE; flank strength (pitting, "
-        "scuffing) and its safety",
+        "roughness of the tooth roots: Y_RrelT is 1, as for the test gears behind sigma_FE",
     ]
     without = [name for name, box in solved.case.gearboxes.items() if box.housing is None]
     if without:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dynamics.influence.gear_body import GearBody
+from rigdesign.base import parallel
 from rigdesign.rig import influence_store
 from rigdesign.rig.influence_store import InfluenceStore, identity
 from rigdesign.rig.tooth_influence import ToothInfluence, gear_model
@@ -185,7 +186,7 @@ def test_ten_oil_temperatures_build_the_cold_gears_once(tmp_path: Path, built):
         warm = cold.warm(oil + 30.0, oil + 25.0, centre_distance, speed=1200.0)
         influence = ToothInfluence(store=InfluenceStore(tmp_path))
         _, wheel = influence.of_pair(warm)
-        assert influence.of_pair(cold)[1] is wheel
+        assert same(influence.of_pair(cold)[1], wheel)
     assert len(built) == 2
     assert [model.form.gear.teeth for model in built] == [99, 102]
     assert built == [gear_model(cold, 0), gear_model(cold, 1)]
@@ -207,3 +208,40 @@ def test_gear_of_one_piece_with_its_shaft_is_held_at_half_its_root():
     assert gear_model(pair, 0).body.bore_radius == pytest.approx(0.5 * gear_model(pair, 0).form.root_radius)
     bored = spur_pair(bore_diameters=(52e-3, 0.0))
     assert gear_model(bored, 0).body.bore_radius == pytest.approx(26e-3)
+
+
+def test_gears_are_prepared_once_and_kept_without_a_folder(tmp_path: Path, built, monkeypatch):
+    """A folder that cannot be written: what was prepared is used all the same."""
+    monkeypatch.setattr(parallel, "cores", lambda: 1)
+    (tmp_path / "file").write_text("in the way")
+    influence, said = ToothInfluence(store=InfluenceStore(tmp_path / "file" / "influence")), []
+    influence.prepare([spur_pair()], said.append)
+    assert "2 gears" in said[0] and len(built) == 2
+    influence.prepare([spur_pair()], said.append)
+    influence.of_pair(spur_pair())
+    assert len(said) == 1 and len(built) == 2
+
+
+def test_a_damaged_file_is_told_and_prepared_again(tmp_path: Path, built, monkeypatch):
+    monkeypatch.setattr(parallel, "cores", lambda: 1)
+    ToothInfluence(store=InfluenceStore(tmp_path)).prepare([spur_pair()])
+    file = InfluenceStore(tmp_path).file(gear_model(spur_pair(), 0))
+    file.write_bytes(file.read_bytes()[:-9])
+    said = []
+    ToothInfluence(store=InfluenceStore(tmp_path)).prepare([spur_pair()], said.append)
+    assert "damaged" in said[0] and "1 gear," in said[1] and len(built) == 3
+
+
+def test_a_wider_gear_takes_numbers_over_where_it_may(tmp_path: Path, built):
+    """As slices: half the force per width on twice the width, half the deflection per force."""
+    pair = spur_pair()
+    influence = ToothInfluence(store=InfluenceStore(tmp_path))
+    narrow = influence.numbers(gear_model(pair, 0))
+    wider = replace(gear_model(pair, 0), face_width=2.0 * gear_model(pair, 0).face_width)
+    near = influence.for_widths_near([pair])
+    found = near.numbers(wider)
+    assert len(built) == 1
+    assert found.face[-1] - found.face[0] == pytest.approx(wider.face_width)
+    factor = wider.face_width / (narrow.face[-1] - narrow.face[0])
+    assert np.allclose(found.deflection[1], narrow.deflection[1] / factor)
+    assert same(near.numbers(gear_model(pair, 0)), narrow)
