@@ -49,9 +49,7 @@ class ToothInfluence:
                 self._found[model] = found
         missing = [model for model in models if model not in self._found]
         if missing:
-            say(
-                f"influence numbers of {len(missing)} gear{'s' if len(missing) > 1 else ''}, half a minute each: computed once, then kept"
-            )
+            say(f"influence numbers of gears not yet known: {len(missing)}, half a minute each; then kept")
         at_once = _at_once()
         for first in range(0, len(missing), at_once):
             batch = missing[first : first + at_once]

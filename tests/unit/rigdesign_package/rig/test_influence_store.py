@@ -216,7 +216,7 @@ def test_gears_are_prepared_once_and_kept_without_a_folder(tmp_path: Path, built
     (tmp_path / "file").write_text("in the way")
     influence, said = ToothInfluence(store=InfluenceStore(tmp_path / "file" / "influence")), []
     influence.prepare([spur_pair()], said.append)
-    assert "2 gears" in said[0] and len(built) == 2
+    assert "not yet known: 2" in said[0] and len(built) == 2
     influence.prepare([spur_pair()], said.append)
     influence.of_pair(spur_pair())
     assert len(said) == 1 and len(built) == 2
@@ -229,7 +229,7 @@ def test_a_damaged_file_is_told_and_prepared_again(tmp_path: Path, built, monkey
     file.write_bytes(file.read_bytes()[:-9])
     said = []
     ToothInfluence(store=InfluenceStore(tmp_path)).prepare([spur_pair()], said.append)
-    assert "damaged" in said[0] and "1 gear," in said[1] and len(built) == 3
+    assert "damaged" in said[0] and "not yet known: 1" in said[1] and len(built) == 3
 
 
 def test_a_wider_gear_takes_numbers_over_where_it_may(tmp_path: Path, built):
