@@ -25,6 +25,7 @@ from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
+from rigdesign.rig.influence_store import Progress
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
 from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
@@ -274,6 +275,11 @@ class Rig:
         power = self.case.drivetrain
         assert power is not None
         return self.shaft_speed(power.motor.shaft, speed)
+
+    def prepare_teeth(self, say: Progress) -> None:
+        """Read or compute the influence numbers of all gears, where the tooth model takes them."""
+        if self.mesh_stiffness == "influence_numbers":
+            self.tooth_influence.prepare(self.pairs.values(), say)
 
     def driven_speed(self, speed: float) -> float:
         """Speed of the shaft that is driven [rad/s] at the stated speed; without a drivetrain of the first pinion."""

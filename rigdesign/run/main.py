@@ -86,9 +86,8 @@ def solve_case(
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
-    if wanted.mesh_stiffness == "influence_numbers":
-        wanted.tooth_influence.prepare(wanted.pairs.values(), say)
-        lap("influence_numbers")
+    wanted.prepare_teeth(say)
+    lap("influence_numbers")
     rig = looping_rig(wanted)
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -162,6 +162,9 @@ def run_study(
             execution.tell(line)
         setup = PointSetup(case, fidelity, execution.run, execution.prepare)
         solver = PointSolver(setup, ledgers, workers, retry=execution.retry, shard=execution.shard)
+        own = execution.run is None and execution.prepare is None
+        if own and isinstance(workers, ProcessWorkers) and solver.missing(tasks):
+            _prepare_teeth(case, fidelity, execution.say)
         with _left_over(solver, tasks):
             _compute(plan, tasks, solver, execution)
         solver.look_again()
@@ -176,6 +179,18 @@ def run_study(
     computed = len(solver.computed)
     known = sum(not task.fault for task in tasks) - missing
     return StudyOutcome(result=result, completed=computed, reused=known - computed, missing=missing)
+
+
+def _prepare_teeth(case: "Case", fidelity: Fidelity, say: Callable[[str], None]) -> None:
+    """Influence numbers of the base case, stored before every worker computes them; a base case may have no rig."""
+    if fidelity == "quick":
+        return
+    from rigdesign.base.errors import RigdesignError
+    from rigdesign.rig.model import build_rig
+    from rigdesign.run.solver_errors import solver_errors
+
+    with suppress(RigdesignError), solver_errors(case):
+        build_rig(case, fidelity).prepare_teeth(say)
 
 
 def _check_ids(case: "Case") -> list[str]:
