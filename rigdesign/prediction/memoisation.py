@@ -32,6 +32,7 @@ from rigdesign.coupling.loads import (
     shifted_laws,
     signed_torque,
 )
+from rigdesign.coupling.mesh_axes import axes_as_made
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -161,6 +162,7 @@ def _shape_key(
         tuple((gear.teeth, gear.flank, rig.materials[gear.material].expansion_coefficient) for gear in gears),
         (mesh.application_factor, mesh.low_load_factor, mesh.stiffness_factor, mesh.tooth_offset),
         mesh_phase(rig, name),
+        axes_as_made(rig, name),
         rig.shaft_speed(gears[0].shaft, point.speed),
         coupling_state.gear_temperature[pinion],
         coupling_state.gear_temperature[wheel],

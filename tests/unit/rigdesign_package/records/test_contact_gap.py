@@ -10,9 +10,11 @@ import pytest
 from dynamics.flank.axes import PARALLEL
 from rigdesign.case import load_case
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.rotation import last_end, pinion_sense
 from rigdesign.coupling.alignment import AxisAngles, axis_deviation
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.contact_gap import held_flanks, last_end, misalignment, pinion_sense, warm_axes
+from rigdesign.coupling.mesh_axes import misalignment
+from rigdesign.records.contact_gap import held_flanks, warm_axes
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base
 
