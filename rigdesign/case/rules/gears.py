@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import unknown
+from rigdesign.case.rotation import has_hands, helix_hands
 
 if TYPE_CHECKING:
     from rigdesign.case.gearbox import Gearbox
@@ -30,6 +31,7 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
         meshed = [gear for mesh in box.meshes.values() for gear in (mesh.pinion, mesh.wheel)]
         for mesh_name, mesh in box.meshes.items():
             yield from _mesh(f"{at}.meshes.{mesh_name}", mesh, box)
+        yield from hand_faults(at, box)
         for gear_name, gear in box.gears.items():
             if gear_name not in meshed:
                 yield Fault(
@@ -171,19 +173,32 @@ def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
 
 
 def _hands(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator[Fault]:
-    """Helical gears of parallel axes are of opposite hand; spur and double-helical ones have none."""
-    if not mesh.helix_angle or mesh.double_helical:
-        for name, gear in ((mesh.pinion, pinion), (mesh.wheel, wheel)):
-            if gear.helix_hand:
-                yield Fault(
-                    f"{at}.gears.{name}.helix_hand", f'"{gear.helix_hand}"',
-                    "the gear is double-helical" if mesh.double_helical else "the gear has spur teeth",
-                    "leave it out",
-                )  # fmt: skip
-    elif pinion.helix_hand and pinion.helix_hand == wheel.helix_hand:
+    """Spur and double-helical gears have no hand."""
+    if has_hands(mesh):
+        return
+    for name, gear in ((mesh.pinion, pinion), (mesh.wheel, wheel)):
+        if gear.helix_hand:
+            yield Fault(
+                f"{at}.gears.{name}.helix_hand", f'"{gear.helix_hand}"',
+                "the gear is double-helical" if mesh.double_helical else "the gear has spur teeth",
+                "leave it out",
+            )  # fmt: skip
+
+
+def hand_faults(at: str, box: "Gearbox") -> Iterator[Fault]:
+    """Helical gears of parallel axes are of opposite hand, also those that an idler joins."""
+    hands = helix_hands(box)
+    for mesh in box.meshes.values():
+        first, second = hands.get(mesh.pinion), hands.get(mesh.wheel)
+        if not has_hands(mesh) or first is None or second is None or first.hand != second.hand:
+            continue
+        source, other = first.stated, second.stated
+        direct = {source, other} == {mesh.pinion, mesh.wheel}
         yield Fault(
-            f"{at}.gears.{mesh.wheel}.helix_hand", f'"{wheel.helix_hand}"',
-            f"is that of its partner {mesh.pinion}", "write the opposite hand, or leave one of the two out",
+            f"{at}.gears.{other}.helix_hand", f'"{box.gears[other].helix_hand}"',
+            f"is that of its partner {source}" if direct else f"and {at}.gears.{source}.helix_hand give "
+            f"{mesh.pinion} and {mesh.wheel}, which mesh, the same hand",
+            "write the opposite hand, or leave one of the two out",
         )  # fmt: skip
 
 

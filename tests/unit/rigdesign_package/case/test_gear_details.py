@@ -5,8 +5,9 @@ from math import pi, radians
 
 import pytest
 
-from rigdesign.base.errors import CaseError
+from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import Case, load_case
+from rigdesign.case.rules.gears import hand_faults
 from rigdesign.rig.drivetrain import gear_inertia
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.tooth_influence import gear_model
@@ -97,6 +98,25 @@ def test_keys_that_do_not_fit_are_named(values: dict[str, object], message: str)
 def test_tool_and_rotation_that_do_not_fit_are_named(path: str, value: object, message: str) -> None:
     with pytest.raises(CaseError, match=message):
         load_case(CASES / "fzg").with_values({f"{MESH}.rack.protuberance": 0.02, path: value})
+
+
+def test_hands_that_contradict_each_other_through_an_idler_are_refused() -> None:
+    """p-i-w: p and w are both of the other hand than i."""
+    box = load_case(CASES / "uhcf_prototype").gearboxes["reference"]
+    mesh = box.meshes["main"].model_copy(update={"double_helical": False})
+    gear = box.gears[mesh.pinion]
+
+    def faults(**hands: str) -> list[Fault]:
+        gears = {name: gear.model_copy(update={"helix_hand": hands.get(name)}) for name in "piw"}
+        meshes = {f"{a}{b}": mesh.model_copy(update={"pinion": a, "wheel": b}) for a, b in ("pi", "iw")}
+        return list(hand_faults(HELICAL, box.model_copy(update={"gears": gears, "meshes": meshes})))
+
+    assert not faults(p="right", w="right")
+    (found,) = faults(p="right", w="left")
+    said = f"{found.path} {found.problem}"
+    assert all(f"{HELICAL}.gears.{name}.helix_hand" in said for name in "pw")
+    (direct,) = faults(p="right", i="right")
+    assert (direct.path, direct.problem) == (f"{HELICAL}.gears.i.helix_hand", "is that of its partner p")
 
 
 def test_partners_of_one_hand_are_refused() -> None:
