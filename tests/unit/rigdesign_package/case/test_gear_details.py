@@ -168,3 +168,34 @@ def test_inertia_of_a_webbed_gear_is_that_of_rim_and_web() -> None:
     plain = build_rig(fzg(bore_diameter="20 mm"), "quick")
     inertias = [gear_inertia(r.case, "test", "pinion", r.pairs, r.materials) for r in (solid, plain)]
     assert inertias[0] == inertias[1] > found
+
+
+def assumed_senses(case: Case) -> list[str]:
+    """Senses of rotation and hands that the case assumes."""
+    return [found.path for found in case.assumptions if found.path.endswith(("rotation", "helix_hand"))]
+
+
+def test_a_sense_that_skewed_axes_need_is_an_assumption_until_it_is_stated() -> None:
+    spur = load_case(CASES / "fzg")
+    assert assumed_senses(spur) == assumed_senses(spur.with_value(f"{MESH}.axis_inclination", "20 um")) == []
+    skewed = spur.with_value(f"{MESH}.axis_skew", "20 um")
+    assert assumed_senses(skewed) == ["gearboxes.test.rotation"]
+    assert assumed_senses(skewed.with_value("gearboxes.test.rotation", "clockwise")) == []
+
+
+@pytest.mark.parametrize(
+    ("key", "hand", "missing"),
+    [
+        ("axis_skew", None, ["gears.pinion.helix_hand", "rotation"]),
+        ("axis_skew", "right", []),
+        ("axis_inclination", None, ["gears.pinion.helix_hand"]),
+        ("axis_inclination", "right", ["rotation"]),
+    ],
+)
+def test_helical_gears_need_their_hand_and_a_sense_where_it_counts(
+    key: str, hand: str | None, missing: list[str]
+) -> None:
+    values = {f"{HELICAL}.meshes.main.double_helical": False, f"{HELICAL}.meshes.main.{key}": "20 um"}
+    stated = {} if hand is None else {f"{HELICAL}.gears.wheel.helix_hand": hand}
+    case = load_case(CASES / "uhcf_prototype").with_values(values | stated)
+    assert assumed_senses(case) == [f"{HELICAL}.{path}" for path in missing]
