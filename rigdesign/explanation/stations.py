@@ -115,11 +115,14 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__gears="end of the active flank: path of contact, tip corner",
         rig__tooth_influence="outline of the tooth in its influence numbers",
     ),
+    "gearboxes.*.gears.*.shaft_interference": _at(
+        records__tooth_history="tension of the press fit in the root of an idler, at speed, without temperature"
+    ),
     "gearboxes.*.gears.*.helix_hand": _at(
-        coupling__mesh_axes="end of the face that comes into mesh last: sign of the misalignment over the face"
+        case__rotation="end of the face that comes into mesh last: sign of the misalignment over the face"
     ),
     "gearboxes.*.rotation": _at(
-        coupling__mesh_axes="flanks and end of the face that a misalignment of the axes loads"
+        case__rotation="flanks and end of the face that a misalignment of the axes loads"
     ),
     "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),

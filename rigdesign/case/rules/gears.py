@@ -43,6 +43,7 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
             yield from _gear(f"{at}.gears.{gear_name}", gear)
         yield from _bearings(at, box)
         yield from _stations(at, box)
+        yield from _press_fits(at, box, case)
         shafts = _shafts_of(case, box)
         carried = list(dict.fromkeys(bearing.shaft for bearing in box.bearings.values()))
         for kind, parts, known in (
@@ -255,6 +256,22 @@ def _stations(at: str, box: "Gearbox") -> Iterator[Fault]:
                 f"{at}.bearings.{name}.position", show(bearing.position, "length"),
                 f"is also where {other} holds the shaft {bearing.shaft}",
                 "write the distance of the middle of each bearing from the start of the shaft",
+            )  # fmt: skip
+
+
+def _press_fits(at: str, box: "Gearbox", case: "Case") -> Iterator[Fault]:
+    """A shaft fills the bore of a gear that is pressed on it: its bore lies inside the seat."""
+    shafts = {} if case.drivetrain is None else case.drivetrain.shafts
+    for name, gear in box.gears.items():
+        if not gear.shaft_interference or gear.position is None or gear.shaft not in shafts:
+            continue
+        section = shafts[gear.shaft].section_at(gear.position)
+        if section is not None and section.inner_diameter >= gear.bore_diameter:
+            yield Fault(
+                f"{at}.gears.{name}.shaft_interference", show(gear.shaft_interference, "length", "um"),
+                f"presses the gear, bore_diameter {show(gear.bore_diameter, 'length')}, on {gear.shaft}, whose bore is "
+                f"{show(section.inner_diameter, 'length')} there: it must be below that of the gear",
+                "correct bore_diameter of the gear, its position, or inner_diameter of the shaft section",
             )  # fmt: skip
 
 

@@ -199,3 +199,23 @@ def test_helical_gears_need_their_hand_and_a_sense_where_it_counts(
     stated = {} if hand is None else {f"{HELICAL}.gears.wheel.helix_hand": hand}
     case = load_case(CASES / "uhcf_prototype").with_values(values | stated)
     assert assumed_senses(case) == [f"{HELICAL}.{path}" for path in missing]
+
+
+def test_a_press_fit_on_a_shaft_with_too_wide_a_bore_is_named() -> None:
+    case = load_case(CASES / "uhcf_main")
+    seat = "gearboxes.test.gears.pinion"
+    gear = case.gearboxes["test"].gears["pinion"]
+    assert case.drivetrain is not None and gear.position is not None
+    sections = case.drivetrain.shafts[gear.shaft].sections
+    section = case.drivetrain.shafts[gear.shaft].section_at(gear.position)
+    index = next(i for i, one in enumerate(sections) if one is section)
+    inner = f"drivetrain.shafts.{gear.shaft}.sections.{index}.inner_diameter"
+    hollow = case.with_values({f"{seat}.shaft_interference": "20 um", inner: "60 mm"})
+    assert hollow.with_value(f"{seat}.bore_diameter", "61 mm")
+    with pytest.raises(
+        CaseError,
+        match=r"test\.gears\.pinion\.shaft_interference = .*bore is 60 mm there.*correct bore_diameter",
+    ):
+        hollow.with_value(f"{seat}.bore_diameter", "60 mm")
+    # a seat without interference is no press fit
+    assert case.with_values({inner: "60 mm", f"{seat}.bore_diameter": "60 mm"})
