@@ -15,6 +15,7 @@ from rigdesign.coupling.loads import MeshModel, mesh_model
 from rigdesign.coupling.mesh_axes import axes_as_made
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
+from tests.unit.rigdesign_package.coupling.test_tooth_springs import AnalyticTeeth
 
 CASE, MESH = load_case("cases/fzg").with_value("numerics.slices_spur", 6), "test.main"
 AT = "gearboxes.test"
@@ -73,9 +74,24 @@ def test_axes_open_the_flanks_that_carry_over_the_slices(
     assert rise == pytest.approx(sign * whole * (1.0 - 1.0 / len(law.gap)), rel=1e-9)
 
 
+def test_axes_open_the_teeth_of_influence_numbers_alike() -> None:
+    """In the middle of the path, where no tip corner touches away from the line of action."""
+    gaps = []
+    for values in ({}, {"meshes__main__axis_inclination": "30 um"}):
+        rig = replace(rig_with(**values), mesh_stiffness="influence_numbers", tooth_influence=AnalyticTeeth())
+        found = model(rig)
+        pitch_point = round(-found.law.path_start / found.law.path_step)
+        gaps.append(found.law.gap[:, pitch_point])
+    whole = 30e-6 * np.sin(found.pair.working_pressure_angle)
+    opened = gaps[1] - gaps[0]
+    np.testing.assert_allclose(np.diff(opened), whole / len(opened), rtol=0.02)
+
+
 def test_misaligned_spur_gears_get_slices_of_their_own() -> None:
     box = CASE.gearboxes["test"]
-    flat: dict[str, object] = {f"{AT}.gears.{gear}.flank": {} for gear in box.gears} | {"numerics.slices_spur": None}
+    flat: dict[str, object] = {f"{AT}.gears.{gear}.flank": {} for gear in box.gears} | {
+        "numerics.slices_spur": None
+    }
     tilt = {f"{AT}.meshes.main.axis_inclination": "30 um"}
     counts = [
         len(model(build_rig(CASE.with_values(values), "quick")).law.gap) for values in (flat, flat | tilt)
