@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.flank.axes import AxisMisalignment
-from dynamics.flank.field import FlankField, TeethInMesh, back_phase
+from dynamics.flank.axes import PARALLEL, AxisMisalignment
+from dynamics.flank.field import Flank, FlankField, TeethInMesh, back_phase
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.law import DampedRate, MeshLaw
@@ -35,13 +35,20 @@ class MeshPosition:
     """How the gears of a pair stand to each other.
 
     offset : approach of the rigid gears towards each other [m]; phase [m], tooth_offset_2 : as in ``MeshLaw``
-    misalignment : gap per face width [rad], growing with z over the common width
+    axes : how far the axes are from parallel
+    flank : that carries; the one table of gaps has the misalignment as these flanks see it
     """
 
     offset: float = 0.0
-    misalignment: float = 0.0
+    axes: AxisMisalignment = PARALLEL
+    flank: Flank = "front"
     phase: float = 0.0
     tooth_offset_2: int = 0
+
+    def gap_slope(self, pair: GearPair) -> float:
+        """Gap between the flanks that carry, per face width [rad], growing with z over the common width."""
+        front, back = self.axes.gap_slope(pair)
+        return front if self.flank == "front" else back
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,7 +135,8 @@ def mesh_law(
     discretisation : grid over face width and path
 
     A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. The one table of gaps serves both
-    flanks: modifications and topography of the front flanks count on the back as well.
+    flanks: modifications and topography of the front flanks count on the back as well, and the misalignment of the
+    flanks that carry on both.
 
     Raises DynamicsInputError for arrays of another length than the tooth number or numbers below their limit.
     """
@@ -154,16 +162,16 @@ def mesh_law(
 def law_flanks(
     pair: GearPair, micro: tuple[Microgeometry, Microgeometry], position: MeshPosition = NOMINAL_POSITION
 ) -> PairGap:
-    """Flanks of a pair as they stand to each other.
+    """Flanks of a pair as they stand to each other; front and back with the misalignment of those that carry.
 
     Raises DynamicsInputError for arrays of another length than the tooth number.
     """
     count = TeethInMesh(phase=position.phase, tooth_offset_2=position.tooth_offset_2)
-    misalignment = position.misalignment
+    slope = position.gap_slope(pair)
     return PairGap(
         pair=pair,
         flanks=flank_fields(pair, micro, count),
-        axes=AxisMisalignment.of_gap(pair, misalignment, misalignment),
+        axes=AxisMisalignment.of_gap(pair, slope, slope),
     )
 
 
@@ -174,7 +182,7 @@ def contact_grid(
     discretisation: ContactDiscretisation,
 ) -> tuple[Array, Array]:
     """Middles of the slices from mid-face (n_slices,) and uniform places over the path (n_path,) [m]."""
-    slices = discretisation.n_slices or default_slices(pair, micro, position.misalignment)
+    slices = discretisation.n_slices or default_slices(pair, micro, position.axes)
     face = ((np.arange(slices) + 0.5) / slices - 0.5) * pair.face_width
     first, last = _grid_ends(pair, _reach(pair, discretisation), discretisation.engagement)
     return face, np.linspace(first, last, discretisation.n_path)
@@ -302,7 +310,7 @@ def _deviations(flank: FlankField, path: Array, face: Array) -> tuple[Array, Arr
 
 
 def default_slices(
-    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], misalignment: float = 0.0
+    pair: GearPair, micro: tuple[Microgeometry, Microgeometry], axes: AxisMisalignment = PARALLEL
 ) -> int:
     """Slices over the face width after which K_V of a mesh changes by less than 1 % with more.
 
@@ -310,7 +318,7 @@ def default_slices(
     along the path, whose steps excite the mesh unless they are short against a base pitch. A face whose gap varies
     needs some whatever its helix. One slice is exact for a spur gear flat over its face.
     """
-    flat = misalignment == 0.0 and all(gear.even_over_face for gear in micro)
+    flat = axes == PARALLEL and all(gear.even_over_face for gear in micro)
     if pair.helix_angle == 0.0 and flat:
         return 1
     return max(LEAST_SLICES, ceil(SLICES_PER_BASE_PITCH * abs(pair.overlap_ratio) - 1e-9))

@@ -8,6 +8,7 @@ from rigdesign.case.bath_film import BathFilm
 from rigdesign.case.enclosures import OILED, EnclosureInput
 from rigdesign.case.films import FAN_VELOCITY, ForcedAir
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.rotation import has_hands, helix_hands
 from rigdesign.case.surface_conditions import Condition
 
 __all__ = ["AssumptionRecord", "implied_assumptions"]
@@ -18,6 +19,7 @@ def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[Assumption
     for name, box in gearboxes.items():
         for part, bearing in box.bearings.items():
             yield from bearing.assumptions(f"gearboxes.{name}.bearings.{part}")
+        yield from _senses(f"gearboxes.{name}", box)
         if box.housing is not None and box.housing.foot_contact is None and box.housing.step_file is None:
             yield AssumptionRecord(
                 path=f"gearboxes.{name}.housing.foot_contact",
@@ -29,6 +31,36 @@ def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[Assumption
             yield from _fans(f"gearboxes.{name}.housing.boundary", box.housing.boundary)
             yield from _splashed(f"gearboxes.{name}.housing.boundary", box.housing.boundary)
             yield from _oiled(f"gearboxes.{name}.housing.enclosures", box.housing.enclosures)
+
+
+def _senses(at: str, box: Gearbox) -> Iterator[AssumptionRecord]:
+    """Sense of rotation and hand, where axes as made turn their sign to a side of the face or a flank.
+
+    Of single-helical gears of known hand h that turn in the sense sigma, the end of the face that comes into mesh last
+    is -sigma h: over it a skew opens by h alone, an inclination by both. Other gears have it at the rear: there the
+    skew needs sigma.
+    """
+    hands = helix_hands(box)
+    turned = False
+    for name, mesh in box.meshes.items():
+        if not (mesh.axis_inclination or mesh.axis_skew):
+            continue
+        known = has_hands(mesh) and mesh.pinion in hands
+        turned = turned or bool(mesh.axis_inclination if known else mesh.axis_skew)
+        if has_hands(mesh) and not known:
+            yield AssumptionRecord(
+                path=f"{at}.gears.{mesh.pinion}.helix_hand",
+                value="rear end last in mesh",
+                reason=f"not stated: it says at which end of the face the axes of {name} as made open; write right "
+                "or left",
+            )
+    if turned and "rotation" not in box.model_fields_set:
+        yield AssumptionRecord(
+            path=f"{at}.rotation",
+            value=box.rotation,
+            reason="not stated: the other sense turns the sign of what the axes as made open over the face; write "
+            "clockwise or anticlockwise",
+        )
 
 
 def _fans(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionRecord]:

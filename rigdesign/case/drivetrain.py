@@ -59,6 +59,15 @@ class ShaftInput(Part):
     grows with frequency. Zero unless stated: that of steel, 0.0002 to 0.002, is far below what couplings and films
     take; seats and shrink fits reach 0.01."""
 
+    def section_at(self, position: float) -> SectionInput | None:
+        """Section at a distance from the start of the shaft [m], the first of two that meet; None beyond its end."""
+        end = 0.0
+        for section in self.sections:
+            end += section.length
+            if position <= end:
+                return section
+        return None
+
 
 class HarmonicTorqueInput(Part):
     """Torque that alternates with the rotation of a shaft: torque cos(order angle - phase)."""

@@ -191,11 +191,13 @@ class Gear(Part):
     tip_edge: TipEdgeInput = TipEdgeInput()
     """Rounding or chamfer between flank and tip, where the active flank ends; sharp unless stated."""
     helix_hand: Literal["right", "left"] | None = None
-    """Hand of the teeth of a single-helical gear; its partner has the other one. With ``rotation`` of the gearbox it
-    says which end of the face comes into mesh last; that at the rear of the housing when left out."""
+    """Hand of the teeth of a single-helical gear; its partner has the other one, and so on through a train. With
+    ``rotation`` of the gearbox it says which end of the face comes into mesh last; that at the rear of the housing when
+    no gear of the train states one."""
     shaft_interference: Small = 0.0
     """Press fit: effective interference of the bore on its shaft at rest, on the diameter, whose stress the root of an
-    idler holds as well. Zero for a seat without one."""
+    idler holds as well. Zero for a seat without one. What a gear warmer than its shaft loses of it, and a colder one
+    gains, is left out: state the interference at temperature."""
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
@@ -246,7 +248,7 @@ class GearMesh(Part):
     """Working distance of the axes, as drawn."""
     axis_inclination: Deviation = 0.0
     """Deviation of the axes as made, in their common plane, over the narrower face width; positive where they open
-    towards the rear. What the warm housing adds is computed."""
+    towards the rear. Mesh law and loaded contact have it; what the warm housing adds is computed for the contact."""
     axis_skew: Deviation = 0.0
     """The same across that plane: positive where the axis of the wheel, seen from the front, turns clockwise about that
     of the pinion towards the rear. With ``rotation`` of the gearbox it says which flanks it parts there."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
+from dynamics.flank.axes import AxisMisalignment
 from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
@@ -31,6 +32,7 @@ from dynamics.mesh.stiffness import PairStiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
+from rigdesign.coupling.mesh_axes import axes_as_made
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -89,13 +91,18 @@ def mesh_model(
     coupling_state: CouplingState,
     stiffness: MeshStiffness | None = None,
 ) -> MeshModel:
-    """One warm mesh and its law; ``stiffness`` as in `mesh_models`."""
+    """One warm mesh and its law; ``stiffness`` as in `mesh_models`.
+
+    The flanks that carry the mean torque see the axes as made, ``axis_inclination`` and ``axis_skew``. Not in the law:
+    what the expansion of the warm housing adds to them, which the loaded contact at the held points has
+    (`rigdesign.records.contact_gap`), clearances of the bearings and bending of the shafts.
+    """
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     pair = warm_pair(rig, name, point.speed, coupling_state)
     friction = mesh_friction(rig, name, pair, point, coupling_state)
-    micro = mesh_microgeometry(rig, name, pair)
+    micro, axes = mesh_microgeometry(rig, name, pair), axes_as_made(rig, name)
     warm = WarmMesh(
         name=name,
         pair=pair,
@@ -105,6 +112,8 @@ def mesh_model(
         position=MeshPosition(
             offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
             + flank_expansion(rig.pairs[name], pair),
+            axes=axes,
+            flank="back" if coupling_state.mesh_torque[name] < 0.0 else "front",
             phase=mesh_phase(rig, name),
             tooth_offset_2=entry.tooth_offset % gears[1].teeth,
         ),
@@ -112,7 +121,7 @@ def mesh_model(
             damping_acts_on=entry.damping_acts_on,
             friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
         ),
-        discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro)),
+        discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro, axes)),
     )
     shape, law = springs_of(rig, warm, stiffness or rig.mesh_stiffness)
     law = law._replace(damping=mesh_damping(rig, name, law))
@@ -136,11 +145,13 @@ def mesh_phase(rig: Rig, name: str) -> float:
     return stated - (math.pi * pair.base_radii[0] if sides[0] != sides[1] else 0.0)
 
 
-def _slices(rig: Rig, pair: GearPair, micro: tuple[Microgeometry, Microgeometry]) -> int:
+def _slices(
+    rig: Rig, pair: GearPair, micro: tuple[Microgeometry, Microgeometry], axes: AxisMisalignment
+) -> int:
     """Slices over the face width: those of the case, or of the rule where it states none."""
     numerics = rig.case.numerics
     stated = numerics.slices_helical if pair.helix_angle else numerics.slices_spur
-    return math.ceil((stated or default_slices(pair, micro)) / rig.coarsening.slices)
+    return math.ceil((stated or default_slices(pair, micro, axes)) / rig.coarsening.slices)
 
 
 def flank_expansion(reference: GearPair, warm: GearPair) -> float:

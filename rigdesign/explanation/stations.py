@@ -115,11 +115,14 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__gears="end of the active flank: path of contact, tip corner",
         rig__tooth_influence="outline of the tooth in its influence numbers",
     ),
+    "gearboxes.*.gears.*.shaft_interference": _at(
+        records__tooth_history="tension of the press fit in the root of an idler, at speed, without temperature"
+    ),
     "gearboxes.*.gears.*.helix_hand": _at(
-        records__contact_gap="end of the face that comes into mesh last: sign of the misalignment over the face"
+        case__rotation="end of the face that comes into mesh last: sign of the misalignment over the face"
     ),
     "gearboxes.*.rotation": _at(
-        records__contact_gap="flanks and end of the face that a misalignment of the warm axes loads"
+        case__rotation="flanks and end of the face that a misalignment of the axes loads"
     ),
     "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),
@@ -172,6 +175,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     **{
         f"gearboxes.*.meshes.*.{key}": _at(
             coupling__alignment="deviation of the axes, with that of the warm housing",
+            coupling__loads="gap over the face in the mesh law, as made",
             records__contact_gap="gap over the face in the loaded contact",
         )
         for key in ("axis_inclination", "axis_skew")

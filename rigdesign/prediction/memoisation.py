@@ -32,6 +32,7 @@ from rigdesign.coupling.loads import (
     shifted_laws,
     signed_torque,
 )
+from rigdesign.coupling.mesh_axes import axes_as_made
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -73,7 +74,7 @@ class Memoisation:
         return tuple(self._model(rig, name, point, coupling_state) for name in rig.mesh_names)
 
     def _model(self, rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState) -> MeshModel:
-        key = _shape_key(rig, name, point, coupling_state)
+        key = shape_key(rig, name, point, coupling_state)
         known = self._room("meshes")
         if key not in known:
             known[key] = mesh_model(rig, name, point, coupling_state)
@@ -142,25 +143,27 @@ class Memoisation:
         return known
 
 
-def _shape_key(
+def shape_key(
     rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState
 ) -> tuple[object, ...]:
-    """All that enters a mesh but its friction and damping."""
+    """What a mesh is known by: all that enters it but its friction and damping."""
     box, own = rig.mesh(name)
-    mesh, power, numerics = box.meshes[own], rig.case.drivetrain, rig.case.numerics
+    mesh, numerics = box.meshes[own], rig.case.numerics
     pinion, wheel = rig.mesh_gears(name)
     gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
     return (
         name,
         rig.coarsening,
         rig.pairs[name],
-        "" if power is None else power.mesh_stiffness,
+        rig.mesh_stiffness,
+        rig.tooth_influence,
         numerics.slices_spur,
         numerics.slices_helical,
         rig.case.ambient.reference_temperature,
         tuple((gear.teeth, gear.flank, rig.materials[gear.material].expansion_coefficient) for gear in gears),
         (mesh.application_factor, mesh.low_load_factor, mesh.stiffness_factor, mesh.tooth_offset),
         mesh_phase(rig, name),
+        axes_as_made(rig, name),
         rig.shaft_speed(gears[0].shaft, point.speed),
         coupling_state.gear_temperature[pinion],
         coupling_state.gear_temperature[wheel],

@@ -220,9 +220,5 @@ def _shaft_bore(rig: Rig, shaft: str, position: float | None) -> float:
     power = rig.case.drivetrain
     if power is None or shaft not in power.shafts or position is None:
         return 0.0
-    end = 0.0
-    for section in power.shafts[shaft].sections:
-        end += section.length
-        if position <= end:
-            return 0.5 * section.inner_diameter
-    return 0.0
+    section = power.shafts[shaft].section_at(position)
+    return 0.0 if section is None else 0.5 * section.inner_diameter

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import unknown
+from rigdesign.case.rotation import has_hands, helix_hands
 
 if TYPE_CHECKING:
     from rigdesign.case.gearbox import Gearbox
@@ -30,6 +31,7 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
         meshed = [gear for mesh in box.meshes.values() for gear in (mesh.pinion, mesh.wheel)]
         for mesh_name, mesh in box.meshes.items():
             yield from _mesh(f"{at}.meshes.{mesh_name}", mesh, box)
+        yield from hand_faults(at, box)
         for gear_name, gear in box.gears.items():
             if gear_name not in meshed:
                 yield Fault(
@@ -41,6 +43,7 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
             yield from _gear(f"{at}.gears.{gear_name}", gear)
         yield from _bearings(at, box)
         yield from _stations(at, box)
+        yield from _press_fits(at, box, case)
         shafts = _shafts_of(case, box)
         carried = list(dict.fromkeys(bearing.shaft for bearing in box.bearings.values()))
         for kind, parts, known in (
@@ -171,19 +174,32 @@ def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
 
 
 def _hands(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator[Fault]:
-    """Helical gears of parallel axes are of opposite hand; spur and double-helical ones have none."""
-    if not mesh.helix_angle or mesh.double_helical:
-        for name, gear in ((mesh.pinion, pinion), (mesh.wheel, wheel)):
-            if gear.helix_hand:
-                yield Fault(
-                    f"{at}.gears.{name}.helix_hand", f'"{gear.helix_hand}"',
-                    "the gear is double-helical" if mesh.double_helical else "the gear has spur teeth",
-                    "leave it out",
-                )  # fmt: skip
-    elif pinion.helix_hand and pinion.helix_hand == wheel.helix_hand:
+    """Spur and double-helical gears have no hand."""
+    if has_hands(mesh):
+        return
+    for name, gear in ((mesh.pinion, pinion), (mesh.wheel, wheel)):
+        if gear.helix_hand:
+            yield Fault(
+                f"{at}.gears.{name}.helix_hand", f'"{gear.helix_hand}"',
+                "the gear is double-helical" if mesh.double_helical else "the gear has spur teeth",
+                "leave it out",
+            )  # fmt: skip
+
+
+def hand_faults(at: str, box: "Gearbox") -> Iterator[Fault]:
+    """Helical gears of parallel axes are of opposite hand, also those that an idler joins."""
+    hands = helix_hands(box)
+    for mesh in box.meshes.values():
+        first, second = hands.get(mesh.pinion), hands.get(mesh.wheel)
+        if not has_hands(mesh) or first is None or second is None or first.hand != second.hand:
+            continue
+        source, other = first.stated, second.stated
+        direct = {source, other} == {mesh.pinion, mesh.wheel}
         yield Fault(
-            f"{at}.gears.{mesh.wheel}.helix_hand", f'"{wheel.helix_hand}"',
-            f"is that of its partner {mesh.pinion}", "write the opposite hand, or leave one of the two out",
+            f"{at}.gears.{other}.helix_hand", f'"{box.gears[other].helix_hand}"',
+            f"is that of its partner {source}" if direct else f"and {at}.gears.{source}.helix_hand give "
+            f"{mesh.pinion} and {mesh.wheel}, which mesh, the same hand",
+            "write the opposite hand, or leave one of the two out",
         )  # fmt: skip
 
 
@@ -240,6 +256,22 @@ def _stations(at: str, box: "Gearbox") -> Iterator[Fault]:
                 f"{at}.bearings.{name}.position", show(bearing.position, "length"),
                 f"is also where {other} holds the shaft {bearing.shaft}",
                 "write the distance of the middle of each bearing from the start of the shaft",
+            )  # fmt: skip
+
+
+def _press_fits(at: str, box: "Gearbox", case: "Case") -> Iterator[Fault]:
+    """A shaft fills the bore of a gear that is pressed on it: its bore lies inside the seat."""
+    shafts = {} if case.drivetrain is None else case.drivetrain.shafts
+    for name, gear in box.gears.items():
+        if not gear.shaft_interference or gear.position is None or gear.shaft not in shafts:
+            continue
+        section = shafts[gear.shaft].section_at(gear.position)
+        if section is not None and section.inner_diameter >= gear.bore_diameter:
+            yield Fault(
+                f"{at}.gears.{name}.shaft_interference", show(gear.shaft_interference, "length", "um"),
+                f"presses the gear, bore_diameter {show(gear.bore_diameter, 'length')}, on {gear.shaft}, whose bore is "
+                f"{show(section.inner_diameter, 'length')} there: it must be below that of the gear",
+                "correct bore_diameter of the gear, its position, or inner_diameter of the shaft section",
             )  # fmt: skip
 
 

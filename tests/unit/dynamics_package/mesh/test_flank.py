@@ -4,6 +4,7 @@ from math import cos, pi, tan
 import numpy as np
 import pytest
 
+from dynamics.flank.axes import AxisMisalignment
 from dynamics.flank.field import FlankField
 from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.mesh.flank import (
@@ -72,7 +73,9 @@ def test_default_slices():
     assert mesh_law(TEST_GEAR, stiffness=stiffness).stiffness.shape[0] == 1
     assert mesh_law(TEST_GEAR, stiffness, micro=PUBLISHED).stiffness.shape[0] == 8
     assert (
-        mesh_law(TEST_GEAR, stiffness=stiffness, position=MeshPosition(misalignment=1e-4)).stiffness.shape[0]
+        mesh_law(
+            TEST_GEAR, stiffness=stiffness, position=MeshPosition(axes=AxisMisalignment(skew=1e-4))
+        ).stiffness.shape[0]
         == 8
     )
     # a face that lags by 4.14 base pitches from end to end
@@ -140,7 +143,7 @@ def test_misalignment_opens_the_gap_along_the_face():
     law = mesh_law(
         TEST_GEAR,
         stiffness=scaled(TEST_GEAR),
-        position=MeshPosition(misalignment=1e-3),
+        position=MeshPosition(axes=AxisMisalignment.of_gap(TEST_GEAR, 1e-3, 1e-3)),
         discretisation=ContactDiscretisation(n_slices=7),
     )
     middle = np.searchsorted(path_of(law), 2e-3)

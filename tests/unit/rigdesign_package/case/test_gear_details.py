@@ -5,8 +5,9 @@ from math import pi, radians
 
 import pytest
 
-from rigdesign.base.errors import CaseError
+from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import Case, load_case
+from rigdesign.case.rules.gears import hand_faults
 from rigdesign.rig.drivetrain import gear_inertia
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.tooth_influence import gear_model
@@ -99,6 +100,25 @@ def test_tool_and_rotation_that_do_not_fit_are_named(path: str, value: object, m
         load_case(CASES / "fzg").with_values({f"{MESH}.rack.protuberance": 0.02, path: value})
 
 
+def test_hands_that_contradict_each_other_through_an_idler_are_refused() -> None:
+    """p-i-w: p and w are both of the other hand than i."""
+    box = load_case(CASES / "uhcf_prototype").gearboxes["reference"]
+    mesh = box.meshes["main"].model_copy(update={"double_helical": False})
+    gear = box.gears[mesh.pinion]
+
+    def faults(**hands: str) -> list[Fault]:
+        gears = {name: gear.model_copy(update={"helix_hand": hands.get(name)}) for name in "piw"}
+        meshes = {f"{a}{b}": mesh.model_copy(update={"pinion": a, "wheel": b}) for a, b in ("pi", "iw")}
+        return list(hand_faults(HELICAL, box.model_copy(update={"gears": gears, "meshes": meshes})))
+
+    assert not faults(p="right", w="right")
+    (found,) = faults(p="right", w="left")
+    said = f"{found.path} {found.problem}"
+    assert all(f"{HELICAL}.gears.{name}.helix_hand" in said for name in "pw")
+    (direct,) = faults(p="right", i="right")
+    assert (direct.path, direct.problem) == (f"{HELICAL}.gears.i.helix_hand", "is that of its partner p")
+
+
 def test_partners_of_one_hand_are_refused() -> None:
     case = load_case(CASES / "uhcf_prototype").with_value(f"{HELICAL}.meshes.main.double_helical", False)
     assert case.with_value(f"{HELICAL}.gears.pinion.helix_hand", "right")
@@ -148,3 +168,54 @@ def test_inertia_of_a_webbed_gear_is_that_of_rim_and_web() -> None:
     plain = build_rig(fzg(bore_diameter="20 mm"), "quick")
     inertias = [gear_inertia(r.case, "test", "pinion", r.pairs, r.materials) for r in (solid, plain)]
     assert inertias[0] == inertias[1] > found
+
+
+def assumed_senses(case: Case) -> list[str]:
+    """Senses of rotation and hands that the case assumes."""
+    return [found.path for found in case.assumptions if found.path.endswith(("rotation", "helix_hand"))]
+
+
+def test_a_sense_that_skewed_axes_need_is_an_assumption_until_it_is_stated() -> None:
+    spur = load_case(CASES / "fzg")
+    assert assumed_senses(spur) == assumed_senses(spur.with_value(f"{MESH}.axis_inclination", "20 um")) == []
+    skewed = spur.with_value(f"{MESH}.axis_skew", "20 um")
+    assert assumed_senses(skewed) == ["gearboxes.test.rotation"]
+    assert assumed_senses(skewed.with_value("gearboxes.test.rotation", "clockwise")) == []
+
+
+@pytest.mark.parametrize(
+    ("key", "hand", "missing"),
+    [
+        ("axis_skew", None, ["gears.pinion.helix_hand", "rotation"]),
+        ("axis_skew", "right", []),
+        ("axis_inclination", None, ["gears.pinion.helix_hand"]),
+        ("axis_inclination", "right", ["rotation"]),
+    ],
+)
+def test_helical_gears_need_their_hand_and_a_sense_where_it_counts(
+    key: str, hand: str | None, missing: list[str]
+) -> None:
+    values = {f"{HELICAL}.meshes.main.double_helical": False, f"{HELICAL}.meshes.main.{key}": "20 um"}
+    stated = {} if hand is None else {f"{HELICAL}.gears.wheel.helix_hand": hand}
+    case = load_case(CASES / "uhcf_prototype").with_values(values | stated)
+    assert assumed_senses(case) == [f"{HELICAL}.{path}" for path in missing]
+
+
+def test_a_press_fit_on_a_shaft_with_too_wide_a_bore_is_named() -> None:
+    case = load_case(CASES / "uhcf_main")
+    seat = "gearboxes.test.gears.pinion"
+    gear = case.gearboxes["test"].gears["pinion"]
+    assert case.drivetrain is not None and gear.position is not None
+    sections = case.drivetrain.shafts[gear.shaft].sections
+    section = case.drivetrain.shafts[gear.shaft].section_at(gear.position)
+    index = next(i for i, one in enumerate(sections) if one is section)
+    inner = f"drivetrain.shafts.{gear.shaft}.sections.{index}.inner_diameter"
+    hollow = case.with_values({f"{seat}.shaft_interference": "20 um", inner: "60 mm"})
+    assert hollow.with_value(f"{seat}.bore_diameter", "61 mm")
+    with pytest.raises(
+        CaseError,
+        match=r"test\.gears\.pinion\.shaft_interference = .*bore is 60 mm there.*correct bore_diameter",
+    ):
+        hollow.with_value(f"{seat}.bore_diameter", "60 mm")
+    # a seat without interference is no press fit
+    assert case.with_values({inner: "60 mm", f"{seat}.bore_diameter": "60 mm"})

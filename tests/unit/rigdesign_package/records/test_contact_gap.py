@@ -10,9 +10,11 @@ import pytest
 from dynamics.flank.axes import PARALLEL
 from rigdesign.case import load_case
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.rotation import helix_hands, last_end, pinion_sense
 from rigdesign.coupling.alignment import AxisAngles, axis_deviation
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.contact_gap import held_flanks, last_end, misalignment, pinion_sense, warm_axes
+from rigdesign.coupling.mesh_axes import misalignment
+from rigdesign.records.contact_gap import held_flanks, warm_axes
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base
 
@@ -83,6 +85,31 @@ def test_the_hand_of_either_gear_says_which_end_comes_last() -> None:
         entry.wheel: box.gears[entry.wheel].model_copy(update={"helix_hand": "left"}),
     }
     assert last_end(box.model_copy(update={"gears": gears}), "main") == last_end(box, "main") == -1.0
+
+
+def idler_train(**hands: Hand) -> Gearbox:
+    """Helical p-i-w: pinion p drives idler i, and i the wheel w."""
+    box = box_with()
+    first = box.meshes["main"]
+    like = box.gears[first.pinion]
+    gears = {name: like.model_copy(update={"shaft": name, "helix_hand": hands.get(name)}) for name in "piw"}
+    meshes = {
+        "first": box.meshes["main"].model_copy(update={"pinion": "p", "wheel": "i"}),
+        "second": box.meshes["main"].model_copy(update={"pinion": "i", "wheel": "w"}),
+    }
+    return box.model_copy(update={"gears": gears, "meshes": meshes})
+
+
+@pytest.mark.parametrize(("gear", "hand"), [("p", "right"), ("i", "left"), ("w", "right")])
+def test_one_stated_hand_goes_through_the_train(gear: str, hand: Hand) -> None:
+    box = idler_train(**{gear: hand})
+    assert {name: found.hand for name, found in helix_hands(box).items()} == {
+        "p": "right",
+        "i": "left",
+        "w": "right",
+    }
+    # the idler turns the other way and has the other hand: one end of its face comes last in both of its meshes
+    assert last_end(box, "first") == last_end(box, "second") == -1.0
 
 
 def test_gears_of_one_gearbox_turn_as_they_mesh() -> None:
