@@ -10,6 +10,7 @@ from rigdesign.checks.places import meshes, meshes_of
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.flank_rating import flank_ratings
+from rigdesign.records.gear_loads import application_factor
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.loaded_contact import LoadedContact
@@ -125,8 +126,7 @@ def _dynamic(solved: SolvedRig, mesh: int) -> tuple[float, str]:
     """Root of the factors by which the load exceeds the quasi-static one: line contact."""
     response = solved.test.last.response
     assert response is not None
-    box, own = solved.rig.mesh(solved.rig.mesh_names[mesh])
-    application, dynamic = box.meshes[own].application_factor, float(response.dynamic_factor[mesh])
+    application, dynamic = application_factor(solved.rig, mesh), float(response.dynamic_factor[mesh])
     return math.sqrt(application * dynamic), f"K_A {application:.2f}, simulated K_V {dynamic:.3f}"
 
 

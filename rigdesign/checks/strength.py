@@ -15,7 +15,7 @@ from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable
-from rigdesign.records.gear_loads import load_cycles, rated_cycles, rated_loads
+from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
 from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
@@ -65,7 +65,7 @@ PATH = StressMethod(
     "stiffness and deviations. With influence numbers the stress of every force at all points of the fillet and over "
     "the face, forces on both neighbours included: this one governs. Without them, and at fidelity quick, by the form "
     "and stress correction factors of ISO 6336-3 at the lever of its place. The peak of the path and of all held "
-    "stages counts.",
+    "stages counts, times K_A.",
 )
 METHODS = (ISO, PATH)
 OF_WINDOW: frozenset[Influence] = frozenset({"specimen limits"})
@@ -180,11 +180,12 @@ def _beside(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> s
     path = _path(solved, mesh, index)
     if path.source != FROM_INFLUENCE:
         return ""
-    field, nominal = max(path.dynamic) * MPA, worst(_iso_stresses(solved, mesh, index))[0]
+    field, nominal = _stress(solved, mesh, index, PATH)[0], worst(_iso_stresses(solved, mesh, index))[0]
     if method is ISO:
         return f"; a hand check: the computed field governs with {field:.0f} MPa where ISO 6336-3 has {nominal:.0f} MPa"
     return (
-        f"; it governs: computed from {path.source} under the dynamic force of every tooth, {field:.0f} MPa, beside "
+        f"; it governs: computed from {path.source} under the dynamic force of every tooth, "
+        f"{field:.0f} MPa, beside "
         f"{nominal:.0f} MPa of ISO 6336-3 method B by hand"
     )
 
@@ -194,10 +195,13 @@ def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> t
     if method is ISO:
         return worst(_iso_stresses(solved, mesh, index))
     path = _path(solved, mesh, index)
+    application = application_factor(solved.rig, mesh)
+    raised = "" if application == 1.0 else f", times K_A {application:.2f}"
     dynamic, static = max(path.dynamic), max(path.quasi_static)
     return (
-        dynamic * MPA,
-        f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one, stage {path.stage}",
+        application * dynamic * MPA,
+        f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one{raised}, "
+        f"stage {path.stage}",
     )
 
 

@@ -177,7 +177,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         for key in ("axis_inclination", "axis_skew")
     },
     "gearboxes.*.meshes.*.application_factor": _at(
-        records__gear_loads="K_A of the ratings of root and flank",
+        records__gear_loads="K_A of the ratings of root and flank and of the root stress over the path",
         records__curves="load of K_V by ISO 6336-1",
     ),
     "gearboxes.*.meshes.*.face_load_factor": _at(

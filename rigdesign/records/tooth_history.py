@@ -1,8 +1,11 @@
-"""Stress history of the teeth over a turn of their gear: both fillets, all meshes, with what the root holds at rest."""
+"""Stress history of the teeth over a turn of their gear: both fillets, all meshes, with what the root holds at rest.
+
+The stress of every mesh is that of its dynamic tooth forces times its K_A, as the ratings take it.
+"""
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +21,7 @@ from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.loop import PointResult
 from rigdesign.properties.materials import Material
 from rigdesign.records import root
+from rigdesign.records.gear_loads import application_factor
 from rigdesign.results.stress_source import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.tooth_history import ToothHistory
 from rigdesign.rig.model import Rig
@@ -77,7 +81,8 @@ def tooth_history(
         else:
             coarse = _angle_between(rig, gear, loaded[0], place)
             start += pitches_apart(coarse, passing.start - first, passing.pitch)
-        passes.append(_tooth_pass(rig, passing, forces, start))
+        raised = replace(forces, force=application_factor(rig, place.mesh) * forces.force)
+        passes.append(_tooth_pass(rig, passing, raised, start))
         loaded.append(place)
     if not passes:
         return None

@@ -20,7 +20,7 @@ class ToothHistory:
     meshes: tuple[str, ...]
     """Labels of the meshes that load it, in which it is rated."""
     turn: ToothTurn
-    """Stress of the tooth forces."""
+    """Stress of the tooth forces times K_A of their mesh."""
     mean: MeanRootStress
     """Held all the time, on top."""
     sensitivity: float

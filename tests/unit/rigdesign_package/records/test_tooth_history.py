@@ -163,3 +163,18 @@ def test_partners_without_places_are_taken_as_opposite(without_housing: Rig) -> 
     places = gear_meshes(without_housing)["test.pinion"]
     assert len(places) == 2
     assert tooth_history._angle_between(without_housing, "test.pinion", *places) == np.pi
+
+
+def test_history_takes_the_application_factor_of_its_mesh(
+    rig: Rig, point: Any, histories: dict[str, ToothHistory]
+) -> None:
+    """On one mesh of an idler: the stress of the other flank does not change."""
+    case = rig.case.with_value("gearboxes.test.meshes.a.application_factor", "1.25")
+    raised = tooth_history.tooth_history(
+        build_rig(case, "quick"), point, "test.pinion", gear_meshes(rig)["test.pinion"]
+    )
+    assert raised is not None
+    plain, found = histories["test.pinion"].turn, raised.turn
+    assert found.leading.max() == pytest.approx(1.25 * plain.leading.max())
+    assert found.trailing.max() == pytest.approx(plain.trailing.max())
+    assert found.trailing.min() == pytest.approx(1.25 * plain.trailing.min())
