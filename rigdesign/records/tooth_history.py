@@ -155,13 +155,11 @@ def _both_fillets(rig: Rig, passing: _Passing, forces: PairForces) -> tuple[Root
         path, stress = root.FactorRoots(model).highest(forces)[index]
         under = RootCourse(path=path, face=np.zeros(1), stress=stress[:, None, None])
         return under, RootCourse(path=path, face=under.face, stress=-IDLER_RATIO * under.stress)
-    turned = not passing.front
-    if index == 1 and model.pair.helix_angle:
-        turned = not turned
 
     def of_side(side: Side) -> RootCourse:
+        # both gears are on z of the contact, which the back flanks count from the other end of the face
         course = root.field_of(rig, model, 1 if index else 0, side).course(forces)
-        return course.turned() if turned else course
+        return course if passing.front else course.turned()
 
     return of_side(1), of_side(-1)
 

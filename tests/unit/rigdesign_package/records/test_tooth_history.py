@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.contact.root_course import RootCourse
 from dynamics.contact.tooth_turn import pitches_apart
 from rigdesign.case import load_case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records import reversed_bending, tooth_history
+from rigdesign.records import reversed_bending, root, tooth_history
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, tooth_histories
 from rigdesign.report.figures.tooth_history import tooth_history_figure
 from rigdesign.results.rows.tooth_history import tooth_history_row
@@ -178,3 +179,25 @@ def test_history_takes_the_application_factor_of_its_mesh(
     assert found.leading.max() == pytest.approx(1.25 * plain.leading.max())
     assert found.trailing.max() == pytest.approx(plain.trailing.max())
     assert found.trailing.min() == pytest.approx(1.25 * plain.trailing.min())
+
+
+@pytest.mark.parametrize("front", [True, False])
+def test_a_gear_that_is_wheel_and_pinion_keeps_its_face(
+    rig: Rig, point: Any, monkeypatch: pytest.MonkeyPatch, front: bool
+) -> None:
+    """Helical teeth: only the loaded flank turns the face, as the contact counts it on back flanks."""
+    stress = np.zeros((2, 1, 3))
+    stress[1, 0, 2] = 500e6
+    made = RootCourse(path=np.array([0.0, 1e-3]), face=np.array([-1e-3, 0.0, 3e-3]), stress=stress)
+    field: Any = SimpleNamespace(course=lambda forces: made)
+    monkeypatch.setattr(root, "field_of", lambda *of: field)
+    stiff: Any = SimpleNamespace(mesh_stiffness="influence_numbers")
+    forces: Any = SimpleNamespace()
+    model = point.last.models[rig.mesh_names.index("reference.a")]
+    assert model.pair.helix_angle != 0.0
+    for index in (0, 1):
+        under, behind = tooth_history._both_fillets(
+            stiff, tooth_history._Passing(model, index, front), forces
+        )
+        for course in (under, behind):
+            assert course.face[course.highest_at[2]] == (3e-3 if front else -3e-3)
