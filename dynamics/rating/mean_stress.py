@@ -10,6 +10,7 @@ Goodier, Theory of Elasticity, section 32), ring under pressure by Lame.
 from dataclasses import dataclass
 
 from dynamics.errors import DynamicsInputError
+from dynamics.standards.iso6336_3_2006 import IDLER_RATIO, Y_M
 
 TOOTH_SHARE = 0.5
 """Share of the ring between root and tip circle that the teeth fill."""
@@ -73,6 +74,18 @@ class MeanRootStress:
     def total(self) -> float:
         """Of all causes."""
         return self.disc + self.teeth + self.press_fit
+
+
+def mean_stress_factor(R: float, M: float) -> float:  # noqa: N803
+    """Y_M of ISO 6336-3:2006, Annex B, and below the stress ratio at which that ends.
+
+    R : lowest over highest stress; M : slope of the Haigh diagram, `mean_stress_ratio`. Below R = -1.2 the straight
+    line of the annex would go on to allow more amplitude the more the mean stress is compression, and Y_M of -1.2 for
+    all of them still more: the amplitude that a root stands is held at that of -1.2, which is on the safe side.
+    """
+    if R >= -IDLER_RATIO:
+        return Y_M(R, M)
+    return Y_M(-IDLER_RATIO, M) * (1.0 + IDLER_RATIO) / (1.0 - R)
 
 
 def mean_root_stress(gear: GearDisc, speed: float, fit: PressFit | None = None) -> MeanRootStress:

@@ -18,6 +18,7 @@ from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
 from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
+from rigdesign.records.tooth_history import GearInMesh
 from rigdesign.results.check import Check
 from rigdesign.results.loads import RootStressPath
 from rigdesign.results.stress_source import FROM_INFLUENCE
@@ -96,9 +97,10 @@ SAFETIES = {
         group="dynamics",
         source=f"{method.source}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
         procedure=f"{method.procedure} The strength is sigma_FE of the material times the factors of life (planned "
-        "cycles of all specimens), notch, surface and size. For an idler that is bent both ways they are those of its "
-        "highest stress: with the centrifugal stress and that of the press fit, and the mean stress influence "
-        "factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R. Safety: strength over stress.",
+        "cycles of all specimens), notch, surface and size. For an idler that is bent both ways they are those of the "
+        "highest stress in the fillet that this mesh loads: with the centrifugal stress and that of the press fit, and "
+        "the mean stress influence factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R; below R = -1.2, where "
+        "the annex ends, at the stress amplitude of -1.2. Safety: strength over stress.",
         places=rig_gears,
         limit_keys=("limits.strength.root_safety_minimum",),
         comparison=">=",
@@ -243,11 +245,11 @@ def _reversed_bending(
     solved: SolvedRig, mesh: int, index: int, method: StressMethod, stress: float
 ) -> ReversedBending | None:
     """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3."""
-    gear = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index]
+    gear, place = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index], GearInMesh(mesh, index)
     history = None if solved.loads is None else solved.loads.teeth.get(gear)
-    if method is PATH and history is not None:
-        return of_history(solved.rig, gear, history)
-    return by_standard(solved.rig, gear, stress, solved.test.point.speed)
+    if method is PATH and history is not None and solved.label(mesh) in history.meshes:
+        return of_history(solved.rig, place, history)
+    return by_standard(solved.rig, place, stress, solved.test.point.speed)
 
 
 def _strength_share(rig: Rig, mesh: int, index: int) -> tuple[float, str]:

@@ -9,6 +9,7 @@ from dynamics.rating.mean_stress import (
     PressFit,
     Solid,
     mean_root_stress,
+    mean_stress_factor,
     seat_pressure,
 )
 from dynamics.standards import iso6336_3_2006 as iso
@@ -87,3 +88,17 @@ def test_mean_stress_factor_is_the_straight_line_of_the_haigh_diagram(R: float) 
     amplitude, mean = 0.5 * highest * (1.0 - R), 0.5 * highest * (1.0 + R)
     assert amplitude + M * mean == pytest.approx(0.5 * (1.0 + M))
     assert iso.Y_M(0.9, M) == iso.Y_M(0.5, M)
+
+
+@pytest.mark.parametrize("M", [0.3, 0.5])
+def test_below_the_end_of_annex_b_the_amplitude_is_that_of_its_end(M: float) -> None:
+    """Lower than Y_M of -1.2 and than its straight line; the fillet under the higher load still governs."""
+    assert [mean_stress_factor(R, M) for R in (-1.2, -0.5, 0.3)] == [iso.Y_M(R, M) for R in (-1.2, -0.5, 0.3)]
+    end = 0.5 * 2.2 * iso.Y_M(-1.2, M)
+    for R in (-1.3, -2.4, -12.0):
+        factor = mean_stress_factor(R, M)
+        assert 0.5 * (1.0 - R) * factor == pytest.approx(end)
+        assert factor < iso.Y_M(R, M) < iso.Y_M(-1.2, M)
+    for lower in (0.9, 0.5, 0.1):
+        governing = 1.0 / iso.Y_M(-1.2 * lower, M)
+        assert lower / mean_stress_factor(-1.2 / lower, M) < governing

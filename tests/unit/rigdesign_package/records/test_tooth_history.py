@@ -1,6 +1,7 @@
 """Stress history of idlers and of gears with one mesh: timing by the teeth, flanks, mean stress, rating."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,7 +9,8 @@ import numpy as np
 import pytest
 
 from dynamics.contact.root_course import RootCourse
-from dynamics.contact.tooth_turn import pitches_apart
+from dynamics.contact.tooth_turn import ToothTurn, pitches_apart
+from dynamics.rating.mean_stress import mean_stress_factor
 from rigdesign.case import load_case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_model
@@ -116,11 +118,45 @@ def test_stress_ratio_and_factor_hold_the_centrifugal_stress(histories: dict[str
 
 
 def test_only_a_gear_bent_both_ways_is_rated_so(rig: Rig, histories: dict[str, ToothHistory]) -> None:
-    found = reversed_bending.of_history(rig, "test.pinion", histories["test.pinion"])
+    idler, wheel = gear_meshes(rig)["test.pinion"][0], gear_meshes(rig)["test.wheel_a"][0]
+    found = reversed_bending.of_history(rig, idler, histories["test.pinion"])
     assert found is not None
-    assert found.strength_factor == histories["test.pinion"].mean_stress_factor
-    assert reversed_bending.of_history(rig, "test.wheel_a", histories["test.wheel_a"]) is None
-    assert reversed_bending.by_standard(rig, "test.wheel_a", 500e6, SPEED) is None
+    assert found.strength_factor == pytest.approx(histories["test.pinion"].mean_stress_factor, rel=2e-3)
+    assert reversed_bending.of_history(rig, wheel, histories["test.wheel_a"]) is None
+    assert reversed_bending.by_standard(rig, wheel, 500e6, SPEED) is None
+    assert reversed_bending.bent_both_ways(rig, "test.pinion")
+    assert not reversed_bending.bent_both_ways(rig, "test.wheel_a")
+
+
+def test_every_mesh_of_an_idler_is_rated_at_the_fillet_that_it_loads(
+    rig: Rig, histories: dict[str, ToothHistory], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Mesh b with half the load of mesh a: R = -1.2 / 2 in the fillet of a and -1.2 * 2 in that of b, plus the mean."""
+    forces = dict(rig.mesh_forces)
+    forces["test.b"] = -0.5 * forces["test.a"]
+    monkeypatch.setitem(rig.__dict__, "mesh_forces", forces)
+    places = gear_meshes(rig)["test.pinion"]
+    stresses = (600e6, 300e6)
+    turn = ToothTurn(
+        angle=np.array([0.0, 2.0, 5.0]),
+        leading=1e6 * np.array([0.0, 600.0, -360.0]),
+        trailing=1e6 * np.array([0.0, -720.0, 300.0]),
+    )
+    history = replace(histories["test.pinion"], turn=turn)
+    mean, M = history.mean.total, history.sensitivity
+    ratios = (mean - 360e6) / (mean + 600e6), (mean - 720e6) / (mean + 300e6)
+    assert ratios[1] < -1.2
+    safeties = []
+    for place, stress, ratio in zip(places, stresses, ratios, strict=True):
+        standard = reversed_bending.by_standard(rig, place, stress, SPEED)
+        computed = reversed_bending.of_history(rig, place, history)
+        assert standard is not None and computed is not None
+        assert standard.stress_ratio == pytest.approx(ratio)
+        assert computed.stress_ratio == pytest.approx(ratio)
+        assert computed.strength_factor == pytest.approx(standard.strength_factor)
+        safeties.append(standard.strength_factor / (mean + stress))
+    assert standard.strength_factor == mean_stress_factor(ratio, M) < mean_stress_factor(ratios[0], M)
+    assert safeties[0] < safeties[1]
 
 
 def test_row_and_figure_show_both_fillets_with_the_mean_stress(histories: dict[str, ToothHistory]) -> None:
