@@ -99,8 +99,8 @@ SAFETIES = {
         procedure=f"{method.procedure} The strength is sigma_FE of the material times the factors of life (planned "
         "cycles of all specimens), notch, surface and size. For an idler that is bent both ways they are those of the "
         "highest stress in the fillet that this mesh loads: with the centrifugal stress and that of the press fit, and "
-        "the mean stress influence factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R; below R = -1.2, where "
-        "the annex ends, at the stress amplitude of -1.2. Safety: strength over stress.",
+        "the mean stress influence factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R; below R = -1.2, "
+        "where the annex ends, at the stress amplitude of -1.2. Safety: strength over stress.",
         places=rig_gears,
         limit_keys=("limits.strength.root_safety_minimum",),
         comparison=">=",
