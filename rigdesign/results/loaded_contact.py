@@ -19,7 +19,7 @@ class LoadedContact:
 
     stage: str
     torque: float
-    """Mean, at the pinion, positive on the flanks that carry [N m]."""
+    """Mean, at the pinion, positive on either flank [N m]."""
     flank: Flank
     """Which flanks carry."""
     axes: AxisMisalignment
