@@ -105,6 +105,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__gears="mass of the body, rim factor of the root stress",
         rig__drivetrain="inertia of the gear body",
         rig__tooth_influence="body under the teeth in their influence numbers",
+        records__tooth_history="centrifugal stress of the rim in the root",
     ),
     "gearboxes.*.gears.*.web_thickness": _at(
         rig__gears="mass of the body, gear blank factor of ISO 6336-1",

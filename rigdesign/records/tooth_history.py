@@ -189,6 +189,7 @@ def mean_stress(rig: Rig, place: GearInMesh, speed: float) -> MeanRootStress:
         root=pair.root_radii[place.index],
         tip=pair.tip_radii[place.index],
         solid=_solid(rig.materials[gear.material]),
+        rim=gear.rim_thickness,
     )
     fit = None
     if gear.shaft_interference > 0.0:

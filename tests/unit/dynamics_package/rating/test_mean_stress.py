@@ -1,5 +1,7 @@
 """Mean stress of a root against hand numbers and limits of the disc formulas, and Y_M of ISO 6336-3."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,6 +43,15 @@ def test_thin_ring_holds_rho_v_squared() -> None:
 def test_solid_disc_has_a_quarter_of_one_less_poisson_at_its_rim() -> None:
     disc = GearDisc(bore=0.0, root=0.1, tip=0.11, solid=STEEL)
     assert mean_root_stress(disc, SPEED).disc == pytest.approx(0.7 / 4.0 * 7830.0 * (SPEED * 0.1) ** 2)
+
+
+def test_rim_holds_at_least_what_a_free_ring_holds() -> None:
+    """Rim of 20 mm: rho omega^2 (96.25 mm)^2 = 114.5 MPa; teeth 8.20 MPa (1 + q) / (1 - q), q = (86.25 / 106.25)^2."""
+    stress, q = mean_root_stress(replace(IDLER, rim=20e-3), SPEED), (86.25 / 106.25) ** 2
+    assert stress.disc == pytest.approx(114.55e6, rel=1e-3)
+    assert stress.teeth == pytest.approx(8.20e6 * (1.0 + q) / (1.0 - q), rel=1e-3)
+    down_to_bore = mean_root_stress(replace(IDLER, rim=80e-3), SPEED)
+    assert down_to_bore == mean_root_stress(IDLER, SPEED)
 
 
 def test_press_fit_at_rest_is_that_of_lame() -> None:

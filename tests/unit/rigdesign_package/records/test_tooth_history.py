@@ -239,3 +239,10 @@ def test_a_gear_that_is_wheel_and_pinion_keeps_its_face(
         )
         for course in (under, behind):
             assert course.face[course.highest_at[2]] == (3e-3 if front else -3e-3)
+
+
+def test_a_stated_rim_raises_the_centrifugal_stress(rig: Rig) -> None:
+    case = rig.case.with_value("gearboxes.test.gears.wheel_a.rim_thickness", "10 mm")
+    place = gear_meshes(rig)["test.wheel_a"][0]
+    solid, rim = (tooth_history.mean_stress(one, place, SPEED) for one in (rig, build_rig(case, "quick")))
+    assert rim.disc > 1.2 * solid.disc and rim.teeth > solid.teeth
