@@ -189,7 +189,8 @@ class ContactLines:
         if not np.any(self.even.any(axis=2).sum(axis=1) > 1):
             raise DynamicsInputError(
                 f"contact ratio = {pair.transverse_contact_ratio:.3f} of the pair: no two tooth pairs stand on the "
-                "path together, and the influence numbers have no body to share; use the analytic mesh law"
+                "path together, and the influence numbers have no body to share; write "
+                'drivetrain.mesh_stiffness = "iso_6336_scaled"'
             )
         # displacement of every slice by every other, and of those of one pair by each other
         self.all = np.stack([_sliced(gears, points, k, within) for k in range(CYCLE)])

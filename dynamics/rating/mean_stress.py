@@ -1,8 +1,10 @@
 """Stress that a root holds at rest or at constant speed: centrifugal load of disc and teeth, press fit of the seat.
 
 The gear is a disc of its root circle with its bore, in plane stress, and the teeth are a ring of half the density that
-pulls at it. The stress across the fillet is taken as the hoop stress at the root circle: what the notch adds and what
-teeth that stand close take from it are both left out.
+pulls at it. A rim on a web is held by less than such a disc: its stress is at least that of the rim as a free turning
+ring at its mean radius, rho omega^2 r^2, with the teeth on it. That is a bound, as what the web holds is left out; the
+seat keeps the pressure of the solid disc. The stress across the fillet is taken as the hoop stress at the root circle:
+what the notch adds and what teeth that stand close take from it are both left out.
 Source: rotating disc of constant thickness (Shigley and Mischke, Mechanical Engineering Design, 1989; Timoshenko and
 Goodier, Theory of Elasticity, section 32), ring under pressure by Lame.
 """
@@ -10,6 +12,7 @@ Goodier, Theory of Elasticity, section 32), ring under pressure by Lame.
 from dataclasses import dataclass
 
 from dynamics.errors import DynamicsInputError
+from dynamics.standards.iso6336_3_2006 import IDLER_RATIO, Y_M
 
 TOOTH_SHARE = 0.5
 """Share of the ring between root and tip circle that the teeth fill."""
@@ -29,12 +32,14 @@ class GearDisc:
     """A gear as a turning disc; lengths [m].
 
     bore : radius; 0 where the gear is one with its shaft
+    rim : radial thickness of the rim under the root circle; None: solid down to the bore
     """
 
     bore: float
     root: float
     tip: float
     solid: Solid
+    rim: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.bore < self.root < self.tip:
@@ -58,7 +63,7 @@ class PressFit:
 
 @dataclass(frozen=True, kw_only=True)
 class MeanRootStress:
-    """Tension along the root circle [Pa] by cause."""
+    """Tension along the root circle [Pa] by cause; disc : of the body, disc or rim."""
 
     disc: float
     teeth: float
@@ -66,7 +71,7 @@ class MeanRootStress:
 
     @property
     def centrifugal(self) -> float:
-        """Of disc and teeth."""
+        """Of body and teeth."""
         return self.disc + self.teeth
 
     @property
@@ -75,15 +80,36 @@ class MeanRootStress:
         return self.disc + self.teeth + self.press_fit
 
 
+def mean_stress_factor(R: float, M: float) -> float:  # noqa: N803
+    """Y_M of ISO 6336-3:2006, Annex B, and below the stress ratio at which that ends.
+
+    R : lowest over highest stress; M : slope of the Haigh diagram, `mean_stress_ratio`. Below R = -1.2 the straight
+    line of the annex would go on to allow more amplitude the more the mean stress is compression, and Y_M of -1.2 for
+    all of them still more: the amplitude that a root stands is held at that of -1.2, which is on the safe side.
+    """
+    if R >= -IDLER_RATIO:
+        return Y_M(R, M)
+    return Y_M(-IDLER_RATIO, M) * (1.0 + IDLER_RATIO) / (1.0 - R)
+
+
 def mean_root_stress(gear: GearDisc, speed: float, fit: PressFit | None = None) -> MeanRootStress:
     """Hoop stress at the root circle of a gear that turns at ``speed`` [rad/s].
 
+    With a rim, body and teeth have the bound of a free ring where that is above the disc.
+
     Raises DynamicsInputError for a press fit without a bore, or a shaft bore that is not inside the seat.
     """
-    squared = _share(gear)
+    squared, pull = _share(gear), _pull(gear, speed)
+    disc = _rotating(gear.solid, speed, near=gear.root, far=gear.bore)
+    teeth = pull * (1.0 + squared) / (1.0 - squared)
+    inner = gear.bore if gear.rim is None else gear.root - gear.rim
+    if inner > gear.bore:
+        ring = (inner / gear.root) ** 2
+        disc = max(disc, gear.solid.density * (speed * 0.5 * (inner + gear.root)) ** 2)
+        teeth = max(teeth, pull * (1.0 + ring) / (1.0 - ring))
     return MeanRootStress(
-        disc=_rotating(gear.solid, speed, near=gear.root, far=gear.bore),
-        teeth=_pull(gear, speed) * (1.0 + squared) / (1.0 - squared),
+        disc=disc,
+        teeth=teeth,
         press_fit=0.0 if fit is None else 2.0 * seat_pressure(gear, speed, fit) * squared / (1.0 - squared),
     )
 

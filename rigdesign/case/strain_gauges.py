@@ -38,7 +38,8 @@ class StrainGaugeInput(Part):
     tooth: int = Field(default=0, ge=0, le=1999)
     """Number of its tooth, counted from 0 as those of ``flank``."""
     fillet: Literal["front", "back"] = "front"
-    """Fillet under the front flank, which carries and pulls at it, or under the back flank."""
+    """Fillet under the front flank, or under the back flank; that of the front flank is pulled where the mesh runs on
+    its front flanks."""
     face_position: Offset
     """Middle of the grid over the face width: from mid-face, positive to the rear end, the one that comes into mesh
     last."""

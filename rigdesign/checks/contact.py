@@ -2,22 +2,25 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.flank.field import Flank
 from rigdesign.case.model import Case
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import meshes, meshes_of
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.flank_rating import flank_ratings
+from rigdesign.records.gear_loads import application_factor
+from rigdesign.records.loaded_contact import held_contact
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
-from rigdesign.results.loaded_contact import LoadedContact
+from rigdesign.results.loaded_contact import EdgeContact
 from rigdesign.results.units import MEGAPASCAL, MPA
 
-NO_CONTACT = (
-    "no loaded contact: influence numbers are not computed at this fidelity, or the mesh carries no torque"
-)
+ANALYTIC = "the teeth are analytic: no loaded contact"
+NO_TORQUE = "the mesh carries no torque at any held stage: no loaded contact"
 
 
 def _held_meshes(case: Case) -> Iterator[str]:
@@ -37,14 +40,14 @@ PRESSURE = RuleFamily(
     source="limits.flanks.contact_pressure_maximum, else sigma_HG of ISO 6336-2:2006 over "
     "limits.flanks.pitting_safety_minimum; loaded contact from influence numbers",
     procedure="Highest Hertzian pressure of the loaded contact over a mesh cycle and the face, away from tip edges, "
-    "times the root of K_A and of the simulated K_V. Limit as stated; else the pitting stress limit of the weaker gear "
-    "after the planned cycles over the least pitting safety, for gears of the rig; that is a strength at the pitch "
-    "point and warns at most.",
+    "times the root of K_A and of the simulated K_V; the highest of all held stages counts. Limit as stated; else the "
+    "pitting stress limit of the weaker gear after the planned cycles over the least pitting safety, for gears of the "
+    "rig; that is a strength at the pitch point and warns at most.",
     places=_held_meshes,
     limit_keys=("limits.flanks.contact_pressure_maximum", "limits.flanks.pitting_safety_minimum"),
     needs=LOADS,
     leaves_out=(long_periods,),
-    moved_by=frozenset({"gear rating", "test time"}),
+    moved_by=frozenset({"gear rating", "test time", "housing"}),
 )
 EDGE = RuleFamily(
     key="flank.edge_pressure",
@@ -53,12 +56,12 @@ EDGE = RuleFamily(
     group="dynamics",
     source="limits.flanks.edge_pressure_maximum; loaded contact from influence numbers",
     procedure="Highest Hertzian pressure of the loaded contact at a tip corner or within half the contact width of a "
-    "tip edge, on the radius of the edge, times the root of K_A and of the simulated K_V. Without a limit the pressure "
-    "and its share stand with the loaded contact.",
+    "tip edge, on the radius of the edge, times the root of K_A and of the simulated K_V; the "
+    "highest of all held stages counts. Without a limit pressure and share at the test stand with the loaded contact.",
     places=_with_edge_limit,
     needs=LOADS,
     leaves_out=(long_periods,),
-    moved_by=frozenset({"gear rating"}),
+    moved_by=frozenset({"gear rating", "housing"}),
 )
 
 
@@ -78,17 +81,43 @@ def checks(solved: SolvedRig) -> list[Check]:
     return found
 
 
-def _contact(solved: SolvedRig, mesh: int) -> tuple[LoadedContact | None, str]:
-    """Loaded contact of a mesh, or why there is none."""
+@dataclass(frozen=True, kw_only=True)
+class _Held:
+    """Loaded contact of a mesh at a held stage; raised : root of K_A and simulated K_V, as of a line contact [-]."""
+
+    stage: str
+    cycle: MeshCycle
+    flank: Flank
+    raised: float
+    factors: str
+    """In words."""
+
+
+def _contacts(solved: SolvedRig, mesh: int) -> tuple[list[_Held], str]:
+    """Loaded contact of a mesh at all held stages that load it, or why there is none."""
     if solved.loads is None:
-        return None, NO_LOADS
-    found = solved.loads.meshes[solved.label(mesh)].contact
-    return found, "" if found is not None else NO_CONTACT
+        return [], NO_LOADS
+    application, found = application_factor(solved.rig, mesh), []
+    for point in solved.points:
+        contact, response = held_contact(solved.rig, point, mesh), point.last.response
+        if contact is None or response is None:
+            continue
+        dynamic = float(response.dynamic_factor[mesh])
+        found.append(
+            _Held(
+                stage=point.point.stage,
+                cycle=contact.cycle,
+                flank=contact.flanks.flank,
+                raised=math.sqrt(application * dynamic),
+                factors=f"K_A {application:.2f}, simulated K_V {dynamic:.3f}",
+            )
+        )
+    return found, ANALYTIC if solved.rig.mesh_stiffness != "influence_numbers" else NO_TORQUE
 
 
 def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
-    contact, missing = _contact(solved, mesh)
-    if contact is None:
+    contacts, missing = _contacts(solved, mesh)
+    if not contacts:
         return not_applicable(rule, missing)
     limit, basis = rule.limit, "limit as stated"
     if limit is None:
@@ -98,36 +127,31 @@ def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
         limit, basis = permissible
         # sigma_HG belongs to the pitch point and the inner point of single contact, not to the peak of a pattern
         rule = replace(rule, warn_only=True)
-    raised, words = _dynamic(solved, mesh)
-    pressure = contact.cycle.flank_pressure
-    return hold(
-        replace(rule, limit=limit),
-        MPA * pressure * raised,
-        f"quasi-static {MPA * pressure:.0f} MPa, {words}, stage {contact.stage}; {basis}",
+    pressure, how = worst(
+        (
+            MPA * held.cycle.flank_pressure * held.raised,
+            f"quasi-static {MPA * held.cycle.flank_pressure:.0f} MPa, {held.factors}, stage {held.stage}",
+        )
+        for held in contacts
     )
+    return hold(replace(rule, limit=limit), pressure, f"{how}; {basis}")
 
 
 def _edge(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
-    contact, missing = _contact(solved, mesh)
-    if contact is None:
+    contacts, missing = _contacts(solved, mesh)
+    if not contacts:
         return not_applicable(rule, missing)
-    raised, words = _dynamic(solved, mesh)
-    edges = contact.edges
-    return hold(
-        rule,
-        MPA * edges.tip_pressure * raised,
+    return hold(rule, *worst(_edges(held) for held in contacts))
+
+
+def _edges(held: _Held) -> tuple[float, str]:
+    """Pressure [MPa] at the tip edges at one stage and how it came about."""
+    edges = EdgeContact.of(held.cycle, held.flank)
+    return (
+        MPA * edges.tip_pressure * held.raised,
         f"{edges.where}, up to {100.0 * edges.tip_share:.0f} % of the mesh force; quasi-static "
-        f"{MPA * edges.tip_pressure:.0f} MPa, {words}, stage {contact.stage}",
+        f"{MPA * edges.tip_pressure:.0f} MPa, {held.factors}, stage {held.stage}",
     )
-
-
-def _dynamic(solved: SolvedRig, mesh: int) -> tuple[float, str]:
-    """Root of the factors by which the load exceeds the quasi-static one: line contact."""
-    response = solved.test.last.response
-    assert response is not None
-    box, own = solved.rig.mesh(solved.rig.mesh_names[mesh])
-    application, dynamic = box.meshes[own].application_factor, float(response.dynamic_factor[mesh])
-    return math.sqrt(application * dynamic), f"K_A {application:.2f}, simulated K_V {dynamic:.3f}"
 
 
 def _permissible(solved: SolvedRig, mesh: int) -> tuple[float, str] | None:

@@ -15,9 +15,10 @@ from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable
-from rigdesign.records.gear_loads import load_cycles, rated_cycles, rated_loads
+from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
 from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
+from rigdesign.records.tooth_history import GearInMesh
 from rigdesign.results.check import Check
 from rigdesign.results.loads import RootStressPath
 from rigdesign.results.stress_source import FROM_INFLUENCE
@@ -65,7 +66,7 @@ PATH = StressMethod(
     "stiffness and deviations. With influence numbers the stress of every force at all points of the fillet and over "
     "the face, forces on both neighbours included: this one governs. Without them, and at fidelity quick, by the form "
     "and stress correction factors of ISO 6336-3 at the lever of its place. The peak of the path and of all held "
-    "stages counts.",
+    "stages counts, times K_A.",
 )
 METHODS = (ISO, PATH)
 OF_WINDOW: frozenset[Influence] = frozenset({"specimen limits"})
@@ -96,9 +97,10 @@ SAFETIES = {
         group="dynamics",
         source=f"{method.source}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
         procedure=f"{method.procedure} The strength is sigma_FE of the material times the factors of life (planned "
-        "cycles of all specimens), notch, surface and size. For an idler that is bent both ways they are those of its "
-        "highest stress: with the centrifugal stress and that of the press fit, and the mean stress influence "
-        "factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R. Safety: strength over stress.",
+        "cycles of all specimens), notch, surface and size. For an idler that is bent both ways they are those of the "
+        "highest stress in the fillet that this mesh loads: with the centrifugal stress and that of the press fit, and "
+        "the mean stress influence factor Y_M of ISO 6336-3:2006, Annex B, at its stress ratio R; below R = -1.2, "
+        "where the annex ends, at the stress amplitude of -1.2. Safety: strength over stress.",
         places=rig_gears,
         limit_keys=("limits.strength.root_safety_minimum",),
         comparison=">=",
@@ -180,11 +182,12 @@ def _beside(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> s
     path = _path(solved, mesh, index)
     if path.source != FROM_INFLUENCE:
         return ""
-    field, nominal = max(path.dynamic) * MPA, worst(_iso_stresses(solved, mesh, index))[0]
+    field, nominal = _stress(solved, mesh, index, PATH)[0], worst(_iso_stresses(solved, mesh, index))[0]
     if method is ISO:
         return f"; a hand check: the computed field governs with {field:.0f} MPa where ISO 6336-3 has {nominal:.0f} MPa"
     return (
-        f"; it governs: computed from {path.source} under the dynamic force of every tooth, {field:.0f} MPa, beside "
+        f"; it governs: computed from {path.source} under the dynamic force of every tooth, "
+        f"{field:.0f} MPa, beside "
         f"{nominal:.0f} MPa of ISO 6336-3 method B by hand"
     )
 
@@ -194,10 +197,13 @@ def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> t
     if method is ISO:
         return worst(_iso_stresses(solved, mesh, index))
     path = _path(solved, mesh, index)
+    application = application_factor(solved.rig, mesh)
+    raised = "" if application == 1.0 else f", times K_A {application:.2f}"
     dynamic, static = max(path.dynamic), max(path.quasi_static)
     return (
-        dynamic * MPA,
-        f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one, stage {path.stage}",
+        application * dynamic * MPA,
+        f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one{raised}, "
+        f"stage {path.stage}",
     )
 
 
@@ -239,11 +245,11 @@ def _reversed_bending(
     solved: SolvedRig, mesh: int, index: int, method: StressMethod, stress: float
 ) -> ReversedBending | None:
     """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3."""
-    gear = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index]
+    gear, place = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index], GearInMesh(mesh, index)
     history = None if solved.loads is None else solved.loads.teeth.get(gear)
-    if method is PATH and history is not None:
-        return of_history(solved.rig, gear, history)
-    return by_standard(solved.rig, gear, stress, solved.test.point.speed)
+    if method is PATH and history is not None and solved.label(mesh) in history.meshes:
+        return of_history(solved.rig, place, history)
+    return by_standard(solved.rig, place, stress, solved.test.point.speed)
 
 
 def _strength_share(rig: Rig, mesh: int, index: int) -> tuple[float, str]:

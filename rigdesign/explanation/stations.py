@@ -105,6 +105,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__gears="mass of the body, rim factor of the root stress",
         rig__drivetrain="inertia of the gear body",
         rig__tooth_influence="body under the teeth in their influence numbers",
+        records__tooth_history="centrifugal stress of the rim in the root",
     ),
     "gearboxes.*.gears.*.web_thickness": _at(
         rig__gears="mass of the body, gear blank factor of ISO 6336-1",
@@ -181,7 +182,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         for key in ("axis_inclination", "axis_skew")
     },
     "gearboxes.*.meshes.*.application_factor": _at(
-        records__gear_loads="K_A of the ratings of root and flank",
+        records__gear_loads="K_A of the ratings of root and flank and of the root stress over the path",
         records__curves="load of K_V by ISO 6336-1",
     ),
     "gearboxes.*.meshes.*.face_load_factor": _at(

@@ -11,7 +11,7 @@ from rigdesign.records.curves import factor_points, iso_factor, own_ratio
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.resonances import HARMONICS
-from rigdesign.records.reversed_bending import of_history
+from rigdesign.records.reversed_bending import bent_both_ways
 from rigdesign.records.time_run import ramp_history
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
@@ -53,7 +53,7 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
         ramp=ramp_history(rig, run.ramp),
         torque_balance=[torque_balance(rig, point) for point in run.points],
         tooth_histories=[
-            tooth_history_row(history, rated=of_history(rig, gear, history) is not None)
+            tooth_history_row(history, rated=bent_both_ways(rig, gear))
             for gear, history in loads.teeth.items()
         ],
         loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],

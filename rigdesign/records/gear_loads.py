@@ -52,11 +52,17 @@ class SharingFactors:
     basis: str
 
 
+def application_factor(rig: Rig, mesh: int) -> float:
+    """K_A of a mesh, by its number."""
+    box, own = rig.mesh(rig.mesh_names[mesh])
+    return box.meshes[own].application_factor
+
+
 def rated_loads(rig: Rig, points: Iterable[PointResult], mesh: int) -> Iterator[RatedLoad]:
     """Loads of a mesh, by its number, at every held stage; ISO 6336-1 with the simulated K_V and gears as drawn."""
     name = rig.mesh_names[mesh]
     box, own = rig.mesh(name)
-    entry = box.meshes[own]
+    entry, application = box.meshes[own], application_factor(rig, mesh)
     for point in points:
         response = point.last.response
         if response is None:
@@ -75,13 +81,13 @@ def rated_loads(rig: Rig, points: Iterable[PointResult], mesh: int) -> Iterator[
             torque=torque,
             speed=speed,
             root=LoadFactors(
-                K_A=entry.application_factor,
+                K_A=application,
                 K_V=factor,
                 K_Fbeta=sharing.K_Fbeta,
                 K_Falpha=sharing.K_Falpha,
             ),
             contact=ContactFactors(
-                application=entry.application_factor,
+                application=application,
                 dynamic=factor,
                 face_load=sharing.K_Hbeta,
                 transverse=sharing.K_Halpha,

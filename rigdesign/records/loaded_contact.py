@@ -126,7 +126,7 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
     assert response is not None
     return LoadedContact(
         stage=point.point.stage,
-        torque=float(response.mean[mesh]),
+        torque=abs(float(response.mean[mesh])),
         flank=contact.flanks.flank,
         axes=contact.flanks.axes,
         cycle=contact.cycle,

@@ -1,8 +1,11 @@
-"""Stress history of the teeth over a turn of their gear: both fillets, all meshes, with what the root holds at rest."""
+"""Stress history of the teeth over a turn of their gear: both fillets, all meshes, with what the root holds at rest.
+
+The stress of every mesh is that of its dynamic tooth forces times its K_A, as the ratings take it.
+"""
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +21,7 @@ from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.loop import PointResult
 from rigdesign.properties.materials import Material
 from rigdesign.records import root
+from rigdesign.records.gear_loads import application_factor
 from rigdesign.results.stress_source import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.tooth_history import ToothHistory
 from rigdesign.rig.model import Rig
@@ -77,7 +81,8 @@ def tooth_history(
         else:
             coarse = _angle_between(rig, gear, loaded[0], place)
             start += pitches_apart(coarse, passing.start - first, passing.pitch)
-        passes.append(_tooth_pass(rig, passing, forces, start))
+        raised = replace(forces, force=application_factor(rig, place.mesh) * forces.force)
+        passes.append(_tooth_pass(rig, passing, raised, start))
         loaded.append(place)
     if not passes:
         return None
@@ -150,13 +155,11 @@ def _both_fillets(rig: Rig, passing: _Passing, forces: PairForces) -> tuple[Root
         path, stress = root.FactorRoots(model).highest(forces)[index]
         under = RootCourse(path=path, face=np.zeros(1), stress=stress[:, None, None])
         return under, RootCourse(path=path, face=under.face, stress=-IDLER_RATIO * under.stress)
-    turned = not passing.front
-    if index == 1 and model.pair.helix_angle:
-        turned = not turned
 
     def of_side(side: Side) -> RootCourse:
+        # both gears are on z of the contact, which the back flanks count from the other end of the face
         course = root.field_of(rig, model, 1 if index else 0, side).course(forces)
-        return course.turned() if turned else course
+        return course if passing.front else course.turned()
 
     return of_side(1), of_side(-1)
 
@@ -186,6 +189,7 @@ def mean_stress(rig: Rig, place: GearInMesh, speed: float) -> MeanRootStress:
         root=pair.root_radii[place.index],
         tip=pair.tip_radii[place.index],
         solid=_solid(rig.materials[gear.material]),
+        rim=gear.rim_thickness,
     )
     fit = None
     if gear.shaft_interference > 0.0:

@@ -57,12 +57,20 @@ def governing_stress(result: RunResult) -> str:
     if _from_field(result, path):
         return (
             f"{subject}: the computed field governs with {value_text(path)}, from influence numbers under the dynamic "
-            f"force of every tooth; ISO 6336-3 method B has {value_text(iso)} as a hand check."
+            f"force of every tooth{_application(result, path)}; ISO 6336-3 method B has {value_text(iso)} as a hand "
+            "check."
         )
     return (
         f"{subject}: {value_text(iso)} by ISO 6336-3 method B and {value_text(path)} by its factors under the dynamic "
-        "force of every tooth; both count, as no stress field is computed here."
+        f"force of every tooth{_application(result, path)}; both count, as no stress field is computed here."
     )
+
+
+def _application(result: RunResult, path: Check) -> str:
+    """K_A of the mesh of a root stress check, in words; empty where it is 1."""
+    mesh = _mesh(result, path.id.split(".", 2)[2].rpartition(".")[0])
+    factor = 1.0 if mesh is None else float(mesh.iso_factors.get("K_A", 1.0))
+    return "" if factor == 1.0 else f" times K_A {number_text(factor, 3)}"
 
 
 def _from_field(result: RunResult, path: Check) -> bool:

@@ -21,7 +21,7 @@ class GaugeStress:
     """``pinion`` or ``wheel`` of the mesh."""
     tooth: int
     front: bool
-    """Under the loaded flank, else under the other."""
+    """Under the front flank, else under the back flank; the first is pulled where the mesh runs on its front flanks."""
     point: MeasuringPoint
     curve: GaugeCurve
 

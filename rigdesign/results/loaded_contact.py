@@ -19,7 +19,7 @@ class LoadedContact:
 
     stage: str
     torque: float
-    """Mean, at the pinion, positive on the flanks that carry [N m]."""
+    """Mean, at the pinion, positive on either flank [N m]."""
     flank: Flank
     """Which flanks carry."""
     axes: AxisMisalignment
@@ -44,22 +44,7 @@ class LoadedContact:
     @cached_property
     def edges(self) -> "EdgeContact":
         """Contact at the tip edges and at the ends of the face."""
-        cycle = self.cycle
-        on_edge, pressure = cycle.edge_contact, cycle.pressure
-        carried = (cycle.points.weight * cycle.force * on_edge).sum(axis=(1, 2)) / cycle.mesh_force
-        limits = cycle.points.pair.path
-        ahead = cycle.points.path < 0.5 * (limits.start + limits.end)
-        of_wheel, of_pinion = (
-            float(np.where(on_edge & where, pressure, 0.0).max()) for where in (ahead, ~ahead)
-        )
-        free = np.where(on_edge, 0.0, pressure)
-        over_face = free.max(axis=(0, 1))[:: int(self.face_sense)]
-        return EdgeContact(
-            tip_pressures=(of_pinion, of_wheel),
-            tip_share=float(carried.max()),
-            end_pressures=(float(over_face[0]), float(over_face[-1])) if len(over_face) > 1 else None,
-            middle_pressure=float(over_face[len(over_face) // 2]),
-        )
+        return EdgeContact.of(self.cycle, self.flank)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +61,25 @@ class EdgeContact:
     tip_share: float
     end_pressures: tuple[float, float] | None
     middle_pressure: float
+
+    @classmethod
+    def of(cls, cycle: MeshCycle, flank: Flank) -> "EdgeContact":
+        """Over a mesh cycle on the flanks that carry."""
+        on_edge, pressure = cycle.edge_contact, cycle.pressure
+        carried = (cycle.points.weight * cycle.force * on_edge).sum(axis=(1, 2)) / cycle.mesh_force
+        limits = cycle.points.pair.path
+        ahead = cycle.points.path < 0.5 * (limits.start + limits.end)
+        of_wheel, of_pinion = (
+            float(np.where(on_edge & where, pressure, 0.0).max()) for where in (ahead, ~ahead)
+        )
+        free = np.where(on_edge, 0.0, pressure)
+        over_face = free.max(axis=(0, 1))[:: int(face_sense(flank))]
+        return cls(
+            tip_pressures=(of_pinion, of_wheel),
+            tip_share=float(carried.max()),
+            end_pressures=(float(over_face[0]), float(over_face[-1])) if len(over_face) > 1 else None,
+            middle_pressure=float(over_face[len(over_face) // 2]),
+        )
 
     @property
     def tip_pressure(self) -> float:

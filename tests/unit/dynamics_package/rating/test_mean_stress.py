@@ -1,5 +1,7 @@
 """Mean stress of a root against hand numbers and limits of the disc formulas, and Y_M of ISO 6336-3."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from dynamics.rating.mean_stress import (
     PressFit,
     Solid,
     mean_root_stress,
+    mean_stress_factor,
     seat_pressure,
 )
 from dynamics.standards import iso6336_3_2006 as iso
@@ -40,6 +43,15 @@ def test_thin_ring_holds_rho_v_squared() -> None:
 def test_solid_disc_has_a_quarter_of_one_less_poisson_at_its_rim() -> None:
     disc = GearDisc(bore=0.0, root=0.1, tip=0.11, solid=STEEL)
     assert mean_root_stress(disc, SPEED).disc == pytest.approx(0.7 / 4.0 * 7830.0 * (SPEED * 0.1) ** 2)
+
+
+def test_rim_holds_at_least_what_a_free_ring_holds() -> None:
+    """Rim of 20 mm: rho omega^2 (96.25 mm)^2 = 114.5 MPa; teeth 8.20 MPa (1 + q) / (1 - q), q = (86.25 / 106.25)^2."""
+    stress, q = mean_root_stress(replace(IDLER, rim=20e-3), SPEED), (86.25 / 106.25) ** 2
+    assert stress.disc == pytest.approx(114.55e6, rel=1e-3)
+    assert stress.teeth == pytest.approx(8.20e6 * (1.0 + q) / (1.0 - q), rel=1e-3)
+    down_to_bore = mean_root_stress(replace(IDLER, rim=80e-3), SPEED)
+    assert down_to_bore == mean_root_stress(IDLER, SPEED)
 
 
 def test_press_fit_at_rest_is_that_of_lame() -> None:
@@ -87,3 +99,17 @@ def test_mean_stress_factor_is_the_straight_line_of_the_haigh_diagram(R: float) 
     amplitude, mean = 0.5 * highest * (1.0 - R), 0.5 * highest * (1.0 + R)
     assert amplitude + M * mean == pytest.approx(0.5 * (1.0 + M))
     assert iso.Y_M(0.9, M) == iso.Y_M(0.5, M)
+
+
+@pytest.mark.parametrize("M", [0.3, 0.5])
+def test_below_the_end_of_annex_b_the_amplitude_is_that_of_its_end(M: float) -> None:
+    """Lower than Y_M of -1.2 and than its straight line; the fillet under the higher load still governs."""
+    assert [mean_stress_factor(R, M) for R in (-1.2, -0.5, 0.3)] == [iso.Y_M(R, M) for R in (-1.2, -0.5, 0.3)]
+    end = 0.5 * 2.2 * iso.Y_M(-1.2, M)
+    for R in (-1.3, -2.4, -12.0):
+        factor = mean_stress_factor(R, M)
+        assert 0.5 * (1.0 - R) * factor == pytest.approx(end)
+        assert factor < iso.Y_M(R, M) < iso.Y_M(-1.2, M)
+    for lower in (0.9, 0.5, 0.1):
+        governing = 1.0 / iso.Y_M(-1.2 * lower, M)
+        assert lower / mean_stress_factor(-1.2 / lower, M) < governing

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import cos, sin, tan
+from types import SimpleNamespace
 from typing import Any, Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from rigdesign.case.rotation import helix_hands, last_end, pinion_sense
 from rigdesign.coupling.alignment import AxisAngles, axis_deviation
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_axes import misalignment
+from rigdesign.records import loaded_contact
 from rigdesign.records.contact_gap import held_flanks, warm_axes
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base
@@ -180,3 +182,19 @@ def test_axes_as_made_add_to_those_of_the_warm_housing() -> None:
     shape = result.last.expansion["test"].deformed
     deviations = [axis_deviation(entry, "test", "main", shape) for entry in (rig, made)]
     assert deviations[1].skew - deviations[0].skew == pytest.approx(-3e-6)
+
+
+@pytest.mark.parametrize(("mean", "flank"), [(180.0, "front"), (-180.0, "back")])
+def test_torque_of_a_loaded_contact_is_positive_on_either_flank(
+    monkeypatch: pytest.MonkeyPatch, mean: float, flank: str
+) -> None:
+    flanks = SimpleNamespace(flank=flank, axes=PARALLEL)
+    held = SimpleNamespace(flanks=flanks, cycle=None, gears=(), unloaded_contact_ratio=1.0, roots=())
+    monkeypatch.setattr(loaded_contact, "held_contact", lambda *of: held)
+    monkeypatch.setattr(loaded_contact, "gauge_stresses", lambda *of: ())
+    rig: Any = SimpleNamespace(mesh_names=("test.main",))
+    response = SimpleNamespace(mean=np.array([mean]))
+    point: Any = SimpleNamespace(point=SimpleNamespace(stage="test"), last=SimpleNamespace(response=response))
+    found = loaded_contact.loaded_contact(rig, point, 0)
+    assert found is not None
+    assert (found.torque, found.flank) == (180.0, flank)

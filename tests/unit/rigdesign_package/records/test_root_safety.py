@@ -162,3 +162,28 @@ def test_the_computed_field_governs_and_the_standard_stands_beside_it(prototype:
             assert f"{check.value:.0f} MPa" in by_field[identity].reason
     assert "hand check" in by_field[iso_id].reason
     assert "it governs: computed from finite-element influence numbers" in by_field[path_id].reason
+
+
+def with_application(rig: Rig, factor: float) -> Rig:
+    """The same with K_A in every mesh."""
+    case = rig.case
+    for name in rig.mesh_names:
+        box, _, mesh = name.partition(".")
+        case = case.with_value(f"gearboxes.{box}.meshes.{mesh}.application_factor", str(factor))
+    return build_rig(case, "quick")
+
+
+def test_stress_over_the_path_takes_the_application_factor(prototype: Rig) -> None:
+    """K_A = 1.25 on both methods alike, in value, decision and safety."""
+    source: StressSource = "finite-element influence numbers"
+    plain, raised = (
+        {check.id: check for check in strength.checks(rated(rig, 2, source))}
+        for rig in (prototype, with_application(prototype, 1.25))
+    )
+    peak = 1e-6 * max(mesh_loads().root_stress[0].dynamic)
+    path = "specimen.root_stress_path.test.pinion"
+    assert plain[path].value == pytest.approx(peak) and "K_A" not in plain[path].reason
+    assert raised[path].value == pytest.approx(1.25 * peak)
+    assert "times K_A 1.25" in raised[path].reason and f"{1.25 * peak:.0f} MPa, beside" in raised[path].reason
+    safety = "strength.root_safety_path.reference.pinion"
+    assert raised[safety].value == pytest.approx(plain[safety].value / 1.25)  # type: ignore[operator]

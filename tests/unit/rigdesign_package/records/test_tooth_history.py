@@ -1,18 +1,21 @@
 """Stress history of idlers and of gears with one mesh: timing by the teeth, flanks, mean stress, rating."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from dynamics.contact.tooth_turn import pitches_apart
+from dynamics.contact.root_course import RootCourse
+from dynamics.contact.tooth_turn import ToothTurn, pitches_apart
+from dynamics.rating.mean_stress import mean_stress_factor
 from rigdesign.case import load_case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records import reversed_bending, tooth_history
+from rigdesign.records import reversed_bending, root, tooth_history
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, tooth_histories
 from rigdesign.report.figures.tooth_history import tooth_history_figure
 from rigdesign.results.rows.tooth_history import tooth_history_row
@@ -115,11 +118,47 @@ def test_stress_ratio_and_factor_hold_the_centrifugal_stress(histories: dict[str
 
 
 def test_only_a_gear_bent_both_ways_is_rated_so(rig: Rig, histories: dict[str, ToothHistory]) -> None:
-    found = reversed_bending.of_history(rig, "test.pinion", histories["test.pinion"])
+    idler, wheel = gear_meshes(rig)["test.pinion"][0], gear_meshes(rig)["test.wheel_a"][0]
+    found = reversed_bending.of_history(rig, idler, histories["test.pinion"])
     assert found is not None
-    assert found.strength_factor == histories["test.pinion"].mean_stress_factor
-    assert reversed_bending.of_history(rig, "test.wheel_a", histories["test.wheel_a"]) is None
-    assert reversed_bending.by_standard(rig, "test.wheel_a", 500e6, SPEED) is None
+    assert found.strength_factor == pytest.approx(histories["test.pinion"].mean_stress_factor, rel=2e-3)
+    assert reversed_bending.of_history(rig, wheel, histories["test.wheel_a"]) is None
+    assert reversed_bending.by_standard(rig, wheel, 500e6, SPEED) is None
+    assert reversed_bending.bent_both_ways(rig, "test.pinion")
+    assert not reversed_bending.bent_both_ways(rig, "test.wheel_a")
+
+
+def test_every_mesh_of_an_idler_is_rated_at_the_fillet_that_it_loads(
+    rig: Rig, histories: dict[str, ToothHistory], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Mesh b with half the load of mesh a: R = -1.2 / 2 in the fillet of a and -1.2 * 2 in that of b, plus the mean."""
+    forces = dict(rig.mesh_forces)
+    forces["test.b"] = -0.5 * forces["test.a"]
+    monkeypatch.setitem(rig.__dict__, "mesh_forces", forces)
+    places = gear_meshes(rig)["test.pinion"]
+    stresses = (600e6, 300e6)
+    turn = ToothTurn(
+        angle=np.array([0.0, 2.0, 5.0]),
+        leading=1e6 * np.array([0.0, 600.0, -360.0]),
+        trailing=1e6 * np.array([0.0, -720.0, 300.0]),
+    )
+    history = replace(histories["test.pinion"], turn=turn)
+    mean, M = history.mean.total, history.sensitivity
+    ratios = (mean - 360e6) / (mean + 600e6), (mean - 720e6) / (mean + 300e6)
+    assert ratios[1] < -1.2
+    safeties, factors = [], []
+    for place, stress, ratio in zip(places, stresses, ratios, strict=True):
+        standard = reversed_bending.by_standard(rig, place, stress, SPEED)
+        computed = reversed_bending.of_history(rig, place, history)
+        assert standard is not None and computed is not None
+        assert standard.stress_ratio == pytest.approx(ratio)
+        assert computed.stress_ratio == pytest.approx(ratio)
+        assert computed.strength_factor == pytest.approx(standard.strength_factor)
+        safeties.append(standard.strength_factor / (mean + stress))
+        factors.append(standard.strength_factor)
+    assert factors == pytest.approx([mean_stress_factor(ratio, M) for ratio in ratios])
+    assert factors[1] < factors[0]
+    assert safeties[0] < safeties[1]
 
 
 def test_row_and_figure_show_both_fillets_with_the_mean_stress(histories: dict[str, ToothHistory]) -> None:
@@ -163,3 +202,47 @@ def test_partners_without_places_are_taken_as_opposite(without_housing: Rig) -> 
     places = gear_meshes(without_housing)["test.pinion"]
     assert len(places) == 2
     assert tooth_history._angle_between(without_housing, "test.pinion", *places) == np.pi
+
+
+def test_history_takes_the_application_factor_of_its_mesh(
+    rig: Rig, point: Any, histories: dict[str, ToothHistory]
+) -> None:
+    """On one mesh of an idler: the stress of the other flank does not change."""
+    case = rig.case.with_value("gearboxes.test.meshes.a.application_factor", "1.25")
+    raised = tooth_history.tooth_history(
+        build_rig(case, "quick"), point, "test.pinion", gear_meshes(rig)["test.pinion"]
+    )
+    assert raised is not None
+    plain, found = histories["test.pinion"].turn, raised.turn
+    assert found.leading.max() == pytest.approx(1.25 * plain.leading.max())
+    assert found.trailing.max() == pytest.approx(plain.trailing.max())
+    assert found.trailing.min() == pytest.approx(1.25 * plain.trailing.min())
+
+
+@pytest.mark.parametrize("front", [True, False])
+def test_a_gear_that_is_wheel_and_pinion_keeps_its_face(
+    rig: Rig, point: Any, monkeypatch: pytest.MonkeyPatch, front: bool
+) -> None:
+    """Helical teeth: only the loaded flank turns the face, as the contact counts it on back flanks."""
+    stress = np.zeros((2, 1, 3))
+    stress[1, 0, 2] = 500e6
+    made = RootCourse(path=np.array([0.0, 1e-3]), face=np.array([-1e-3, 0.0, 3e-3]), stress=stress)
+    field: Any = SimpleNamespace(course=lambda forces: made)
+    monkeypatch.setattr(root, "field_of", lambda *of: field)
+    stiff: Any = SimpleNamespace(mesh_stiffness="influence_numbers")
+    forces: Any = SimpleNamespace()
+    model = point.last.models[rig.mesh_names.index("reference.a")]
+    assert model.pair.helix_angle != 0.0
+    for index in (0, 1):
+        under, behind = tooth_history._both_fillets(
+            stiff, tooth_history._Passing(model, index, front), forces
+        )
+        for course in (under, behind):
+            assert course.face[course.highest_at[2]] == (3e-3 if front else -3e-3)
+
+
+def test_a_stated_rim_raises_the_centrifugal_stress(rig: Rig) -> None:
+    case = rig.case.with_value("gearboxes.test.gears.wheel_a.rim_thickness", "10 mm")
+    place = gear_meshes(rig)["test.wheel_a"][0]
+    solid, rim = (tooth_history.mean_stress(one, place, SPEED) for one in (rig, build_rig(case, "quick")))
+    assert rim.disc > 1.2 * solid.disc and rim.teeth > solid.teeth

@@ -72,6 +72,11 @@ def test_a_sheet_without_a_failing_root_says_which_stress_governs():
     held = make_result(checks=two_methods(1050.0, 900.0))
     said = reasons.why(by_field(held)).root_stress
     assert "the computed field governs with 900 N/mm²" in said and "1050 N/mm² as a hand check" in said
+    assert "K_A" not in said
+    raised = by_field(held)
+    test = raised.dynamics.gearboxes["test"]
+    raised.dynamics.gearboxes["test"] = replace(test, iso_factors=test.iso_factors | {"K_A": 1.25})
+    assert "force of every tooth times K_A 1.25; ISO" in reasons.why(raised).root_stress
     said = reasons.why(held).root_stress
     assert "both count" in said and "900 N/mm²" in said and "1050 N/mm²" in said
     assert reasons.why(make_result(checks=[make_check("oil.room", 1.0, 3.0)])).root_stress == ""
