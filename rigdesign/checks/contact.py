@@ -45,6 +45,7 @@ PRESSURE = RuleFamily(
     "rig; that is a strength at the pitch point and warns at most.",
     places=_held_meshes,
     limit_keys=("limits.flanks.contact_pressure_maximum", "limits.flanks.pitting_safety_minimum"),
+    one_limit_suffices=True,
     needs=LOADS,
     leaves_out=(long_periods,),
     moved_by=frozenset({"gear rating", "test time", "housing"}),

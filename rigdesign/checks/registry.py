@@ -58,6 +58,8 @@ class RuleFamily:
     """Where in a case rules of the family hold."""
     limit_keys: tuple[str, ...] = ()
     """Paths of the limits, where the source does not begin with the only one."""
+    one_limit_suffices: bool = False
+    """Whether any of ``limit_keys`` makes the check apply, each standing for the others."""
     comparison: Comparison = "<="
     needs: Need | None = None
     absent: str | Callable[[SolvedRig], str] = NO_HOUSING

@@ -105,7 +105,8 @@ def explain_check(case: Case, identity: str, finished: FinishedCheck | None = No
         source=rule.source,
         procedure=family.procedure,
         needs=needs,
-        applicable=all(limit.value for limit in limits) and _met(case, needs),
+        applicable=(any if family.one_limit_suffices else all)(limit.value for limit in limits)
+        and _met(case, needs),
         inputs=tuple(_inputs(case, family, rule, finished)),
         finished=finished,
     )
