@@ -28,6 +28,10 @@ class RootFillet:
         """Length along the fillet at which its tangent stands at ``angle`` to the tooth axis [m]."""
         return float(np.interp(-angle, -self.tangent, self.arc))
 
+    def weights_at_tangent(self, angle: float) -> Array:
+        """Shares (n,) of the points in the place whose tangent stands at ``angle`` to the tooth axis [rad]."""
+        return np.array([np.interp(-angle, -self.tangent, one) for one in np.eye(len(self.tangent))])
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class InfluenceNumbers:

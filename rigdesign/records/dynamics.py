@@ -16,7 +16,6 @@ from rigdesign.coupling.loads import laws_of, mesh_models, shifted_gear, signed_
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.records import root
 from rigdesign.records.curves import Curves, own_ratio
-from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS, LEAST_GAIN, mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
 from rigdesign.records.tooth_history import tooth_histories
@@ -115,7 +114,6 @@ def mesh_loads(
         unsolved=tuple(unsolved(rig, run, mesh)),
         root_stress=paths,
         root_stress_ratios=ratios,
-        contact=loaded_contact(rig, run.test, mesh),
     )
 
 

@@ -10,6 +10,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import factor_points, iso_factor, own_ratio
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
+from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.reversed_bending import bent_both_ways
 from rigdesign.records.time_run import ramp_history
@@ -68,6 +69,7 @@ def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> Gea
     speed = rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, run.test.point.speed)
     iso = iso_factor(rig, name, float(response.mean[mesh]), speed)
     main = next(iter(run.curves.named))
+    contact = loaded_contact(rig, run.test, mesh)
     return GearboxDynamics(
         role=loads.role,
         torque=main,
@@ -90,7 +92,7 @@ def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> Gea
         root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
         geometry=rows.geometry_row(rig.pairs[name], run.test.last.models[mesh]),
         flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, run.points, mesh)],
-        loaded_contact=None if loads.contact is None else loaded_contact_row(loads.contact),
+        loaded_contact=None if contact is None else loaded_contact_row(contact),
     )
 
 

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import radians
 
+import numpy as np
+from numpy.typing import NDArray
+
 from dynamics.contact.contact_ratio import unloaded_contact_ratio
 from dynamics.contact.face import FaceGrid, default_positions
 from dynamics.contact.loaded_mesh import LoadedMesh
@@ -24,8 +27,11 @@ from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import ToothInfluence
 
+Array = NDArray[np.float64]
 ROOT = radians(15.0)
 """Least angle between fillet and tooth axis of the root: nearer to the flank the stress is that of the contact."""
+TANGENT = radians(30.0)
+"""Angle between fillet and tooth axis at the critical section of ISO 6336-3."""
 FINE = 256
 """Positions of a mesh cycle for the contact ratio without load."""
 KEPT = 64
@@ -74,13 +80,28 @@ class HeldContact:
         return unloaded_contact_ratio(self.mesh.points(self.cycle.points.reach, FINE))
 
     @cached_property
+    def _fillets(self) -> tuple[RootCourse, RootCourse]:
+        """Stress at all points of the fillets under the loaded flanks of pinion and wheel."""
+        pinion, wheel = self.gears
+        return root_course(self.cycle, *pinion, 0), root_course(self.cycle, *wheel, 1)
+
+    @cached_property
     def roots(self) -> tuple[RootCourse, RootCourse]:
         """Root stress under the loaded flanks of pinion and wheel."""
-        pinion, wheel = self.gears
-        return (
-            root_course(self.cycle, *pinion, 0).within(pinion.numbers.fillet.tangent >= ROOT),
-            root_course(self.cycle, *wheel, 1).within(wheel.numbers.fillet.tangent >= ROOT),
+        pinion, wheel = (
+            course.within(gear.numbers.fillet.tangent >= ROOT)
+            for course, gear in zip(self._fillets, self.gears, strict=True)
         )
+        return pinion, wheel
+
+    @cached_property
+    def at_tangent(self) -> tuple[Array, Array]:
+        """Highest stress at the 30 deg tangent over the face of pinion and wheel, (n_f,) each [Pa]."""
+        pinion, wheel = (
+            np.tensordot(gear.numbers.fillet.weights_at_tangent(TANGENT), course.stress, (0, 1)).max(axis=0)
+            for course, gear in zip(self._fillets, self.gears, strict=True)
+        )
+        return pinion, wheel
 
     def transverse_load_factor(self, deviation: float) -> float:
         """K_Halpha with a base pitch deviation [m]."""
@@ -132,5 +153,6 @@ def loaded_contact(rig: Rig, point: PointResult, mesh: int) -> LoadedContact | N
         cycle=contact.cycle,
         unloaded_contact_ratio=contact.unloaded_contact_ratio,
         roots=contact.roots,
+        at_tangent=contact.at_tangent,
         gauges=gauge_stresses(rig, rig.mesh_names[mesh], contact.cycle, contact.gears, contact.flanks.flank),
     )

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dynamics.contact.flank_gap import face_sense
 from dynamics.contact.mesh_cycle import MeshCycle
@@ -11,6 +12,8 @@ from dynamics.contact.root_course import RootCourse
 from dynamics.flank.axes import AxisMisalignment
 from dynamics.flank.field import Flank
 from rigdesign.results.gauge_stress import GaugeStress
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +36,8 @@ class LoadedContact:
     Face positions of cycle and roots are those of the contact, z times `face_sense`.
     """
 
+    at_tangent: tuple[Array, Array] | None = None
+    """Highest stress at the 30 deg tangent over the face positions of ``roots`` [Pa]."""
     gauges: tuple[GaugeStress, ...] = ()
     """Of both gears, in the order of the case."""
 

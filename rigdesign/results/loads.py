@@ -8,7 +8,6 @@ from typing import Literal
 from dynamics.drivetrain.bracing import BracingDrift
 from dynamics.drivetrain.modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
-from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.results.stress_source import FROM_FACTORS, StressSource
 from rigdesign.results.tooth_history import ToothHistory
 
@@ -144,8 +143,6 @@ class MeshLoads:
     root_stress: tuple[RootStressPath, ...] = ()
     """Of pinion and wheel."""
     root_stress_ratios: tuple[RootStressRatio, ...] = ()
-    contact: LoadedContact | None = None
-    """At the held stage that speaks for the rig; None without influence numbers."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -47,6 +47,7 @@ def loaded_contact_row(contact: LoadedContact) -> dict[str, Any]:
             gear: _root(course, pair.base_radii[index], -1.0 if index else 1.0, contact.face_sense)
             for index, (gear, course) in enumerate(zip(GEARS, contact.roots, strict=True))
         },
+        "root_stress_30_deg_tangent": _at_tangent(contact),
         "strain_gauges": [gauge_stress_row(gauge) for gauge in contact.gauges],
     }
 
@@ -83,6 +84,20 @@ def _pattern(pattern: ContactPattern, pair: GearPair, sense: float) -> dict[str,
         "face_mm": (sense * MM * pattern.face[over]).tolist(),
         "pressure_MPa": (MPA * np.where(pattern.edge, 0.0, pattern.pressure))[rows, over].tolist(),
         "edge": pattern.edge[rows, over].tolist(),
+    }
+
+
+def _at_tangent(contact: LoadedContact) -> dict[str, Any]:
+    """Highest stress of pinion and wheel at the 30 deg tangent, over the face."""
+    if contact.at_tangent is None:
+        return {}
+    over = slice(None, None, int(contact.face_sense))
+    return {
+        gear: {
+            "face_mm": (contact.face_sense * MM * course.face[over]).tolist(),
+            "highest_MPa": (MPA * stress[over]).tolist(),
+        }
+        for gear, course, stress in zip(GEARS, contact.roots, contact.at_tangent, strict=True)
     }
 
 

@@ -131,6 +131,10 @@ def test_row_and_picture_hold_what_was_found(found: LoadedContact) -> None:
     assert row["root_stress"]["pinion"]["largest_MPa"] == pytest.approx(1e-6 * found.roots[0].highest)
     assert max(row["root_stress"]["wheel"]["highest_MPa"]) == pytest.approx(1e-6 * found.roots[1].highest)
     assert np.all(np.diff(row["root_stress"]["wheel"]["rolling_angle_deg"]) > 0.0)
+    tangent = row["root_stress_30_deg_tangent"]["pinion"]
+    assert len(tangent["face_mm"]) == 5 and np.all(np.diff(tangent["face_mm"]) > 0.0)
+    # the critical section of the standard lies next to the most stressed point of the fillet
+    assert 0.85 < max(tangent["highest_MPa"]) / row["root_stress"]["pinion"]["largest_MPa"] <= 1.0
     pressure = np.array(row["pattern"]["pressure_MPa"])
     assert pressure.shape == np.shape(row["pattern"]["rolling_angle_deg"])
     assert pressure.max() == pytest.approx(row["flank_pressure_MPa"])
