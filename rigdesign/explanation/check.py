@@ -113,6 +113,7 @@ def explain_check(case: Case, identity: str, finished: FinishedCheck | None = No
 
 
 DRIVETRAIN, HOUSING, TRANSIENT = "a drivetrain", "a gearbox with a housing", "check --transient"
+LOADED_CONTACT = "loaded contact, not at fidelity quick"
 
 
 def _needs(family: RuleFamily) -> Iterator[str]:
@@ -122,6 +123,8 @@ def _needs(family: RuleFamily) -> Iterator[str]:
         yield HOUSING
     if family.key.startswith("transient."):
         yield TRANSIENT
+    if family.key in ("flank.contact_pressure", "flank.edge_pressure"):
+        yield LOADED_CONTACT
 
 
 def _met(case: Case, needs: tuple[str, ...]) -> bool:

@@ -277,9 +277,8 @@ class Rig:
         return self.shaft_speed(power.motor.shaft, speed)
 
     def prepare_teeth(self, say: Progress) -> None:
-        """Read or compute the influence numbers of all gears, where the tooth model takes them."""
-        if self.mesh_stiffness == "influence_numbers":
-            self.tooth_influence.prepare(self.pairs.values(), say)
+        """Read or compute the influence numbers of all gears."""
+        self.tooth_influence.prepare(self.pairs.values(), say)
 
     def driven_speed(self, speed: float) -> float:
         """Speed of the shaft that is driven [rad/s] at the stated speed; without a drivetrain of the first pinion."""

@@ -86,8 +86,9 @@ def solve_case(
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
-    wanted.prepare_teeth(say)
-    lap("influence_numbers")
+    if wanted.mesh_stiffness == "influence_numbers":
+        wanted.prepare_teeth(say)
+        lap("influence_numbers")
     rig = looping_rig(wanted)
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")

@@ -190,7 +190,9 @@ def _prepare_teeth(case: "Case", fidelity: Fidelity, say: Callable[[str], None])
     from rigdesign.run.solver_errors import solver_errors
 
     with suppress(RigdesignError), solver_errors(case):
-        build_rig(case, fidelity).prepare_teeth(say)
+        rig = build_rig(case, fidelity)
+        if rig.mesh_stiffness == "influence_numbers":
+            rig.prepare_teeth(say)
 
 
 def _check_ids(case: "Case") -> list[str]:

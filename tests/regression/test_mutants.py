@@ -26,7 +26,7 @@ from tests.builders.mutant import mutations
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"
-CHUNKS, PER_CHUNK = 4, 10
+CHUNKS, PER_CHUNK = 2, 10
 MANY = 1000
 SHORTENED = {
     "schedule.stages.bracing.duration": "50 ms",
