@@ -189,7 +189,9 @@ def test_torque_of_a_loaded_contact_is_positive_on_either_flank(
     monkeypatch: pytest.MonkeyPatch, mean: float, flank: str
 ) -> None:
     flanks = SimpleNamespace(flank=flank, axes=PARALLEL)
-    held = SimpleNamespace(flanks=flanks, cycle=None, gears=(), unloaded_contact_ratio=1.0, roots=())
+    held = SimpleNamespace(
+        flanks=flanks, cycle=None, gears=(), unloaded_contact_ratio=1.0, roots=(), at_tangent=None
+    )
     monkeypatch.setattr(loaded_contact, "held_contact", lambda *of: held)
     monkeypatch.setattr(loaded_contact, "gauge_stresses", lambda *of: ())
     rig: Any = SimpleNamespace(mesh_names=("test.main",))
