@@ -94,7 +94,7 @@ def speed_rows(rig: "Rig", curve: "GaugeCurve") -> Iterator[ValidationRow]:
     from rigdesign.validation.p1_speed import speed_effect, with_feather_keys
 
     stiff, keyed = (speed_effect(one, "test.main", curve) for one in (rig, with_feather_keys(rig)))
-    told = (
+    assumed = (
         "mesh force of the periodic response on the quasi-static curve; 100 rpm taken as quasi-static; quick fidelity; "
         "shafts and couplings of P1's rig are not printed: those of the tool"
     )
@@ -104,12 +104,12 @@ def speed_rows(rig: "Rig", curve: "GaugeCurve") -> Iterator[ValidationRow]:
         "predicted",
         Goal(0.1),
         assumptions="gears on feather keys of 5e5 N m/rad and 500 N m s/rad (Figure 8) against gears fixed to their "
-        f"shafts; {told}",
+        f"shafts; {assumed}",
     )
-    yield compare(SPEED["P1-speed-measured"], stiff.maximum, "predicted", assumptions=told)
-    yield compare(SPEED["P1-speed-simulated"], stiff.maximum, "predicted", assumptions=told)
+    yield compare(SPEED["P1-speed-measured"], stiff.maximum, "predicted", assumptions=assumed)
+    yield compare(SPEED["P1-speed-simulated"], stiff.maximum, "predicted", assumptions=assumed)
     yield compare(
-        SPEED["P1-speed-start"], stiff.start, "predicted", assumptions=f"first tenth of the way; {told}"
+        SPEED["P1-speed-start"], stiff.start, "predicted", assumptions=f"first tenth of the way; {assumed}"
     )
 
 
