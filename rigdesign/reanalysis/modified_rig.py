@@ -91,10 +91,7 @@ def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) ->
 
 def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
     """The rig of ``case``; it takes over what the stated rig has computed and the change does not touch."""
-    rig = replace(
-        build_rig(case, stated.fidelity),
-        tooth_influence=stated.tooth_influence.for_widths_near(stated.pairs.values()),
-    )
+    rig = replace(build_rig(case, stated.fidelity), tooth_influence=stated.tooth_influence)
     if "coupling" not in parts or same_housings(rig, stated):
         take_over(rig, stated, HOUSINGS)
     return rig
