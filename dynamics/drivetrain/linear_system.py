@@ -16,6 +16,27 @@ Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
+class Coordinates:
+    """Coordinates in which the matrices of a system fall into blocks: eta, with freedoms q = freedoms @ eta.
+
+    freedoms : (n, n); inertia, damping, stiffness : (n, n) in these coordinates; rigid : (n, n_rigid)
+    """
+
+    freedoms: Array
+    inertia: Array
+    damping: Array
+    stiffness: Array
+    rigid: Array
+
+    @cached_property
+    def branches(self) -> Integers:
+        """Number of the branch of each coordinate (n,): those between which nothing but a mesh acts are apart."""
+        tied = (self.inertia != 0.0) | (self.damping != 0.0) | (self.stiffness != 0.0)
+        tied |= self.rigid @ self.rigid.T != 0.0
+        return np.asarray(connected_components(csr_matrix(tied), directed=False)[1], np.int64)
+
+
+@dataclass(frozen=True, kw_only=True)
 class LinearSystem:
     """M q'' + C q' + K q = external loads + mesh reactions.
 
@@ -36,6 +57,7 @@ class LinearSystem:
     drag_loads : name -> (n,) share of a drag torque that acts on each freedom, summing to -1 (drag opposes
         rotation); one entry per loss place that brakes (bearing, windage, seal)
     shaft_torques : torques that alternate with the rotation of a shaft
+    own_coordinates : in which the matrices fall into more blocks than in the freedoms, where there are such
     """
 
     inertia: Array
@@ -48,18 +70,47 @@ class LinearSystem:
     twist_load: Array
     drag_loads: dict[str, Array]
     shaft_torques: tuple[ShaftTorques, ...] = ()
+    own_coordinates: Coordinates | None = None
+
+    def at(self, speed: float) -> "LinearSystem":
+        """Itself: these matrices hold at every speed [rad/s]."""
+        return self
+
+    @cached_property
+    def coordinates(self) -> Coordinates:
+        """Coordinates of the eigenproblems: its own, else the freedoms themselves."""
+        return self.own_coordinates or Coordinates(
+            freedoms=np.eye(len(self.inertia)),
+            inertia=self.inertia,
+            damping=self.damping,
+            stiffness=self.stiffness,
+            rigid=self.rigid,
+        )
 
     @cached_property
     def form(self) -> ModalForm:
-        """Complex modes without the meshes, solved once for all speeds and iterations."""
-        return modal_form(self.inertia, self.damping, self.stiffness, self.rigid)
+        """Complex modes without the meshes, solved once for all speeds and iterations, branch by branch."""
+        inner = self.coordinates
+        forms = []
+        for branch in np.unique(inner.branches):
+            own = np.flatnonzero(inner.branches == branch)
+            block = np.ix_(own, own)
+            form = modal_form(
+                inner.inertia[block], inner.damping[block], inner.stiffness[block], inner.rigid[own]
+            )
+            forms.append(form.seen(inner.freedoms[:, own]))
+        return ModalForm(
+            poles=np.concatenate([form.poles for form in forms]),
+            velocity_shapes=np.hstack([form.velocity_shapes for form in forms]),
+            loads=np.vstack([form.loads for form in forms]),
+            rigid=np.hstack([form.rigid for form in forms]),
+        )
 
     @cached_property
     def branches(self) -> Integers:
-        """Number of the branch of each freedom (n,): freedoms between which nothing but a mesh acts are apart."""
-        tied = (self.inertia != 0.0) | (self.damping != 0.0) | (self.stiffness != 0.0)
-        tied |= self.rigid @ self.rigid.T != 0.0
-        return np.asarray(connected_components(csr_matrix(tied), directed=False)[1], np.int64)
+        """Number of the branch of each freedom (n,): that of its largest coordinate."""
+        inner = self.coordinates
+        return np.asarray(inner.branches[np.argmax(np.abs(inner.freedoms), axis=1)], np.int64)
 
 
 def line_shapes(lines: Integers) -> Array:

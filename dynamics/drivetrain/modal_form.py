@@ -31,6 +31,15 @@ class ModalForm:
     loads: Complex
     rigid: Array
 
+    def seen(self, freedoms: Array) -> "ModalForm":
+        """The same in other freedoms (n, n_coordinates) per coordinate."""
+        return ModalForm(
+            poles=self.poles,
+            velocity_shapes=freedoms @ self.velocity_shapes,
+            loads=self.loads @ freedoms.T,
+            rigid=freedoms @ self.rigid,
+        )
+
     def receptance(self, omega: Array, dofs: NDArray[np.int64]) -> Complex:
         """Displacement per torque between some freedoms at frequencies above zero.
 
@@ -111,5 +120,6 @@ def real_modes(inertia: Array, stiffness: Array, rigid: Array) -> RealModes:
 def _not_resisted(rigid: Array, stiffness: Array) -> Array:
     """(n, n_rigid) combinations of the candidates that the stiffness does not resist."""
     scale = float(np.max(np.diag(stiffness), initial=1e-300))
+    rigid = rigid[:, np.any(rigid != 0.0, axis=0)]
     values, vectors = np.linalg.eigh(rigid.T @ stiffness @ rigid)
     return np.asarray(rigid @ vectors[:, np.abs(values) < 1e-9 * scale])

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import real_modes
@@ -108,25 +109,30 @@ def modal_model(
     drags = np.zeros((n, 0)) if drags is None else drags
     slow_and_drags = np.column_stack((loads, drags))
     _check(system, laws, slow_and_drags)
-    shapes, frequencies, n_lines = _branch_shapes(system)
-    damping = shapes.T @ system.damping @ shapes
+    inner = system.coordinates
+    own, frequencies, n_lines = _branch_shapes(system)
+    damping = own.T @ inner.damping @ own
     damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
     m = n - n_lines
     matrix = np.zeros((n + m, n + m))
     matrix[:n, :n] = -damping
     matrix[n_lines:n, n:] = -np.diag(frequencies[n_lines:])
     matrix[n:, n_lines:n] = np.diag(frequencies[n_lines:])
-    skew = 0.5 * (system.stiffness - system.stiffness.T)
+    skew = 0.5 * (inner.stiffness - inner.stiffness.T)
     if skew.any():
-        elastic = shapes[:, n_lines:]
+        elastic = own[:, n_lines:]
         matrix[n_lines:n, n:] -= elastic.T @ skew @ (elastic / frequencies[n_lines:])
-    branch_of = system.branches[np.argmax(np.abs(shapes), axis=0)]
+    branch_of = inner.branches[np.argmax(np.abs(own), axis=0)]
+    shapes = inner.freedoms @ own
     of_state = np.concatenate((branch_of, branch_of[n_lines:]))
-    solved = [_branch_modes(matrix, np.flatnonzero(of_state == branch), n) for branch in np.unique(branch_of)]
+    groups = _groups(shapes.T @ np.column_stack((_port_columns(system), drags)), branch_of)
+    in_order = np.argsort(groups, kind="stable")
+    solved = [_branch_modes(matrix, np.flatnonzero(of_state == branch), n) for branch in in_order]
     values = np.concatenate([own for own, _, _ in solved])
     vectors = np.hstack([right for _, right, _ in solved])
     inverse = np.vstack([left for _, _, left in solved])
-    branches = np.repeat(np.arange(len(solved)), [len(own) for own, _, _ in solved])
+    branches = np.repeat(groups[in_order], [len(own) for own, _, _ in solved])
+    branch_of = groups[branch_of]
     weights = np.where(values.imag > 0.0, 2.0, 1.0)
 
     forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
@@ -188,19 +194,20 @@ def _check(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> None:
 
 
 def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, int]:
-    """Return mass-normalised modes of every branch, exact rigid ones first, and their circular frequencies."""
-    n = len(system.inertia)
+    """Return mass-normalised modes of every branch in the coordinates of the system, exact rigid ones first, and their
+    circular frequencies."""
+    inner = system.coordinates
+    n = len(inner.inertia)
     rigid: list[Array] = []
     elastic: list[Array] = []
     frequencies: list[Array] = []
-    for branch in np.unique(system.branches):
-        members = np.flatnonzero(system.branches == branch)
+    for branch in np.unique(inner.branches):
+        members = np.flatnonzero(inner.branches == branch)
         own = np.ix_(members, members)
-        candidates = system.rigid[members][:, np.any(system.rigid[members] != 0.0, axis=0)]
-        modes = real_modes(system.inertia[own], system.stiffness[own], candidates)
+        modes = real_modes(inner.inertia[own], inner.stiffness[own], inner.rigid[members])
         if np.any(modes.frequencies[modes.n_rigid :] <= 0.0):
             raise DynamicsInputError(
-                f"the line of {system.dofs[members[0]]} is torn: a part of it is held by no stiffness; join it or "
+                f"the line of {_named(system, members[0])} is torn: a part of it is held by no stiffness; join it or "
                 "make it a line"
             )
         block = np.zeros((n, len(members)))
@@ -210,6 +217,24 @@ def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, int]:
         frequencies.append(modes.frequencies[modes.n_rigid :])
     n_rigid = sum(block.shape[1] for block in rigid)
     return np.hstack((*rigid, *elastic)), np.concatenate((np.zeros(n_rigid), *frequencies)), n_rigid
+
+
+def _groups(moved: Array, branch_of: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the group of every branch: those that one port or drag torque moves together are marched as one.
+
+    moved : (n, k) modes per unit of each; branch_of : (n,) branch of each mode
+    """
+    count = int(branch_of.max()) + 1
+    tied = np.eye(count, dtype=bool)
+    for column in np.abs(moved).T:
+        together = np.unique(branch_of[column > 1e-9 * max(column.max(), 1e-300)])
+        tied[together[0], together] = True
+    return np.asarray(connected_components(tied, directed=False)[1], np.int64)
+
+
+def _named(system: LinearSystem, coordinate: int) -> str:
+    """Name of the freedom that moves most with a coordinate."""
+    return system.dofs[int(np.argmax(np.abs(system.coordinates.freedoms[:, coordinate])))]
 
 
 def _branch_modes(
