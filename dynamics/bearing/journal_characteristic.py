@@ -95,10 +95,10 @@ def width_steps(width_ratio: float) -> int:
     return round(width_ratio / WIDTH_RATIO_STEP)
 
 
-def solved_films(width_ratio: float, feed: Feed) -> list[FilmSolution]:
-    """Film at every one of `NODES`."""
+def solved_films(width_ratio: float, feed: Feed, nodes: Array) -> list[FilmSolution]:
+    """Film at every node -ln(1 - eps), rising."""
     films: list[FilmSolution] = []
-    for node in NODES:
+    for node in nodes:
         near = films[-1] if films else None
         films.append(solve_film(-math.expm1(-node), width_ratio, near=near, feed=feed))
     return films
@@ -107,7 +107,7 @@ def solved_films(width_ratio: float, feed: Feed) -> list[FilmSolution]:
 @lru_cache(maxsize=64)
 def _solved(steps: int, feed: Feed) -> Characteristic:
     width_ratio = steps * WIDTH_RATIO_STEP
-    films = solved_films(width_ratio, feed)
+    films = solved_films(width_ratio, feed, NODES)
     quotient = [math.log(f.sommerfeld / short_bearing_load(f.eccentricity, width_ratio)) for f in films]
     attitude = [f.attitude_angle - short_bearing_attitude(f.eccentricity) for f in films]
     flow = [f.side_flow / short_bearing_side_flow(f.eccentricity, width_ratio) for f in films]

@@ -27,11 +27,13 @@ from dynamics.kernels.journal import node_of
 
 Array = NDArray[np.float64]
 
+CENTRED = 1e-6
+"""Eccentricity at which the film of the centred journal is perturbed; closer in, rounding shows."""
+CLOSE_IN: Array = np.array([CENTRED, 0.005, 0.015, 0.03])
+"""Where the film is perturbed besides the nodes of the characteristic: the break-up of a narrow film moves quickly."""
 GROWTH: Array = np.array([1.0, -0.5, 0.5, 0.0, 0.5, 0.0, 0.0, -0.5])
 """Powers of 1 / (1 - eps) with which the entries of stiffness and damping grow over So towards contact, those of the
 short bearing."""
-LEAST_ECCENTRICITY = 1e-9
-"""Below it the journal is centred."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +45,7 @@ class CoefficientTable:
 
     def at(self, eccentricity: float) -> FilmCoefficients:
         """Dimensionless stiffness and damping at eps in [0, HIGHEST_ECCENTRICITY], axes r and t."""
-        eps = max(eccentricity, LEAST_ECCENTRICITY)
+        eps = max(eccentricity, CENTRED)
         scale = self.characteristic.sommerfeld(eps) / eps * (1.0 - eps) ** -GROWTH
         values = scale * self._scaled(node_of(eps))
         return FilmCoefficients(values[:4].reshape(2, 2), values[4:].reshape(2, 2))
@@ -62,9 +64,9 @@ def coefficient_table(width_ratio: float, feed: Feed = "widest_gap") -> Coeffici
 @lru_cache(maxsize=64)
 def _solved(steps: int, feed: Feed) -> CoefficientTable:
     width_ratio = steps * WIDTH_RATIO_STEP
-    rows = []
-    for film in solved_films(width_ratio, feed):
+    rows, nodes = [], np.sort(np.concatenate([CLOSE_IN, NODES]))
+    for film in solved_films(width_ratio, feed, nodes):
         found = film_coefficients(film)
         values = np.concatenate([found.stiffness.ravel(), found.damping.ravel()])
         rows.append(values * film.eccentricity / film.sommerfeld * (1.0 - film.eccentricity) ** GROWTH)
-    return CoefficientTable(characteristic(width_ratio, feed), CubicSpline(NODES, np.array(rows)))
+    return CoefficientTable(characteristic(width_ratio, feed), CubicSpline(nodes, np.array(rows)))

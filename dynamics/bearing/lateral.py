@@ -11,6 +11,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 
 Regime = Literal["hydrodynamic", "mixed", "standstill", "elastic", "constant"]
@@ -65,7 +67,17 @@ def constant_coefficients(
 
     stiffness, damping : radial [N/m], [N s/m]
     force : static load on the journal in y and z [N]
+
+    Raises DynamicsInputError for a stiffness not above 0 or a negative damping.
     """
+    if not (stiffness > 0.0 and math.isfinite(stiffness)):
+        raise DynamicsInputError(
+            f"bearing: stiffness = {stiffness:.6g} N/m: must be finite and above 0; correct the radial stiffness"
+        )
+    if not (damping >= 0.0 and math.isfinite(damping)):
+        raise DynamicsInputError(
+            f"bearing: damping = {damping:.6g} N s/m: must be finite and not negative; correct the radial damping"
+        )
     return LateralCoefficients(
         stiffness=stiffness * np.eye(2),
         damping=damping * np.eye(2),

@@ -37,8 +37,8 @@ def rolling_lateral(row: RowOfElements, operation: LateralOperation) -> LateralC
     found = bearing_stiffness(replace(row, direction=1), radial, axial)
     if found.loaded_elements == 0:
         raise BearingError(
-            f"rolling bearing: load = 0 N with a clearance of {1e6 * row.clearance:.3g} um: no element carries, nothing "
-            "holds the rings; give the load with the weight of the shaft, or a preload"
+            f"rolling bearing: load = 0 N with a clearance of {1e6 * row.clearance:.3g} um: no element carries, "
+            "nothing holds the rings; give the load with the weight of the shaft, or a preload"
         )
     direction = -1 if operation.axial_force < 0.0 else 1
     azimuth = math.atan2(operation.force[1], operation.force[0])
