@@ -105,7 +105,7 @@ def solve_film(
     if feed == "widest_gap":
         return at(0.0)
     # grooves stand across the load: the attitude at which the film pushes against it
-    attitude = brentq(lambda angle: at(angle).attitude_angle - angle, 0.02, 0.5 * math.pi, xtol=1e-9)
+    attitude = brentq(lambda angle: at(angle).attitude_angle - angle, 0.02, 0.5 * math.pi, xtol=1e-8)
     return at(attitude)
 
 

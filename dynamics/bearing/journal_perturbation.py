@@ -7,7 +7,8 @@ A displacement u and a velocity v of the journal (in units of the clearance c an
 
 on the film that carries pressure, P_1 = 0 on all its edges: feed, bearing end and, because P_0 leaves it with no
 gradient, the break-up (J. W. Lund, K. K. Thomsen 1978). The places of feed stand still in the bearing. The operator is
-symmetric, so the damping is; motion round the centre is to the film another speed: C (0, eps) = 2 F, F the static force.
+symmetric, so the damping is; motion round the centre is to the film another speed: C (0, eps) = 2 F, F its static
+force.
 
 The break-up lies between nodes. Ahead of it the static solution is the parabola P'' s^2 / 2 of the distance s from it,
 which the difference equation also solves: a last node with pressure P, the grid step d before the first dry one, has
