@@ -140,15 +140,19 @@ def modal_model(
     modal_forcing = inverse @ forcing
     velocity = _velocity_rows(system, slow_and_drags) @ shapes
     seen = (velocity @ vectors[:n]) * weights
-    keep = np.abs(values) <= 2.0 * np.pi * cutoff
+    # branches that no load moves at all stand still
+    pushed = np.bincount(branches, weights=np.abs(modal_forcing).max(axis=1))[branches] > 0.0
+    keep = (np.abs(values) <= 2.0 * np.pi * cutoff) & pushed
+    left = np.unique(branches[keep])
     lost, lost_forcing = values[~keep], modal_forcing[~keep]
+    lost = np.where(np.abs(lost_forcing).max(axis=1) > 0.0, lost, 1.0)
     static = -lost_forcing / lost[:, None]
     delayed = -lost_forcing / lost[:, None] ** 2
     ports = system.mesh_ports.ravel()
     return ModalModel(
         eigenvalues=values[keep],
-        branches=branches[keep],
-        port_branches=np.array([branch_of[np.argmax(np.abs(shapes[port]))] for port in ports], np.int64),
+        branches=np.searchsorted(left, branches[keep]),
+        port_branches=np.searchsorted(left, [branch_of[np.argmax(np.abs(shapes[port]))] for port in ports]),
         inputs=modal_forcing[keep],
         outputs=seen[:, keep],
         through=(seen[:, ~keep] @ static).real,
@@ -164,7 +168,7 @@ def modal_model(
         n_meshes=len(laws),
         n_slow=loads.shape[1],
         n_drags=drags.shape[1],
-        drag_branches=_drag_branches(shapes, branch_of, drags),
+        drag_branches=np.searchsorted(left, _drag_branches(shapes, branch_of, drags)),
         dropped=int(np.count_nonzero(~keep)),
     )
 

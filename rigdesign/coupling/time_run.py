@@ -36,6 +36,8 @@ LEAST_TORQUE = 1.0
 """Bracing torque [N m] that is kept at standstill: the flanks just touch."""
 QUICK_CUTOFF = 20e3
 """Highest mode of the time run at quick fidelity [Hz]."""
+ELASTIC_CUTOFF = 25e3
+"""Highest mode of the time run of elastic shafts [Hz]: the mesh frequency of 12,000 rpm and a quarter."""
 DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
 RPM = np.pi / 30.0
@@ -100,11 +102,18 @@ def run_ramp(
             window=WINDOW,
             keep_channels=False,
             keep_accounts=False,
-            cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+            cutoff=_cutoff(rig),
         ),
     )
     require_speeds(rig, schedule, response)
     return response
+
+
+def _cutoff(rig: Rig) -> float:
+    """Highest mode of the time run [Hz]; those above keep their static effect."""
+    if rig.fidelity == "quick":
+        return QUICK_CUTOFF
+    return DEFAULT_CUTOFF if rig.shaft_model == "torsional" else ELASTIC_CUTOFF
 
 
 def torque_share_at(rig: Rig, warm: IterationResult, speed: float) -> float:
