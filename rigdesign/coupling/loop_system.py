@@ -32,7 +32,7 @@ def loop_system(
     return rig.elastic.seen.system(
         RunningState(
             speed=rig.drive_speed(point.speed),
-            bearings={name: _at_seat(one) for name, one in coefficients.items()},
+            bearings={name: at_seat(one) for name, one in coefficients.items()},
         )
     )
 
@@ -63,7 +63,7 @@ def bearing_coefficients(
     return found
 
 
-def _at_seat(coefficients: LateralCoefficients) -> BearingCoefficients:
+def at_seat(coefficients: LateralCoefficients) -> BearingCoefficients:
     """Lateral and tilting part in the order of the elastic rig; what locates a shaft is a spring of its own."""
     order = [1, 2, 0, 3, 4]
     stiffness = coefficients.node_stiffness[order][:, order]

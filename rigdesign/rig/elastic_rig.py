@@ -37,6 +37,8 @@ Face = Literal["front", "back"]
 
 AXIAL_STIFFNESS = 1e8
 """Of a thrust face or of the rings of a bearing that locates its shaft, where the case states none [N/m]."""
+AXIAL_DAMPING_TIME = 1.25e-5
+"""Damping over stiffness of an axial location [s], as of a rolling bearing (E. Kraemer 1993)."""
 REFERENCE_STIFFNESS = 1e8
 """Of every bearing in the state whose modes span the reduced rig [N/m]; any other stiffness is exact at rest."""
 NOMINAL_TORQUE = 100.0
@@ -130,8 +132,11 @@ def _locations(case: Case) -> Iterator[AxialLocation]:
     for box_name, box in case.gearboxes.items():
         for name, bearing in box.bearings.items():
             if bearing.locating:
+                stiffness = bearing.axial_stiffness or AXIAL_STIFFNESS
                 yield AxialLocation(
-                    bearing=f"{box_name}.{name}", stiffness=bearing.axial_stiffness or AXIAL_STIFFNESS
+                    bearing=f"{box_name}.{name}",
+                    stiffness=stiffness,
+                    damping=AXIAL_DAMPING_TIME * stiffness,
                 )
 
 
