@@ -28,12 +28,17 @@ def loop_system(
     if rig.shaft_model == "torsional":
         assert rig.system is not None
         return rig.system
+    return rig.elastic.seen.system(running_state(rig, point, coupling_state, bearings))
+
+
+def running_state(
+    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bearings: Mapping[str, BearingState]
+) -> RunningState:
+    """Speed and bearings of the elastic rig at an operating point."""
     coefficients = bearing_coefficients(rig, coupling_state, bearings)
-    return rig.elastic.seen.system(
-        RunningState(
-            speed=rig.drive_speed(point.speed),
-            bearings={name: at_seat(one) for name, one in coefficients.items()},
-        )
+    return RunningState(
+        speed=rig.drive_speed(point.speed),
+        bearings={name: at_seat(one) for name, one in coefficients.items()},
     )
 
 

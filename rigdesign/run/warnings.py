@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from dynamics.drivetrain.modes import loop_modes, modes_above_samples, sampling_audit
+from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.checks.omissions import thrust
@@ -18,6 +17,7 @@ from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
+from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
@@ -234,7 +234,7 @@ def _sampling(solved: SolvedRig) -> Iterator[str]:
         speed = solved.rig.drive_speed(solved.test.point.speed)
         audits = sampling_audit(drivetrain, speed, solved.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
-        modes = loop_modes(drivetrain, laws_of(solved.test.last.models), DEFAULT_CUTOFF)
+        modes = held_modes(solved.rig, solved.test)
         yield from modes_above_samples(modes, solved.case.numerics.sample_rate)
 
 
