@@ -78,7 +78,8 @@ class _Description:
     @cached_property
     def _sizes(self) -> Array:
         """(n_full,) square root of the diagonal of the mass: makes displacements and rotations comparable."""
-        return np.asarray(np.sqrt(self.seen.reduced.model.mass.diagonal()), float)
+        diagonal: Array = np.sqrt(self.seen.reduced.model.mass.diagonal()).astype(np.float64)
+        return diagonal
 
     @cached_property
     def _shafts(self) -> dict[str, csr_array]:

@@ -15,7 +15,7 @@ from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
 from dynamics.response.periodic_response import Period
 
-LEAST_HARMONICS, MOST_HARMONICS = 24, 256
+LEAST_HARMONICS, MOST_HARMONICS = 24, 320
 """Harmonics of the mesh frequency that are used at least and at most."""
 LEAST_DAMPING = 1e-9
 """Damping ratio taken for a mode that no damper reaches [-]."""
@@ -23,7 +23,7 @@ LEAST_SAMPLES = 256
 """Samples per mesh that are used at least."""
 
 
-SEEN = 0.1
+SEEN = 1e-3
 """Approach of a mode at its resonance, per static approach of a mesh under the same force, from which it counts [-]."""
 
 
