@@ -322,12 +322,23 @@ def _fields(solved: SolvedRig) -> Iterable[HousingField]:
         yield from point.last.fields.values()
 
 
+def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
+    if solved.rig.shaft_model == "torsional":
+        yield "bending and tilting of shafts: they only twist, journal stiffness does not enter the loads"
+        yield "static position of the journals in their films: axes run through the middle of the hot bores"
+        return
+    yield "unbalance, bow of shafts and offset of coupled axes as lateral excitation"
+    yield (
+        "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the line "
+        "of action; the mean tilt of the axes is in the gap of the flanks"
+    )
+
+
 def not_modelled(solved: SolvedRig) -> list[str]:
     """What the verdict knows nothing of."""
     items = [
-        "bending and tilting of shafts: the drivetrain is torsional, journal stiffness does not enter the loads",
-        "static position of the journals in their films: axes run through the middle of the hot bores",
-        "helix slope deviations of manufacture, shaft bending and bearing clearance in tooth contact and K_Hbeta"
+        *_left_out_of_the_shafts(solved),
+        "helix slope deviations of manufacture in tooth contact and K_Hbeta"
         if solved.rig.mesh_stiffness == "influence_numbers"
         else "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
         "temperature over time: steady states at the held stages only",
