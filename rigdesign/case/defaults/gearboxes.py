@@ -7,6 +7,7 @@ from rigdesign.case.defaults.parts import (
     only_mesh,
     section_diameter,
     shaft_diameter,
+    shaft_of,
     shafts_of,
     tabled,
 )
@@ -161,7 +162,9 @@ def _locating(tree: RawTree, box: str, bearing: str) -> Filling:
     at = f"gearboxes.{box}.bearings"
     shaft = tree.text(f"{at}.{bearing}.shaft")
     mates = [name for name in tree.names(at) if tree.text(f"{at}.{name}.shaft") == shaft]
-    if not tree.has(f"gearboxes.{box}.housing") or any(tree.has(f"{at}.{name}.locating") for name in mates):
+    if any(tree.has(f"{at}.{name}.locating") for name in mates):
+        return None
+    if not tree.has(f"gearboxes.{box}.housing") and (not _bends(tree) or _held_by_teeth(tree, box, shaft)):
         return None
     able = [name for name in mates if _holds_axially(tree, box, name)]
     if len(able) == 1 < len(mates):
@@ -170,6 +173,30 @@ def _locating(tree: RawTree, box: str, bearing: str) -> Filling:
     if tree.text(f"{at}.{bearing}.side") != side:
         return None
     return assumed(True, "the bearing on the side of the coupling holds the shaft")
+
+
+def _bends(tree: RawTree) -> bool:
+    """Whether the case has, or gets, a power circuit of elastic shafts: each of them has to be located."""
+    circuit = tree.has("drivetrain") or (
+        len(tree.names("gearboxes")) == 2 and tree.text("losses.basis") != "input"
+    )
+    return circuit and tree.text("drivetrain.shaft_model") != "torsional"
+
+
+def _held_by_teeth(tree: RawTree, box: str, shaft: str | None) -> bool:
+    """Whether a double-helical mesh ties the shaft to one that a bearing locates."""
+    at = f"gearboxes.{box}"
+    located = {
+        tree.text(f"{at}.bearings.{name}.shaft")
+        for name in tree.names(f"{at}.bearings")
+        if tree.at(f"{at}.bearings.{name}.locating") is True
+    }
+    for mesh in tree.names(f"{at}.meshes"):
+        gears = [tree.text(f"{at}.meshes.{mesh}.{side}") or "" for side in ("pinion", "wheel")]
+        shafts = [shaft_of(tree, box, "gears", gear) for gear in gears]
+        if tree.at(f"{at}.meshes.{mesh}.double_helical") is True and shaft in shafts:
+            return not located.isdisjoint(shafts)
+    return False
 
 
 def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
