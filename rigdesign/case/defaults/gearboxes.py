@@ -13,6 +13,7 @@ from rigdesign.case.defaults.parts import (
 )
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 
 book = RuleBook()
 
@@ -203,6 +204,18 @@ def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
     """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
     found = tabled(tree, box, bearing)
     return found is None or found.locating
+
+
+@book.default("gearboxes.*.bearings.*.radial_damping")
+def _rolling_damping(tree: RawTree, box: str, bearing: str) -> Filling:
+    """Of a rolling bearing whose stiffness the case states and uses."""
+    at = f"gearboxes.{box}.bearings.{bearing}"
+    stiffness = tree.si(f"{at}.radial_stiffness", "linear_stiffness")
+    stated = tree.text("drivetrain.bearing_coefficients") == "stated"
+    if stiffness is None or not stated or tree.text(f"{at}.type") != "rolling":
+        return None
+    damping = f"{ROLLING_DAMPING_TIME * stiffness:.4g} N s/m"
+    return assumed(damping, "1.25e-5 s of the stiffness, middle of 0.25e-5 to 2.5e-5 s (Kraemer 1993)")
 
 
 # ------------------------------------------------------------------ oil

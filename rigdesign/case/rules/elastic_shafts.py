@@ -132,8 +132,8 @@ def _lateral(case: "Case", couplings: Sequence["CouplingInput"]) -> Iterator[Fau
             others = [name for name, share in zip(group, free, strict=True) if share > FREE and name != shaft]
             yield Fault(
                 f"drivetrain.shafts.{shaft}", "",
-                f"has {count} bearing{'' if count == 1 else 's'} and can move sideways{_together(others)}: it needs two "
-                "bearings apart from each other, or one and a coupling with lateral stiffness to a held shaft",
+                f"has {count} bearing{'' if count == 1 else 's'} and can move sideways{_together(others)}: it needs "
+                "two bearings apart from each other, or one and a coupling with lateral stiffness to a held shaft",
                 "add a bearing, or radial_stiffness and angular_stiffness at a coupling to a held shaft",
             )  # fmt: skip
 

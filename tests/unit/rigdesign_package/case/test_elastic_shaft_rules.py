@@ -1,5 +1,6 @@
 """Shafts that bend have to be held along their axis and sideways: faults of the case, and the solver says the same."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,11 @@ import pytest
 from dynamics.drivetrain.shaft import DrivetrainError
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import Case, load_case
+from rigdesign.case.elastic_shafts import disc_mass
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+from rigdesign.coupling import loop_system
 from rigdesign.rig.model import build_rig
+from tests.builders.minimal_case import MINIMAL, MINIMAL_ROLLING
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype" / "case.toml"
@@ -52,11 +57,17 @@ def wheel_side(**stiffness: str) -> str:
     return "\n" + "\n".join(keys)
 
 
+FREE_ENDS = "".join(
+    f'drivetrain.couplings.{name}_side.remove = ["radial_stiffness", "angular_stiffness"]\n'
+    for name in ("pinion", "wheel")
+)
+
+
 def loaded(folder: Path, text: str, model: str = "elastic") -> Case:
-    """The prototype with couplings that pass no bending, and ``text`` laid over it."""
-    file = folder / f"{model}.toml"
-    lines = [f'extends = "{PROTOTYPE.as_posix()}"', f'drivetrain.shaft_model = "{model}"', text]
-    file.write_text("\n".join(lines), encoding="utf-8")
+    """The prototype with couplings that pass torque only, and ``text`` laid over it."""
+    base, file = folder / "base.toml", folder / f"{model}.toml"
+    base.write_text(f'extends = "{PROTOTYPE.as_posix()}"\n{FREE_ENDS}', encoding="utf-8")
+    file.write_text(f'extends = "base.toml"\ndrivetrain.shaft_model = "{model}"\n{text}', encoding="utf-8")
     return load_case(file)
 
 
@@ -155,3 +166,79 @@ def test_stated_coefficients_have_to_be_stated(tmp_path: Path) -> None:
     assert all('"computed"' in fault.remedy for fault in found)
     loaded(tmp_path, text.replace('"stated"', '"computed"'))
     loaded(tmp_path, text, "torsional")
+
+
+def implied(case: Case, key: str) -> dict[str, str]:
+    """Assumptions of one key that the case does not state: part -> value."""
+    stated = {mark.path for mark in case.origin.marks}
+    return {
+        record.path.split(".")[-2]: record.value
+        for record in case.assumptions
+        if record.path.endswith(f".{key}") and record.path not in stated
+    }
+
+
+def test_what_is_left_out_is_an_assumption(tmp_path: Path) -> None:
+    case = loaded(
+        tmp_path,
+        """
+        drivetrain.shafts.test_pinion.discs.coupling_flange.remove = ["mass"]
+        gearboxes.test.bearings.wheel_rear.axial_stiffness = "2e8 N/m"
+        gearboxes.test.bearings.wheel_front.support_stiffness = "1e9 N/m"
+        drivetrain.couplings.wheel_side.angular_stiffness = "1e3 N m/rad"
+        """,
+    )
+    assert implied(case, "mass") == {"coupling_flange": "0.327 kg"}
+    assert implied(case, "radial_stiffness") == {"pinion_side": "none"}
+    located = [box.bearings[name] for box in case.gearboxes.values() for name in box.bearings]
+    assert sum(bearing.locating for bearing in located) == 3
+    assert list(implied(case, "axial_stiffness").values()) == ["100 N/um"] * 2
+    supports = [record for record in case.assumptions if record.path.endswith("support_stiffness")]
+    assert len(supports) == len(located) - 1
+    assert all(record.range is None for record in supports)
+    assert implied(case, "radial_damping") == {}  # films are computed
+
+
+def test_shafts_that_only_twist_assume_nothing_of_bending(tmp_path: Path) -> None:
+    case = loaded(tmp_path, "", "torsional")
+    for key in ("mass", "radial_stiffness", "axial_stiffness", "support_stiffness"):
+        assert implied(case, key) == {}
+
+
+def test_a_disc_without_a_mass_is_a_third_as_thick_as_its_radius() -> None:
+    radius = 0.1
+    mass = 7850.0 * math.pi * radius**2 * radius / 3.0
+    assert disc_mass(0.5 * mass * radius**2) == pytest.approx(mass, rel=1e-12)
+
+
+def test_rolling_bearings_take_their_damping_from_their_stiffness(tmp_path: Path) -> None:
+    """As assumption where both are computed; as value of the case where the stiffness is stated."""
+    file = tmp_path / "case.toml"
+    file.write_text(MINIMAL_ROLLING, encoding="utf-8")
+    computed = implied(load_case(file), "radial_damping")
+    assert set(computed.values()) == {f"{ROLLING_DAMPING_TIME:.3g} s of the stiffness"}
+    assert len(computed) == 4
+    assert ROLLING_DAMPING_TIME == loop_system.ROLLING_DAMPING_TIME
+    stated = MINIMAL_ROLLING.replace('"NU 406" }', '"NU 406", radial_stiffness = "4e8 N/m" }')
+    file.write_text(stated + '[drivetrain]\nbearing_coefficients = "stated"\n', encoding="utf-8")
+    case = load_case(file)
+    assert case.gearboxes["slave"].bearings["wheel_front"].radial_damping == pytest.approx(5e3)
+    assert implied(case, "radial_damping") == {}
+
+
+def test_a_gearbox_without_a_housing_gets_its_locating_bearings(tmp_path: Path) -> None:
+    file = tmp_path / "case.toml"
+    for lines, fixed in (("", True), ('[drivetrain]\nshaft_model = "torsional"\n', False)):
+        file.write_text(MINIMAL + lines, encoding="utf-8")
+        bearings = load_case(file).gearboxes["slave"].bearings
+        assert {name for name, one in bearings.items() if one.locating} == (
+            {"pinion_front", "wheel_front"} if fixed else set()
+        )
+
+
+def test_table_1_of_p2_is_a_variant() -> None:
+    case = load_case(CASES / "uhcf_prototype" / "table_1_bearings.toml")
+    assert case.drivetrain is not None
+    assert case.drivetrain.bearing_coefficients == "stated"
+    bearings = [one for box in case.gearboxes.values() for one in box.bearings.values()]
+    assert {(one.radial_stiffness, one.radial_damping) for one in bearings} == {(1e8, 4e4)}
