@@ -29,14 +29,13 @@ from dynamics.elastic_rig.running_state import isotropic_bearing
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS
 from rigdesign.case.model import Case
 from rigdesign.rig.shaft_axes import ShaftAxis
 
 Array = NDArray[np.float64]
 Face = Literal["front", "back"]
 
-AXIAL_STIFFNESS = 1e8
-"""Of a thrust face or of the rings of a bearing that locates its shaft, where the case states none [N/m]."""
 AXIAL_DAMPING_TIME = 1.25e-5
 """Damping over stiffness of an axial location [s], as of a rolling bearing (E. Kraemer 1993)."""
 REFERENCE_STIFFNESS = 1e8
