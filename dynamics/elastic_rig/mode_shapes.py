@@ -73,13 +73,12 @@ class _Description:
     @cached_property
     def _to_coordinates(self) -> Array:
         """(n, n) coordinates of the reduced rig per freedom."""
-        return np.linalg.inv(self.system.coordinates.freedoms)
+        return np.asarray(np.linalg.inv(self.system.coordinates.freedoms), np.float64)
 
     @cached_property
     def _sizes(self) -> Array:
         """(n_full,) square root of the diagonal of the mass: makes displacements and rotations comparable."""
-        diagonal: Array = np.sqrt(self.seen.reduced.model.mass.diagonal()).astype(np.float64)
-        return diagonal
+        return np.array(np.sqrt(self.seen.reduced.model.mass.diagonal()), np.float64)
 
     @cached_property
     def _shafts(self) -> dict[str, csr_array]:

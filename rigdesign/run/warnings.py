@@ -329,8 +329,8 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
         return
     yield "unbalance, bow of shafts and offset of coupled axes as lateral excitation"
     yield (
-        "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the line "
-        "of action; the mean tilt of the axes is in the gap of the flanks"
+        "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the "
+        "line of action; the mean tilt of the axes is in the gap of the flanks"
     )
 
 
