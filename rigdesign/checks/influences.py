@@ -58,8 +58,8 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("rig_heat.room", "rig_heat{dry}"): ("rig heat",),
 }  # fmt: skip
 """Inputs -> what they move; the first entry that holds a path counts. ``*`` stands for any name, ``{bare}`` for a
-gearbox without a housing, ``{film}`` for a plain bearing whose coefficients are computed. An entry with ``{dry}``
-counts where no machine heats an oil circuit, which feeds gearboxes, one with ``{torsional}`` where shafts only
+gearbox without a housing, ``{film}`` for a plain bearing whose coefficients are computed; an entry with ``{dry}``
+counts where no machine heats an oil circuit, which feeds gearboxes, one with ``{torsional}`` where they only
 twist."""
 OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
 """Influences of an input that stay in its gearbox: the place of a check begins with it."""

@@ -1,4 +1,4 @@
-"""The data sheets of the drivetrain as the case states it: shafts with discs, joints, bearings under the shafts."""
+"""The data sheets of the drivetrain as the case states it: shafts with their discs, joints, bearings."""
 
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.input_sheets import Row, Sheet, stated_number
