@@ -131,7 +131,7 @@ class Case(Part):
         )
         heat = self.rig_heat.assumptions(self.ambient.temperature)
         shafts = elastic_assumptions(self.drivetrain, self.gearboxes)
-        return (*marked, *implied_assumptions(self.gearboxes), *shafts, *heat)
+        return (*marked, *shafts, *implied_assumptions(self.gearboxes), *heat)
 
     @property
     def inputs(self) -> tuple[InputRow, ...]:

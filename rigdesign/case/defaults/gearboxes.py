@@ -202,8 +202,11 @@ def _held_by_teeth(tree: RawTree, box: str, shaft: str | None) -> bool:
 
 def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
     """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
-    found = tabled(tree, box, bearing)
-    return found is None or found.locating
+    found, own = (
+        tabled(tree, box, bearing),
+        f"gearboxes.{box}.bearings.{bearing}.catalogue.carries_axial_load",
+    )
+    return tree.at(own) is not False if found is None else found.locating
 
 
 @book.default("gearboxes.*.bearings.*.radial_damping")

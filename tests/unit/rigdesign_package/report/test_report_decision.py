@@ -263,7 +263,7 @@ def test_data_sheets_show_what_bends():
     result = make_result(inputs=prototype_inputs("table_1_bearings.toml"))
     assert dict(shaft_sheet(result).rows)["test pinion"][2] == "coupling flange 0.000191 kg m², 0.312 kg"
     joints = dict(joint_sheet(result).rows)
-    assert joints["coupling pinion side"][4] == "250\u202f000 N/m, 1\u202f400 N m/rad"
+    assert joints["coupling pinion side"][4] == "250\u202f000 N/m, 1400 N m/rad"
     assert dict(bearing_sheet(result).rows)["test.pinion_rear"] == [
         "test pinion", "1 × 10⁸ N/m, 40\u202f000 N s/m", "–", "–"
     ]  # fmt: skip
