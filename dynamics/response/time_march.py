@@ -342,6 +342,9 @@ class TimeMarch:
         before, after = self._carried, march._carried
         after.ports[:, :4], after.slow[:], after.offset[:] = before.ports[:, :4], before.slow, before.offset
         after.controller[:], after.work[:] = before.controller, before.work
+        after.speeds[:], after.damping[:] = before.speeds, before.damping
+        here = self.state()
+        after.state[:] = modal_state(march.model, march.propagator, here.angles, here.speeds, march._inputs())
         return march
 
     def preset_speed_integral(self, torque: float) -> None:

@@ -235,6 +235,12 @@ def _sampling(solved: SolvedRig) -> Iterator[str]:
         audits = sampling_audit(drivetrain, speed, solved.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
         modes = held_modes(solved.rig, solved.test)
+        yield from (
+            f"mode of {mode.frequency:.0f} Hz ({mode.name}): damping ratio = {mode.damping_ratio:.3g}, limit 0: it is "
+            f"unstable at stage {solved.test.point.stage}, the shaft whirls; load its bearings more or change them"
+            for mode in modes
+            if mode.damping_ratio < -1e-6
+        )
         yield from modes_above_samples(modes, solved.case.numerics.sample_rate)
 
 

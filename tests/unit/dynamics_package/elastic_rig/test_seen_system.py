@@ -7,6 +7,7 @@ import pytest
 
 from dynamics.drivetrain.bracing import LoopBracing, brace
 from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import line_ratios
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.mesh_rows import approach_row, mesh_ports
@@ -14,7 +15,11 @@ from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.response.initial_state import wound_state
+from dynamics.response.march_inputs import MarchSettings
 from dynamics.response.march_loads import march_model
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.response.time_march import TimeMarch
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.rig import prototype_laws
 
@@ -98,6 +103,51 @@ def test_the_loop_is_softer_by_bending_and_bearings() -> None:
     )
     assert torsional.loop_stiffness == pytest.approx(24.8e3, rel=0.06)
     assert elastic.loop_stiffness == pytest.approx(16.3e3, rel=0.06)
+
+
+def test_the_drive_pays_for_what_the_teeth_lose_on_films() -> None:
+    """Films are no symmetric springs; nothing but the friction of the teeth takes power from the turning loop."""
+    laws = prototype_laws()
+    system = seen().system(films())
+    curve = periodic_response(
+        system, laws, [SPEED], LoopLoad(torque=180.0), settings=SweepSettings(methods=("harmonic_balance",))
+    )
+    (point,) = curve.points
+    lost = float(point.friction_power.sum() + point.damping_power.sum())
+    ratios = line_ratios(system, laws)
+    drive = SPEED / float(ratios[system.mesh_ports[0, 0]])
+    assert point.drive_torque * drive == pytest.approx(lost, rel=0.02)
+
+
+def test_a_film_under_next_to_no_load_has_modes() -> None:
+    """The stiffness of an unloaded film is skew: it holds nothing by itself, its damping does."""
+    skew = BearingCoefficients(
+        stiffness=np.array([[-1e5, 5e7], [-5e7, -1e5]]), damping=np.array([[8e4, 0.0], [0.0, 8e4]])
+    )
+    places = seen().reduced.model.rig.drivetrain.bearings
+    state = RunningState(speed=SPEED, bearings={place.name: skew for place in places})
+    system, at = seen().system(state), seen().reduced.matrices(state)
+    rows = seen().reduced.rows(np.vstack(list(seen().ports.values())))
+    direct = rows @ np.linalg.solve(-(2e3**2) * at.mass + 2e3j * at.damping + at.stiffness, rows.T)
+    found = system.form.receptance(np.array([2e3]), system.mesh_ports.ravel())[0]
+    assert np.abs(found - direct).max() < 1e-7 * np.abs(direct).max()
+    assert np.isfinite(march_model(system, prototype_laws()).through).all()
+
+
+def test_a_march_goes_on_as_it_was_with_the_same_matrices() -> None:
+    system, laws = seen().system(films()), prototype_laws()
+    wound = wound_state(system, laws, SPEED, LoopLoad(torque=180.0))
+    given = np.zeros((40, 4))
+    given[:, 0], given[:, 1] = 5.0, wound.state.twist
+    offsets = np.full((40, 2), 3e-6)
+    forces = []
+    for change in (False, True):
+        march = TimeMarch(system, laws, wound.state, MarchSettings(step=1 / 320e3, substeps=8))
+        march.advance(given, offsets=offsets)
+        if change:
+            march = march.continued(system, march.model)
+        forces.append(march.advance(given, offsets=offsets).force)
+    assert np.abs(forces[1] - forces[0]).max() < 1e-4 * np.abs(forces[0]).max()
 
 
 def test_a_march_keeps_both_lines_in_their_groups() -> None:
