@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 35e31319
+# compiled from sources b9e97a4a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -54,9 +54,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def inlined(function: Function) -> Function:
     """Compile what becomes part of its compiled caller; arrays are neither made nor counted in it."""
-    compiled: Function = njit(  # type: ignore[call-overload]
-        cache=True, fastmath=LOOSE, error_model="numpy", forceinline=True, _nrt=False
-    )(function)
+    compiled: Function = njit(cache=True, fastmath=LOOSE, forceinline=True, _nrt=False)(function)  # type: ignore[call-overload]
     return compiled
 
 
