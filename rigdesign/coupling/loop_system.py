@@ -7,15 +7,12 @@ from dynamics.bearing.lateral import LateralCoefficients, constant_coefficients
 from dynamics.bearing.protocol import BearingState, LateralOperation
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
 Sense = Literal[1, -1]
-
-ROLLING_DAMPING_TIME = 1.25e-5
-"""Damping over stiffness of a rolling bearing [s]: middle of 0.25e-5 to 2.5e-5 s (E. Kraemer, Dynamics of Rotors and
-Foundations, 1993)."""
 
 
 def loop_system(

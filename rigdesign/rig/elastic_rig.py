@@ -31,13 +31,12 @@ from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS
 from rigdesign.case.model import Case
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.rig.shaft_axes import ShaftAxis
 
 Array = NDArray[np.float64]
 Face = Literal["front", "back"]
 
-AXIAL_DAMPING_TIME = 1.25e-5
-"""Damping over stiffness of an axial location [s], as of a rolling bearing (E. Kraemer 1993)."""
 REFERENCE_STIFFNESS = 1e8
 """Of every bearing in the state whose modes span the reduced rig [N/m]; any other stiffness is exact at rest."""
 NOMINAL_TORQUE = 100.0
@@ -135,7 +134,7 @@ def _locations(case: Case) -> Iterator[AxialLocation]:
                 yield AxialLocation(
                     bearing=f"{box_name}.{name}",
                     stiffness=stiffness,
-                    damping=AXIAL_DAMPING_TIME * stiffness,
+                    damping=ROLLING_DAMPING_TIME * stiffness,
                 )
 
 

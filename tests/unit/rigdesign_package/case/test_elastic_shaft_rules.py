@@ -10,7 +10,6 @@ from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import Case, load_case
 from rigdesign.case.elastic_shafts import disc_mass
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
-from rigdesign.coupling import loop_system
 from rigdesign.rig.model import build_rig
 from tests.builders.minimal_case import MINIMAL, MINIMAL_ROLLING
 from tests.builders.paths import CASES
@@ -218,7 +217,6 @@ def test_rolling_bearings_take_their_damping_from_their_stiffness(tmp_path: Path
     computed = implied(load_case(file), "radial_damping")
     assert set(computed.values()) == {f"{ROLLING_DAMPING_TIME:.3g} s of the stiffness"}
     assert len(computed) == 4
-    assert ROLLING_DAMPING_TIME == loop_system.ROLLING_DAMPING_TIME
     stated = MINIMAL_ROLLING.replace('"NU 406" }', '"NU 406", radial_stiffness = "4e8 N/m" }')
     file.write_text(stated + '[drivetrain]\nbearing_coefficients = "stated"\n', encoding="utf-8")
     case = load_case(file)
