@@ -52,6 +52,16 @@ def helix_hands(box: "Gearbox") -> dict[str, GearHand]:
     return hands
 
 
+def pinion_hand(box: "Gearbox", mesh: str) -> float:
+    """1 for a right-hand pinion, and where the case states no hand; -1 for a left-hand one; 0 where axial forces
+    cancel."""
+    entry = box.meshes[mesh]
+    if not has_hands(entry):
+        return 0.0
+    found = helix_hands(box).get(entry.pinion)
+    return 1.0 if found is None or found.hand == "right" else -1.0
+
+
 def has_hands(mesh: "GearMesh") -> bool:
     """Whether the gears of a mesh are single-helical."""
     return bool(mesh.helix_angle) and not mesh.double_helical

@@ -52,14 +52,15 @@ def bearing_coefficients(
     found = {}
     for name, _, entry in rig.bearings():
         load = loads[name]
-        force = load.radial * load.direction[0], load.radial * load.direction[1]
         if power.bearing_coefficients == "stated":
             assert entry.radial_stiffness is not None
-            found[name] = constant_coefficients(entry.radial_stiffness, entry.radial_damping or 0.0, force)
+            found[name] = constant_coefficients(
+                entry.radial_stiffness, entry.radial_damping or 0.0, load.force
+            )
             continue
         sense: Sense = 1 if rig.axes[entry.shaft].sense > 0.0 else -1
         operation = LateralOperation(
-            force=force, axial_force=load.axial, sense=sense, structural_damping=ROLLING_DAMPING_TIME
+            force=load.force, axial_force=load.axial, sense=sense, structural_damping=ROLLING_DAMPING_TIME
         )
         found[name] = bearings[name].lateral_coefficients(operation)
     return found
