@@ -30,7 +30,8 @@ class MeshPlacement:
     apart : change of their centre distance [m]
     approach : by which the flanks come nearer that carry, beyond bending and springs at the bearings [m], in the sense
         of the front flanks; ``apart`` is not in it
-    inclination, skew : of the wheel axis against that of the pinion over x, along the centre line and across [rad]
+    inclination, skew : of the wheel axis against that of the pinion over the axis of the gearbox from its front to its
+        rear, along the centre line and across [rad]
     """
 
     apart: float
@@ -69,10 +70,16 @@ def mesh_placements(
         found[name] = MeshPlacement(
             apart=float(line.centres @ both[:2]),
             approach=float(-cosine * line.tangent @ journal[:2] + flank * sine * line.centres @ spring[:2]),
-            inclination=float(line.centres @ both[2:]),
+            inclination=float(line.centres @ both[2:]) * _towards_rear(rig, name),
             skew=float(across @ both[2:]),
         )
     return found
+
+
+def _towards_rear(rig: Rig, mesh: str) -> float:
+    """1 where the gearbox of a mesh stands in the rig front ahead, -1 the other way round; its skew is the same."""
+    box, own = rig.mesh(mesh)
+    return rig.axes[box.gears[box.meshes[own].pinion].shaft].direction
 
 
 def flank_approach(placements: Mapping[str, MeshPlacement]) -> dict[str, float]:
