@@ -32,7 +32,13 @@ def running_state(
     rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bearings: Mapping[str, BearingState]
 ) -> RunningState:
     """Speed and bearings of the elastic rig at an operating point."""
-    coefficients = bearing_coefficients(rig, coupling_state, bearings)
+    return running_at(rig, point, bearing_coefficients(rig, coupling_state, bearings))
+
+
+def running_at(
+    rig: Rig, point: OperatingPoint, coefficients: Mapping[str, LateralCoefficients]
+) -> RunningState:
+    """Speed of the elastic rig at an operating point with these coefficients in its bearings."""
     return RunningState(
         speed=rig.drive_speed(point.speed),
         bearings={name: at_seat(one) for name, one in coefficients.items()},

@@ -28,5 +28,7 @@ def test_a_gearbox_turns_as_its_couplings_turn_it(rotation: str) -> None:
 
 def test_a_rotation_that_contradicts_the_couplings_is_refused() -> None:
     case = load_case(CASES / "uhcf_prototype").with_value("gearboxes.test.rotation", "clockwise")
-    with pytest.raises(CaseError, match=r"reference\.rotation.*coupled to gearbox test.*clockwise or leave it out"):
+    with pytest.raises(
+        CaseError, match=r"reference\.rotation.*coupled to gearbox test.*clockwise or leave it out"
+    ):
         case.with_value("gearboxes.reference.rotation", "anticlockwise")
