@@ -290,6 +290,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__elastic_rig="axial spring of a locating bearing between shaft and housing"
     ),
     "gearboxes.*.bearings.*.support_stiffness": _at(rig__elastic_rig=_SUPPORT),
+    "gearboxes.*.housing.bearing_seats": _at(rig__housing_seats=_SUPPORT),
     "gearboxes.*.bearings.*.support_damping": _at(rig__elastic_rig=_SUPPORT),
     "gearboxes.*.bearings.*.support_mass": _at(rig__elastic_rig=_SUPPORT),
     **{

@@ -3,7 +3,7 @@
 The reduced rig is made once: one basis for all speeds, stages and iterations, whatever the bearings do.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -83,16 +83,22 @@ class ElasticDrivetrain:
 
 
 def elastic_rig(
-    case: Case, drivetrain: Drivetrain, axes: Mapping[str, ShaftAxis], pairs: Mapping[str, GearPair]
+    case: Case,
+    drivetrain: Drivetrain,
+    axes: Mapping[str, ShaftAxis],
+    pairs: Mapping[str, GearPair],
+    housings: Sequence[HousingSupport] = (),
 ) -> ElasticRig:
     """Shafts at their axes, bearings on their supports, what locates them axially.
+
+    housings : condensed to the seats of their bearings, of the gearboxes whose case says so
 
     Raises DrivetrainError for parts that contradict each other.
     """
     return ElasticRig(
         drivetrain=drivetrain,
         placements=tuple(_placement(shaft.name, axes[shaft.name]) for shaft in drivetrain.shafts),
-        supports=tuple(_supports(case)),
+        supports=(*_supports(case), *housings),
         axial_locations=tuple(_locations(case)),
         axial_mesh_springs=tuple(_double_helical(case, pairs)),
         axially_locating=tuple(_single_helical(case, pairs)),
