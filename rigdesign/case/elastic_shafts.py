@@ -60,7 +60,15 @@ def _hands(at: str, box: Gearbox) -> Iterator[AssumptionRecord]:
 def _bearing(
     at: str, bearing: BearingInput, train: DrivetrainInput, condensed: bool
 ) -> Iterator[AssumptionRecord]:
-    if bearing.locating and bearing.axial_stiffness is None:
+    angled = bearing.induced_axial_load(1.0) > 0.0 and train.bearing_coefficients == "computed"
+    if angled and bearing.arrangement is None:
+        yield AssumptionRecord(
+            path=f"{at}.arrangement",
+            value="face_to_face",
+            reason="not stated here: said at the other end of the shaft, or usual in gearboxes; it says which way the "
+            "elements lean",
+        )
+    if bearing.locating and bearing.axial_stiffness is None and not angled:
         yield AssumptionRecord(
             path=f"{at}.axial_stiffness",
             value=f"{1e-6 * AXIAL_STIFFNESS:g} N/um",

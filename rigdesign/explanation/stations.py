@@ -272,6 +272,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.bearings.*.diametral_clearance": _at(
         case__bearings="clearance that thermal expansion changes, film of the bearing"
     ),
+    "gearboxes.*.bearings.*.arrangement": _at(
+        coupling__bearing_loads="which of two bearings the axial force presses"
+    ),
     "gearboxes.*.bearings.*.locating": _at(case__geometry="point from which the shaft expands axially"),
     "gearboxes.*.bearings.*.axial_play": _at(
         records__warm_gearbox="axial play that thermal expansion uses up"

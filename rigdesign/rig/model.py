@@ -23,7 +23,7 @@ from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
-from rigdesign.rig.elastic_rig import ElasticDrivetrain, elastic_rig
+from rigdesign.rig.elastic_rig import ElasticDrivetrain, elastic_rig, pressed_bearings
 from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.housing_seats import housing_supports
@@ -238,6 +238,7 @@ class Rig:
             rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
             cutoff=self.highest_mode,
+            pressed=frozenset(pressed_bearings(self.case)),
         )
 
     @cached_property
