@@ -16,7 +16,7 @@ from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
 from rigdesign.coupling.loads import laws_of
-from rigdesign.coupling.shaft_torques import torques_left_out
+from rigdesign.coupling.periodic_loads import loads_left_out
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -131,7 +131,7 @@ def long_periods(solved: SolvedRig, check: Check) -> Omissions:
         return
     laws = laws_of(solved.points[-1].last.models)
     missing = [f"differences between the teeth of {gear}" for gear in averaged_gears(rig, laws)]
-    missing += [f"alternating torque of {name}" for name in torques_left_out(rig, laws)]
+    missing += [f"alternating torque of {name}" for name in loads_left_out(rig, laws)]
     for what in missing:
         yield Omission(f"{what} (numerics.response_period = {rig.case.numerics.response_period})")
 

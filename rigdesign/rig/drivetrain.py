@@ -15,7 +15,7 @@ from dynamics.drivetrain.parts import (
     Motor,
 )
 from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
-from dynamics.drivetrain.shaft_torque import ShaftTorque
+from dynamics.drivetrain.periodic_load import LoadOrder
 from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
@@ -57,7 +57,7 @@ def build_drivetrain(
                 ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
                 stiffness=coupling.torsional_stiffness,
                 damping=coupling.torsional_damping,
-                excitation=_shaft_torques(coupling.excitation),
+                excitation=_load_orders(coupling.excitation),
                 flexibility=_flexibility(coupling),
             )
             for name, coupling in power.couplings.items()
@@ -222,13 +222,13 @@ def _motor(case: Case) -> Motor:
         shaft=motor.shaft,
         position=0.0 if motor.end == "start" else length,
         inertia=motor.inertia,
-        ripple=_shaft_torques(motor.ripple),
+        ripple=_load_orders(motor.ripple),
     )
 
 
-def _shaft_torques(torques: Sequence[HarmonicTorqueInput]) -> tuple[ShaftTorque, ...]:
+def _load_orders(torques: Sequence[HarmonicTorqueInput]) -> tuple[LoadOrder, ...]:
     return tuple(
-        ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
+        LoadOrder(order=torque.order, amplitude=torque.torque, phase=torque.phase) for torque in torques
     )
 
 
