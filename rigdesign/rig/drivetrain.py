@@ -1,7 +1,7 @@
 """The power circuit of a case as a drivetrain of the dynamics package."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from dynamics.drivetrain.graph import Drivetrain
 from dynamics.drivetrain.parts import (
@@ -57,7 +57,7 @@ def build_drivetrain(
                 ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
                 stiffness=coupling.torsional_stiffness,
                 damping=coupling.torsional_damping,
-                excitation=_load_orders(coupling.excitation),
+                excitation=(*_load_orders(coupling.excitation), *_cross_joint(coupling)),
                 flexibility=_flexibility(coupling),
             )
             for name, coupling in power.couplings.items()
@@ -224,6 +224,20 @@ def _motor(case: Case) -> Motor:
         inertia=motor.inertia,
         ripple=_load_orders(motor.ripple),
     )
+
+
+def _cross_joint(coupling: CouplingInput) -> Iterator[LoadOrder]:
+    """Torque of a cross joint under an angle b between its axes: tan(turn_2) = tan(turn_1) cos(b) turns the second
+    shaft by b^2/4 sin(2 turn_1) against the first, to the second power of b, against the torsional stiffness.
+
+    Source: H. C. Seherr-Thoss, F. Schmelz, E. Aucktor, Universal Joints and Driveshafts, 2nd ed. 2006, chapter 1; as the
+    excitation by misalignment: M. Xu, R. D. Marangoni, J. Sound Vib. 176, 1994, 663.
+    """
+    squared = coupling.cold_angle_lateral**2 + coupling.cold_angle_vertical**2
+    if coupling.joint == "hooke" and squared:
+        yield LoadOrder(
+            order=2.0, amplitude=0.25 * squared * coupling.torsional_stiffness, phase=0.5 * math.pi
+        )
 
 
 def _load_orders(torques: Sequence[HarmonicTorqueInput]) -> tuple[LoadOrder, ...]:

@@ -32,6 +32,8 @@ from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS
 from rigdesign.case.model import Case
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+from rigdesign.properties.materials import Material
+from rigdesign.rig.rotating_parts import misalignments, rotating_parts
 from rigdesign.rig.shaft_axes import ShaftAxis
 
 Array = NDArray[np.float64]
@@ -83,9 +85,13 @@ class ElasticDrivetrain:
 
 
 def elastic_rig(
-    case: Case, drivetrain: Drivetrain, axes: Mapping[str, ShaftAxis], pairs: Mapping[str, GearPair]
+    case: Case,
+    drivetrain: Drivetrain,
+    axes: Mapping[str, ShaftAxis],
+    pairs: Mapping[str, GearPair],
+    materials: Mapping[str, Material],
 ) -> ElasticRig:
-    """Shafts at their axes, bearings on their supports, what locates them axially.
+    """Shafts at their axes, bearings on their supports, what locates them axially and what shakes them.
 
     Raises DrivetrainError for parts that contradict each other.
     """
@@ -96,6 +102,8 @@ def elastic_rig(
         axial_locations=tuple(_locations(case)),
         axial_mesh_springs=tuple(_double_helical(case, pairs)),
         axially_locating=tuple(_single_helical(case, pairs)),
+        rotating=tuple(rotating_parts(case, drivetrain, materials)),
+        misalignments=tuple(misalignments(case)),
     )
 
 
