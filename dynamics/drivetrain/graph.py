@@ -23,9 +23,9 @@ from dynamics.drivetrain.parts import (
     MeshConnection,
     Motor,
 )
+from dynamics.drivetrain.periodic_load import PeriodicLoad
 from dynamics.drivetrain.power_loop import check_loops
 from dynamics.drivetrain.shaft import DrivetrainError, Shaft, ShaftChain, discretise
-from dynamics.drivetrain.periodic_load import PeriodicLoad
 
 Array = NDArray[np.float64]
 _Part = TypeVar("_Part", "Shaft", "GearBody", "Coupling")

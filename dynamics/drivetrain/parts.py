@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from dynamics.drivetrain.shaft import DrivetrainError, tilting_inertia
 from dynamics.drivetrain.periodic_load import LoadOrder
+from dynamics.drivetrain.shaft import DrivetrainError, tilting_inertia
 
 End = Literal["left", "right"]
 

@@ -66,9 +66,7 @@ def residual_unbalances(
     whole = rotor.mass * grade.eccentricity
     planes = sorted({bearing.position for bearing in drivetrain.bearings if bearing.shaft == shaft})
     if len(planes) < 2:
-        return (
-            ShaftUnbalance(shaft=shaft, position=rotor.centre, moment=whole, angle=grade.angles[0]),
-        )
+        return (ShaftUnbalance(shaft=shaft, position=rotor.centre, moment=whole, angle=grade.angles[0]),)
     first, second = planes[0], planes[-1]
     levers = (second - rotor.centre) / (second - first), (rotor.centre - first) / (second - first)
     most = MOST_INSIDE if first <= rotor.centre <= second else MOST_BEYOND

@@ -93,7 +93,9 @@ LineLoads = Mapping[tuple[str, SpeedPower], Complex]
 
 def reduced_line_loads(rig: ReducedElasticRig) -> LineLoads:
     """What turns with every line, for all speeds."""
-    return {key: rig.rows(load) for key, load in line_loads(rig.model).items()}
+    return {
+        key: rig.rows(load.real) + 1j * rig.rows(load.imag) for key, load in line_loads(rig.model).items()
+    }
 
 
 def line_whirls(rig: ReducedElasticRig, state: RunningState, loads: LineLoads) -> tuple[LineWhirl, ...]:

@@ -247,7 +247,9 @@ class ElasticRig:
     def _check_rotating(self, part: RotatingPart) -> None:
         if isinstance(part, FlangeRunOut):
             if part.coupling not in {coupling.name for coupling in self.drivetrain.couplings}:
-                raise DrivetrainError(f"flange run-out of coupling {part.coupling!r}: there is none; correct the name")
+                raise DrivetrainError(
+                    f"flange run-out of coupling {part.coupling!r}: there is none; correct the name"
+                )
             return
         shaft = self.drivetrain.shaft(part.shaft)
         if isinstance(part, ShaftUnbalance):

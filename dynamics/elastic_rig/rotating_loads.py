@@ -1,7 +1,7 @@
 """Loads once a turn from unbalance, bow and flange run-out, and the standing load of axes out of line.
 
 A shaft that turns with the angle theta in its sense s about x carries what is fixed to it along (cos theta, s sin
-theta): a complex amplitude a means u_y = Re(a exp(i theta)), u_z = Re(-i s a exp(i theta)), and tilts follow from u_y' =
+theta): a complex amplitude a means u_y = Re(a exp(i theta)), u_z = Re(-i s a exp(i theta)), tilts follow from u_y' =
 theta_z, u_z' = -theta_y. The load of an unbalance is U Omega^2. A bent shaft pulls with K_s q_b, K_s the stiffness of
 its elements alone and q_b its shape without load: rigid motion of the shape loads nothing (J. C. Nicholas, E. J.
 Gunter, P. E. Allaire, J. Eng. Power 98, 1976, 182). A coupling with stiffness K whose flanges stand o apart loads both
@@ -43,13 +43,14 @@ class RotatingLoad:
 
 
 def rotating_loads(model: ElasticModel) -> tuple[RotatingLoad, ...]:
-    """Load of every rotating part of a rig, in its order; raises DrivetrainError for a coupling that does not resist."""
+    """Load of every rotating part of a rig, in its order; DrivetrainError for a coupling that does not resist."""
     return tuple(_rotating_load(model, part) for part in model.rig.rotating)
 
 
 def line_loads(model: ElasticModel) -> dict[tuple[str, SpeedPower], Complex]:
     """Loads (n,) by shaft line, under the name of its first loaded shaft, and by power of the speed."""
-    lines, first = model.rig.drivetrain.lines(), {}
+    lines = model.rig.drivetrain.lines()
+    first: dict[int, str] = {}
     found: dict[tuple[str, SpeedPower], Complex] = {}
     for load in rotating_loads(model):
         name = first.setdefault(lines[load.shaft], load.shaft)
@@ -61,9 +62,7 @@ def line_loads(model: ElasticModel) -> dict[tuple[str, SpeedPower], Complex]:
 def load_at_speed(model: ElasticModel, line: str, speed: float) -> Complex:
     """Load (n,) of a line of `line_loads` at the speed [rad/s] of the reference shaft."""
     own = abs(model.spins[line]) * speed
-    parts = [
-        own**power * load for (name, power), load in line_loads(model).items() if name == line
-    ]
+    parts = [own**power * load for (name, power), load in line_loads(model).items() if name == line]
     return np.asarray(sum(parts, np.zeros(model.size, complex)))
 
 

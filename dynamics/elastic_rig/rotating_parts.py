@@ -22,7 +22,7 @@ class ShaftUnbalance:
     def __post_init__(self) -> None:
         if not (self.moment >= 0.0 and math.isfinite(self.moment)):
             raise DrivetrainError(
-                f"unbalance of shaft {self.shaft!r}: {self.moment} kg m: must be finite and not negative; turn its angle"
+                f"unbalance of shaft {self.shaft!r}: {self.moment} kg m: must be finite and at least 0; turn its angle"
             )
 
 

@@ -15,8 +15,8 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import Coordinates, LinearSystem
-from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, rotating_load
+from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.joints import ElasticJoint
 from dynamics.elastic_rig.reduction import ReducedElasticRig
 from dynamics.elastic_rig.rotating_loads import line_loads
@@ -24,6 +24,8 @@ from dynamics.elastic_rig.running_state import RunningState
 
 Array = NDArray[np.float64]
 
+TURNING = ("unbalance", "bow and run-out")
+"""What turns with a shaft line: loads that grow with the square of its speed, and loads that do not."""
 INDEPENDENT = 1e-9
 """Smallest singular value of the scaled rows of what is seen, over the largest."""
 
@@ -169,7 +171,7 @@ class SeenRig:
             if np.any(full):
                 turning = self._load(full.real) + 1j * self._load(full.imag)
                 part = LoadOrder(order=1.0, amplitude=1.0, speed_power=power)
-                name = "unbalance" if power else "bow and run-out"
+                name = TURNING[0] if power else TURNING[1]
                 found += rotating_load(f"{name} of {shaft}", turning, self._port_of_line(shaft), part)
         return tuple(found)
 

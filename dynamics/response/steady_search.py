@@ -62,7 +62,7 @@ class SteadySearch:
         angle = before + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
         for i, load in enumerate(self._loads):
             ratio = float(self._ratios[load.dof])
-            given[:, 4 + i] = load.at(ratio * angle, ratio * self.speed)
+            given[:, 4 + i] = load.at(np.asarray(ratio * angle, float), ratio * self.speed)
         result = march.advance(given, drags=DragTables(torque=tables))
         span = periods * self._period.length
         mean_speed = (march.pinion_angle() - before) / span

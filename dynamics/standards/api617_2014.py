@@ -1,6 +1,6 @@
-"""API Std 617, 8th ed. 2014, part 1, and API TR 684-1: separation of critical speeds, logarithmic decrement, amplitude in clearances.
+"""API Std 617, 8th ed. 2014, part 1, and API TR 684-1: critical speeds, logarithmic decrement, amplitudes.
 
-Applied here to test rigs, for which there is no standard of their own. AF: amplification factor at a critical speed; SM:
+Applied here to test rigs, which have no standard of their own. AF: amplification factor at a critical speed; SM:
 separation margin as a share of the operating speed.
 """
 

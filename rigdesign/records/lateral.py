@@ -30,6 +30,7 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.results.lateral import (
     BearingWhirl,
     LateralVibration,
+    MeshWhirl,
     SealWhirl,
     Separation,
     SpeedWhirl,
@@ -39,7 +40,7 @@ from rigdesign.results.lateral import (
 from rigdesign.rig.model import Rig
 
 HIGHEST, LEAST_HIGHEST = 3.0, 2000.0
-"""Modes are listed up to this times the frequency of the fastest shaft, twice a turn and a margin; at least to here [Hz]."""
+"""Modes are listed up to this times the frequency of the fastest shaft, beyond twice a turn; at least to here [Hz]."""
 BACKWARD = -0.8
 """Whirl below which unbalance does not excite a mode."""
 SPEEDS = tuple(np.round(np.linspace(0.1, 1.3, 25), 3).tolist())
@@ -58,6 +59,16 @@ def lateral_vibration(rig: Rig, points: Sequence[PointResult]) -> LateralVibrati
         idle = replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 0.0))
         stages.append(whirls.stage(point, idle, solve_bearings(rig, point.point, idle), "lost"))
     return LateralVibration(stages=tuple(stages), curve=tuple(whirls.curve(points)))
+
+
+def seal_whirls(rig: Rig, point: PointResult) -> tuple[SealWhirl, ...]:
+    """Motion once a turn in every seal without contact at a held stage; none for shafts that only twist."""
+    if rig.shaft_model == "torsional" or rig.drivetrain is None:
+        return ()
+    whirls = _Whirls(rig)
+    last = point.last
+    running = whirls.running(point.point, last.coupling_state, last.bearings, last.models)
+    return tuple(whirls.seal_whirls(point, line_whirls(rig.elastic.reduced, running, whirls.loads)))
 
 
 @dataclass(frozen=True)
@@ -89,6 +100,7 @@ class _Whirls:
             found,
             bearings=tuple(self.bearing_whirls(running, state, whirls)),
             seals=tuple(self.seal_whirls(point, whirls)),
+            meshes=tuple(self.mesh_whirls(point, whirls)),
             separations=tuple(_lateral_separations(rig, modes, point.point.speed)),
             torsional=tuple(_torsional_separations(rig, modes, point.point.speed)),
         )
@@ -143,6 +155,22 @@ class _Whirls:
                 static_load=loads[name].radial,
             )
 
+    def mesh_whirls(self, point: PointResult, whirls: tuple[LineWhirl, ...]) -> Iterator[MeshWhirl]:
+        """Force once a turn in every mesh."""
+        for model in point.last.models:
+            spring = self.mesh_spring(model)
+            row = self.rig.elastic.reduced.rows(spring.row)
+            yield MeshWhirl(
+                mesh=model.name,
+                forces={
+                    whirl.line: float(
+                        abs((spring.stiffness + 1j * whirl.frequency * spring.damping) * (row @ whirl.motion))
+                    )
+                    for whirl in whirls
+                },
+                mean=abs(point.last.coupling_state.mesh_torque[model.name]) / model.pair.base_radii[0],
+            )
+
     def seal_whirls(self, point: PointResult, whirls: tuple[LineWhirl, ...]) -> Iterator[SealWhirl]:
         """Orbit of the shaft in every seal without contact; without a housing the larger one at its bearings."""
         reduced = self.rig.elastic.reduced
@@ -150,7 +178,9 @@ class _Whirls:
             placed = self.seal_positions(box_name) if box_name in point.last.expansion else {}
             for seal, (shaft, position) in placed.items():
                 rows = reduced.rows(self.lateral_rows(shaft, position))
-                yield SealWhirl(seal=seal, shaft=shaft, amplitude=_sum(whirl_at(whirls, rows, self.sense(shaft))))
+                yield SealWhirl(
+                    seal=seal, shaft=shaft, amplitude=_sum(whirl_at(whirls, rows, self.sense(shaft)))
+                )
             if placed:
                 continue
             for part, seals in box.seals.items():

@@ -1,7 +1,8 @@
 """Lateral vibration of the shafts: SI records. Amplitudes are half axes of ellipses."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Literal
 
 from dynamics.elastic_rig.lateral import RigMode
@@ -50,6 +51,23 @@ class SealWhirl:
 
 
 @dataclass(frozen=True, kw_only=True)
+class MeshWhirl:
+    """Force that unbalance, bow and run-out make in a mesh once a turn, teeth at their mean stiffness."""
+
+    mesh: str
+    """``gearbox.mesh``."""
+    forces: Mapping[str, float]
+    """Amplitude along the line of action by the shaft line that makes it [N]."""
+    mean: float
+    """Force of the mean torque [N]."""
+
+    def share(self, lines: Iterable[str] | None = None) -> float:
+        """Of the mean force, some lines or all added in the worst phase; infinite without a torque."""
+        force = sum(value for line, value in self.forces.items() if lines is None or line in lines)
+        return force / self.mean if self.mean > 0.0 else inf
+
+
+@dataclass(frozen=True, kw_only=True)
 class Separation:
     """A mode next to the speed of its shaft or to an excitation of it."""
 
@@ -74,6 +92,7 @@ class StageLateral:
     modes: tuple[RigMode, ...]
     bearings: tuple[BearingWhirl, ...] = ()
     seals: tuple[SealWhirl, ...] = ()
+    meshes: tuple[MeshWhirl, ...] = ()
     separations: tuple[Separation, ...] = ()
     """Lateral modes against once a turn."""
     torsional: tuple[Separation, ...] = ()
@@ -92,7 +111,7 @@ class SpeedWhirl:
 
 @dataclass(frozen=True, kw_only=True)
 class LateralVibration:
-    """All held stages, and the whirl over speed under the torque and temperatures of the one that speaks for the rig."""
+    """All held stages, and the whirl over speed under torque and temperatures of the one that speaks for the rig."""
 
     stages: tuple[StageLateral, ...]
     curve: tuple[SpeedWhirl, ...]

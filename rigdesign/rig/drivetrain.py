@@ -14,8 +14,8 @@ from dynamics.drivetrain.parts import (
     MeshConnection,
     Motor,
 )
-from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
 from dynamics.drivetrain.periodic_load import LoadOrder
+from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
 from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
@@ -230,7 +230,7 @@ def _cross_joint(coupling: CouplingInput) -> Iterator[LoadOrder]:
     """Torque of a cross joint under an angle b between its axes: tan(turn_2) = tan(turn_1) cos(b) turns the second
     shaft by b^2/4 sin(2 turn_1) against the first, to the second power of b, against the torsional stiffness.
 
-    Source: H. C. Seherr-Thoss, F. Schmelz, E. Aucktor, Universal Joints and Driveshafts, 2nd ed. 2006, chapter 1; as the
+    Source: H. C. Seherr-Thoss, F. Schmelz, E. Aucktor, Universal Joints and Driveshafts, 2nd ed. 2006, chapter 1; as an
     excitation by misalignment: M. Xu, R. D. Marangoni, J. Sound Vib. 176, 1994, 663.
     """
     squared = coupling.cold_angle_lateral**2 + coupling.cold_angle_vertical**2

@@ -91,9 +91,7 @@ def highest_speeds(case: Case, drivetrain: Drivetrain) -> dict[str, float]:
     return {name: abs(ratio / reference) * top for name, ratio in ratios.items()}
 
 
-def _bow(
-    name: str, shaft: ShaftInput, drivetrain: Drivetrain, materials: Mapping[str, Material]
-) -> ShaftBow:
+def _bow(name: str, shaft: ShaftInput, drivetrain: Drivetrain, materials: Mapping[str, Material]) -> ShaftBow:
     bow = shaft.bow
     assert bow is not None
     places = sorted(bearing.position for bearing in drivetrain.bearings if bearing.shaft == name)

@@ -89,9 +89,7 @@ def test_residual_bow_and_unbalance_cancel_at_the_critical_speed() -> None:
         speed = share * math.sqrt(BENDING / MASS)
         found = at_disc(jeffcott(bow, elements=32), speed)[0]
         assert found == pytest.approx(amplitude(speed, BENDING * 50e-6 * np.exp(0.3j)), rel=1e-3)
-    opposite = ShaftUnbalance(
-        shaft="rotor", position=0.5 * LENGTH, moment=MASS * 50e-6, angle=0.3 + math.pi
-    )
+    opposite = ShaftUnbalance(shaft="rotor", position=0.5 * LENGTH, moment=MASS * 50e-6, angle=0.3 + math.pi)
     speed = math.sqrt(BENDING / MASS)
     alone = abs(at_disc(jeffcott(bow, elements=32), speed)[0])
     assert abs(at_disc(jeffcott(bow, opposite, elements=32), speed)[0]) < 2e-3 * alone
@@ -255,9 +253,9 @@ def test_loads_of_the_seen_rig_are_those_of_all_freedoms() -> None:
     assert {load.name.split(" of ")[1] for load in system.periodic_loads} == {"test_pinion"}
     turns = speed / own
     (load,) = harmonic_loads(system.periodic_loads, ratios, turns, speed).values()
-    found = np.linalg.solve(
-        system.stiffness - own**2 * system.inertia + 1j * own * system.damping, load
-    )[system.mesh_ports.ravel()]
+    found = np.linalg.solve(system.stiffness - own**2 * system.inertia + 1j * own * system.damping, load)[
+        system.mesh_ports.ravel()
+    ]
     whole = full_matrices(model, state).response(load_at_speed(model, "test_pinion", speed)[:, None], own)
     exact = np.vstack(list(seen.ports.values())) @ whole[:, 0]
     assert found == pytest.approx(exact, abs=1e-4 * float(np.abs(exact).max()))
