@@ -88,9 +88,9 @@ RULES = (
         key="lateral.orbit",
         title="motion once a turn in an oil film over its clearance",
         procedure=(
-            "Shafts that bend in their bearings as they run at the held stages, under unbalance, bow and flange run-out:"
-            " peak-to-peak motion of the journal, those of all shaft lines added, over the warm diametral clearance."
-            " The largest counts."
+            "Shafts that bend in their bearings as they run at the held stages, under unbalance, bow and flange"
+            " run-out: peak-to-peak motion of the journal, those of all shaft lines added, over the warm diametral"
+            " clearance. The largest counts."
         ),
         unit=NUMBER,
         group=GROUP,
@@ -122,9 +122,9 @@ RULES = (
         key="lateral.stability",
         title="least logarithmic decrement at the held stages",
         procedure=(
-            "Eigenvalues of the closed loop at the held stages, films linearised at their load, speed and temperature,"
-            " damping that turns with the shafts included. Lateral modes up to the speed of the fastest shaft count, and"
-            " every mode that grows."
+            "Eigenvalues of the closed loop at the held stages, films linearised at their load, speed and"
+            " temperature, damping that turns with the shafts included. Lateral modes up to the speed of the fastest"
+            " shaft count, and every mode that grows."
         ),
         unit=NUMBER,
         group=GROUP,
