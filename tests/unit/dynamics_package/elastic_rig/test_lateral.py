@@ -33,7 +33,7 @@ FILM = LateralCoefficients(
 
 
 def rigid_rotor(mass: float, moment: float = 0.0) -> ReducedElasticRig:
-    """Light thick tube with a mass in its middle, as good as rigid, on bearings at its ends; bounces before it tilts."""
+    """Light thick tube with a mass in its middle, all but rigid, on bearings at its ends, bouncing before it tilts."""
     unbalance = ShaftUnbalance(shaft="rotor", position=0.1, moment=moment)
     rig = single_shaft(
         (Section(length=0.2, outer_diameter=0.3),),

@@ -232,7 +232,7 @@ def test_a_swinging_torque_needs_an_order() -> None:
 def warned(case: Case) -> list[str]:
     """Warnings of a response that leaves out what single teeth and alternating torques do."""
     rig, models = built(case)
-    point = SimpleNamespace(last=SimpleNamespace(models=models))
+    point = SimpleNamespace(last=SimpleNamespace(models=models, system=None))
     solved: Any = SimpleNamespace(rig=rig, points=[point])
     return list(_deviating_teeth(solved))
 

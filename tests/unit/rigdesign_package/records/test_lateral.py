@@ -61,7 +61,7 @@ def test_orbits_grow_with_the_grade_and_far_below_a_critical_speed_with_the_squa
 
 
 def test_a_rig_that_loses_its_torque_whirls_at_half_speed() -> None:
-    """Rigid rotor of 2.7 kg a bearing on films under its weight: the threshold is about 12,000 rpm (formula sheet m)."""
+    """Rigid rotor of 2.7 kg a bearing on films under its weight: the threshold is about 12,000 rpm (sheet m)."""
     with_torque, without = vibration().of("held")[0], vibration().of("lost")[0]
     slow = [mode for mode in with_torque.modes if mode.frequency < with_torque.highest_turn]
     assert min(mode.logarithmic_decrement for mode in slow) > 1.0
