@@ -1,5 +1,6 @@
 """Couplings out of line load the bearings of both shafts as statics of the bent rig say."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -35,9 +36,7 @@ def forces(of: Rig) -> dict[str, np.ndarray]:
     """Force of the shaft on every bearing (2,) under its weight alone."""
     (point, *_) = held_points(of)
     state = initial_state(of, point)
-    for name in state.mesh_torque:
-        state.mesh_torque[name] = 0.0
-    loads = bearing_loads(of, state)
+    loads = bearing_loads(of, replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 0.0)))
     return {name: np.array(load.force) for name, load in loads.items()}
 
 
