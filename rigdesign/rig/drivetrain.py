@@ -216,8 +216,8 @@ def _motor(case: Case) -> Motor:
 
 
 def _cross_joint(coupling: CouplingInput) -> Iterator[LoadOrder]:
-    """Torque of a cross joint under an angle b between its axes: tan(turn_2) = tan(turn_1) cos(b) turns the second
-    shaft by b^2/4 sin(2 turn_1) against the first, to the second power of b, against the torsional stiffness.
+    """Torque of a cross joint under an angle b between its axes: tan(turn_2) = tan(turn_1) cos(b) holds the second
+    shaft back by b^2/4 sin(2 turn_1), to the second power of b, against the torsional stiffness.
 
     Source: H. C. Seherr-Thoss, F. Schmelz, E. Aucktor, Universal Joints and Driveshafts, 2nd ed. 2006, chapter 1; as an
     excitation by misalignment: M. Xu, R. D. Marangoni, J. Sound Vib. 176, 1994, 663.
