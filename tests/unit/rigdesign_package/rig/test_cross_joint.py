@@ -11,8 +11,8 @@ COUPLING = "drivetrain.couplings.wheel_side"
 
 
 def test_the_torque_is_that_of_the_kinematics_of_the_joint() -> None:
-    """tan(turn_2) = tan(turn_1) cos(b): second order of the difference over a turn, against the torsional stiffness; the
-    series ends with b^2, at 3 degrees to 0.2 %. It draws the first shaft ahead where the second
+    """tan(turn_2) = tan(turn_1) cos(b): second order of the difference over a turn, against the torsional stiffness.
+    The series ends with b^2, at 3 degrees to 0.2 %. It draws the first shaft ahead where the second
     stays behind."""
     angle = np.radians(3.0)
     values = {f"{COUPLING}.joint": "hooke", f"{COUPLING}.cold_angle_lateral": f"{1e3 * angle} mrad"}
