@@ -68,7 +68,7 @@ def seal_whirls(rig: Rig, point: PointResult) -> tuple[SealWhirl, ...]:
     whirls = _Whirls(rig)
     last = point.last
     running = whirls.running(point.point, last.coupling_state, last.bearings, last.models)
-    return tuple(whirls.seal_whirls(point, line_whirls(rig.elastic.reduced, running, whirls.loads)))
+    return tuple(whirls.seal_whirls(point, line_whirls(rig.elastic.slow, running, whirls.loads)))
 
 
 @dataclass(frozen=True)
@@ -89,13 +89,13 @@ class _Whirls:
         meshes = point.last.models if torque == "held" else ()
         running = self.running(point.point, state, bearings, meshes)
         turn = max(abs(ratio) for ratio in rig.speed_ratios.values()) * point.point.speed / (2.0 * np.pi)
-        modes = rig_modes(rig.elastic.reduced, running, max(HIGHEST * turn, LEAST_HIGHEST))
+        modes = rig_modes(rig.elastic.slow, running, max(HIGHEST * turn, LEAST_HIGHEST))
         found = StageLateral(
             stage=point.point.stage, torque=torque, speed=point.point.speed, modes=modes, highest_turn=turn
         )
         if torque == "lost":
             return found
-        whirls = line_whirls(rig.elastic.reduced, running, self.loads)
+        whirls = line_whirls(rig.elastic.slow, running, self.loads)
         return replace(
             found,
             bearings=tuple(self.bearing_whirls(running, state, whirls)),
@@ -112,7 +112,7 @@ class _Whirls:
         for share in SPEEDS:
             at = replace(held.point, speed=share * top)
             running = self.running(at, state, solve_bearings(rig, at, state), held.last.models)
-            whirls = line_whirls(rig.elastic.reduced, running, self.loads)
+            whirls = line_whirls(rig.elastic.slow, running, self.loads)
             yield SpeedWhirl(speed=at.speed, bearings=tuple(self.bearing_whirls(running, state, whirls)))
 
     def running(
@@ -140,7 +140,7 @@ class _Whirls:
         self, running: RunningState, state: CouplingState, whirls: tuple[LineWhirl, ...]
     ) -> Iterator[BearingWhirl]:
         """Orbit of every journal against its seat, and the force that turns in the bearing."""
-        reduced, loads = self.rig.elastic.reduced, bearing_loads(self.rig, state)
+        reduced, loads = self.rig.elastic.slow, bearing_loads(self.rig, state)
         for name, _, entry in self.rig.bearings():
             orbits = whirl_at(whirls, reduced.ports[name][:2], self.sense(entry.shaft))
             forces = bearing_forces(reduced, running, whirls, name)
@@ -159,7 +159,7 @@ class _Whirls:
         """Force once a turn in every mesh."""
         for model in point.last.models:
             spring = self.mesh_spring(model)
-            row = self.rig.elastic.reduced.rows(spring.row)
+            row = self.rig.elastic.slow.rows(spring.row)
             yield MeshWhirl(
                 mesh=model.name,
                 forces={
@@ -173,7 +173,7 @@ class _Whirls:
 
     def seal_whirls(self, point: PointResult, whirls: tuple[LineWhirl, ...]) -> Iterator[SealWhirl]:
         """Orbit of the shaft in every seal without contact; without a housing the larger one at its bearings."""
-        reduced = self.rig.elastic.reduced
+        reduced = self.rig.elastic.slow
         for box_name, box in self.rig.case.gearboxes.items():
             placed = self.seal_positions(box_name) if box_name in point.last.expansion else {}
             for seal, (shaft, position) in placed.items():
@@ -229,7 +229,7 @@ class _Whirls:
     @cached_property
     def loads(self) -> LineLoads:
         """What turns with every line."""
-        return reduced_line_loads(self.rig.elastic.reduced)
+        return reduced_line_loads(self.rig.elastic.slow)
 
 
 def _sum(orbits: Mapping[str, object]) -> float:

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.elastic_rig.lateral import rig_modes
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
 from rigdesign.results.lateral import LateralVibration
@@ -97,3 +99,16 @@ def test_rows_have_every_stage_twice_and_the_curve() -> None:
     meshes = row["stages"][0]["meshes"]
     assert {mesh["mesh"] for mesh in meshes} == set(rig_of().mesh_names)
     assert all(0.0 < mesh["share"] < 0.01 for mesh in meshes)
+
+
+def test_modes_up_to_8_khz_are_enough_for_what_happens_at_the_speed_of_the_shafts() -> None:
+    """The reduced rig of lateral vibration against that of the loop, modes up to 50 kHz."""
+    rig = rig_of()
+    point = held(rig)
+    state = running_state(rig, point.point, point.last.coupling_state, point.last.bearings)
+    few, all_modes = (rig_modes(one, state, 1000.0) for one in (rig.elastic.slow, rig.elastic.reduced))
+    assert rig.elastic.slow.size < 0.5 * rig.elastic.reduced.size
+    for quantity in ("frequency", "logarithmic_decrement"):
+        assert [getattr(mode, quantity) for mode in few] == pytest.approx(
+            [getattr(mode, quantity) for mode in all_modes], rel=1e-4
+        )
