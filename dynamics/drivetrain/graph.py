@@ -23,9 +23,9 @@ from dynamics.drivetrain.parts import (
     MeshConnection,
     Motor,
 )
+from dynamics.drivetrain.periodic_load import PeriodicLoad
 from dynamics.drivetrain.power_loop import check_loops
 from dynamics.drivetrain.shaft import DrivetrainError, Shaft, ShaftChain, discretise
-from dynamics.drivetrain.shaft_torque import ShaftTorques
 
 Array = NDArray[np.float64]
 _Part = TypeVar("_Part", "Shaft", "GearBody", "Coupling")
@@ -117,21 +117,21 @@ def assemble(drivetrain: Drivetrain) -> LinearSystem:
         drive_dof=builder.drive,
         twist_load=twist_load,
         drag_loads={name: -np.eye(1, n, dof)[0] for name, dof in places.items()},
-        shaft_torques=tuple(_shaft_torques(drivetrain, builder)),
+        periodic_loads=tuple(_periodic_loads(drivetrain, builder)),
     )
 
 
-def _shaft_torques(drivetrain: Drivetrain, builder: "_Builder") -> Iterator[ShaftTorques]:
+def _periodic_loads(drivetrain: Drivetrain, builder: "_Builder") -> Iterator[PeriodicLoad]:
     """Ripple of the motor and excitation of the couplings, each part that has any."""
     if drivetrain.motor.ripple:
         load = np.eye(1, builder.size, builder.drive)[0]
-        yield ShaftTorques(name="motor", load=load, dof=builder.drive, parts=drivetrain.motor.ripple)
+        yield PeriodicLoad(name="motor", load=load, dof=builder.drive, parts=drivetrain.motor.ripple)
     for coupling in drivetrain.couplings:
         if coupling.excitation:
             a, b = (builder.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
             load = np.zeros(builder.size)
             load[a], load[b] = 1.0, -1.0
-            yield ShaftTorques(name=coupling.name, load=load, dof=a, parts=coupling.excitation)
+            yield PeriodicLoad(name=coupling.name, load=load, dof=a, parts=coupling.excitation)
 
 
 def joints(drivetrain: Drivetrain) -> tuple[TorsionalJoint, ...]:

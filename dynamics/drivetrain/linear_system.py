@@ -9,7 +9,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.drivetrain.modal_form import ModalForm, modal_form
-from dynamics.drivetrain.shaft_torque import ShaftTorques
+from dynamics.drivetrain.periodic_load import PeriodicLoad
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -56,7 +56,7 @@ class LinearSystem:
     twist_load : (n,) torque on each freedom per radian of bracing twist (zero sum) [N m/rad]
     drag_loads : name -> (n,) share of a drag torque that acts on each freedom, summing to -1 (drag opposes
         rotation); one entry per loss place that brakes (bearing, windage, seal)
-    shaft_torques : torques that alternate with the rotation of a shaft
+    periodic_loads : loads that alternate with the rotation of a shaft
     own_coordinates : in which the matrices fall into more blocks than in the freedoms, where there are such
     """
 
@@ -69,7 +69,7 @@ class LinearSystem:
     drive_dof: int
     twist_load: Array
     drag_loads: dict[str, Array]
-    shaft_torques: tuple[ShaftTorques, ...] = ()
+    periodic_loads: tuple[PeriodicLoad, ...] = ()
     own_coordinates: Coordinates | None = None
 
     def at(self, speed: float) -> "LinearSystem":

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from dynamics.drivetrain.periodic_load import LoadOrder
 from dynamics.drivetrain.shaft import DrivetrainError, tilting_inertia
-from dynamics.drivetrain.shaft_torque import ShaftTorque
 
 End = Literal["left", "right"]
 
@@ -75,7 +75,7 @@ class Coupling:
     ends: tuple[End, End] = ("right", "left")
     stiffness: float
     damping: float = 0.0
-    excitation: tuple[ShaftTorque, ...] = ()
+    excitation: tuple[LoadOrder, ...] = ()
     flexibility: JointStiffness = JointStiffness()
 
 
@@ -133,7 +133,7 @@ class Motor:
     inertia: float = 0.0
     stiffness: float | None = None
     damping: float = 0.0
-    ripple: tuple[ShaftTorque, ...] = ()
+    ripple: tuple[LoadOrder, ...] = ()
     mass: float = 0.0
     diametral_inertia: float | None = None
     width: float = 0.0

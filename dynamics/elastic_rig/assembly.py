@@ -122,6 +122,12 @@ def assemble_rig(rig: ElasticRig) -> ElasticModel:
     )
 
 
+def shaft_stiffness(model: ElasticModel, shaft: str) -> csr_array:
+    """Stiffness (n, n) of the elements of one shaft alone."""
+    own = next(one for one in model.rig.drivetrain.shafts if one.name == shaft)
+    return _joined([_beam(model.rig, model.freedoms, own, 0.0)[1]], model.size)
+
+
 def _beam(
     rig: ElasticRig, freedoms: Freedoms, shaft: Shaft, spin: float
 ) -> tuple[Triplets, Triplets, Triplets, Triplets]:

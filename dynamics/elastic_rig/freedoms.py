@@ -13,6 +13,7 @@ from dynamics.drivetrain.parts import BearingPlace, DragPlace, GearBody
 from dynamics.drivetrain.shaft import DrivetrainError, discretise
 from dynamics.elastic_rig.beam import DIRECTIONS
 from dynamics.elastic_rig.layout import SEAT_DIRECTIONS, ElasticRig, ProbeStation
+from dynamics.elastic_rig.rotating_parts import ShaftUnbalance
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -177,4 +178,5 @@ def _stations(rig: ElasticRig, shaft: str) -> tuple[float, ...]:
         *rig.stations,
     )
     inside = [part.position for part in parts if part.shaft == shaft]
+    inside += [p.position for p in rig.rotating if isinstance(p, ShaftUnbalance) and p.shaft == shaft]
     return (*inside, *([drivetrain.motor.position] if drivetrain.motor.shaft == shaft else []))

@@ -16,6 +16,7 @@ from dynamics.drivetrain.parts import Coupling, GearBody, MeshConnection
 from dynamics.drivetrain.power_loop import DISTANCE_TOLERANCE, speed_ratios
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.beam import ShearRule, TorsionalInertia
+from dynamics.elastic_rig.rotating_parts import AxisMisalignment, FlangeRunOut, RotatingPart, ShaftUnbalance
 
 Array = NDArray[np.float64]
 Sign = Literal[1, -1]
@@ -145,7 +146,8 @@ class ElasticRig:
 
     axially_locating : bearings and meshes whose force, outside the matrices, holds a shaft along x (a rolling bearing
     that comes with its axial stiffness; a helical mesh). moment_carrying : bearings that resist tilting by themselves.
-    reference_shaft : whose speed is the reference of the gyroscopics; that of the motor unless given.
+    reference_shaft : whose speed is the reference of the gyroscopics; that of the motor unless given. rotating : what
+    shakes the shafts once a turn; misalignments : of couplings, as they stand.
 
     Raises DrivetrainError for placements that are missing or do not fit couplings and meshes.
     """
@@ -158,6 +160,8 @@ class ElasticRig:
     axially_locating: tuple[str, ...] = ()
     moment_carrying: tuple[str, ...] = ()
     stations: tuple[ProbeStation, ...] = ()
+    rotating: tuple[RotatingPart, ...] = ()
+    misalignments: tuple[AxisMisalignment, ...] = ()
     reference_shaft: str | None = None
     shear: ShearRule = "cowper"
     torsional_inertia: TorsionalInertia = "lumped"
@@ -177,6 +181,8 @@ class ElasticRig:
             self._check_mesh(mesh)
         for station in self.stations:
             self.drivetrain.shaft(station.shaft).check_position(station.position, f"station {station.name!r}")
+        for part in self.rotating:
+            self._check_rotating(part)
         self._check_names()
 
     def placement(self, shaft: str) -> ShaftPlacement:
@@ -237,6 +243,17 @@ class ElasticRig:
                 f"mesh {mesh.name!r}: gears stand {apart:.6g} m apart along x: must be less than half the sum of "
                 f"their widths, {0.5 * (pinion.width + wheel.width):.6g} m; correct a placement or position"
             )
+
+    def _check_rotating(self, part: RotatingPart) -> None:
+        if isinstance(part, FlangeRunOut):
+            if part.coupling not in {coupling.name for coupling in self.drivetrain.couplings}:
+                raise DrivetrainError(
+                    f"flange run-out of coupling {part.coupling!r}: there is none; correct the name"
+                )
+            return
+        shaft = self.drivetrain.shaft(part.shaft)
+        if isinstance(part, ShaftUnbalance):
+            shaft.check_position(part.position, "unbalance")
 
     def _check_names(self) -> None:
         bearings = {bearing.name for bearing in self.drivetrain.bearings}

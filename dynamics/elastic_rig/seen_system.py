@@ -15,14 +15,17 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import Coordinates, LinearSystem
+from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, rotating_load
 from dynamics.drivetrain.shaft import DrivetrainError
-from dynamics.drivetrain.shaft_torque import ShaftTorques
 from dynamics.elastic_rig.joints import ElasticJoint
 from dynamics.elastic_rig.reduction import ReducedElasticRig
+from dynamics.elastic_rig.rotating_loads import line_loads
 from dynamics.elastic_rig.running_state import RunningState
 
 Array = NDArray[np.float64]
 
+TURNING = ("unbalance", "bow and run-out")
+"""What turns with a shaft line: loads that grow with the square of its speed, and loads that do not."""
 INDEPENDENT = 1e-9
 """Smallest singular value of the scaled rows of what is seen, over the largest."""
 
@@ -58,7 +61,7 @@ class SeenRig:
             drive_dof=places["drive"],
             twist_load=self._twist_load,
             drag_loads=self._drag_loads,
-            shaft_torques=self._shaft_torques,
+            periodic_loads=self._periodic_loads,
             own_coordinates=Coordinates(
                 freedoms=self._forth,
                 inertia=at.mass,
@@ -141,14 +144,15 @@ class SeenRig:
         return {name: -self._load(model.row(name, "turn")) for name in parts}
 
     @cached_property
-    def _shaft_torques(self) -> tuple[ShaftTorques, ...]:
-        """Ripple of the motor and excitation of the couplings, which counts the turns of the line it is on."""
+    def _periodic_loads(self) -> tuple[PeriodicLoad, ...]:
+        """Ripple of the motor, excitation of the couplings, which counts the turns of the line it is on, and what turns
+        with every line."""
         drivetrain, model = self.reduced.model.rig.drivetrain, self.reduced.model
         found = []
         if drivetrain.motor.ripple:
             load = self._load(model.row("motor", "turn"))
             found.append(
-                ShaftTorques(
+                PeriodicLoad(
                     name="motor", load=load, dof=self._places["drive"], parts=drivetrain.motor.ripple
                 )
             )
@@ -156,13 +160,19 @@ class SeenRig:
             if coupling.excitation:
                 load = self._load(model.joint(coupling.name, "coupling").row("turn"))
                 found.append(
-                    ShaftTorques(
+                    PeriodicLoad(
                         name=coupling.name,
                         load=load,
                         dof=self._port_of_line(coupling.shafts[0]),
                         parts=coupling.excitation,
                     )
                 )
+        for (shaft, power), full in line_loads(model).items():
+            if np.any(full):
+                turning = self._load(full.real) + 1j * self._load(full.imag)
+                part = LoadOrder(order=1.0, amplitude=1.0, speed_power=power)
+                name = TURNING[0] if power else TURNING[1]
+                found += rotating_load(f"{name} of {shaft}", turning, self._port_of_line(shaft), part)
         return tuple(found)
 
     def _port_of_line(self, shaft: str) -> int:

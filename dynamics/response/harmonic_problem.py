@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modal_form import ModalForm
-from dynamics.drivetrain.shaft_torque import ShaftTorques, harmonic_loads
+from dynamics.drivetrain.periodic_load import PeriodicLoad, harmonic_loads
 from dynamics.drivetrain.static_loop import PortModel
 
 Array = NDArray[np.float64]
@@ -61,18 +61,18 @@ class BalanceProblem:
     """Everything that stays the same over speed.
 
     load : mean torque asked of a mesh, or the twist that is held
-    shaft_torques : torques that alternate with the rotation of a shaft
+    periodic_loads : of the drivetrain, that alternate with the rotation of a shaft
     ratios : (n,) speed of each freedom of the drivetrain per speed of the drive freedom
     """
 
     model: PortModel
     form: ModalForm
     load: LoopLoad
-    shaft_torques: tuple[ShaftTorques, ...] = ()
+    periodic_loads: tuple[PeriodicLoad, ...] = ()
     ratios: Array | None = None
 
     def driven(self, grid: HarmonicGrid, base: float) -> Complex:
-        """Windup of the mesh bodies (n_bodies, top + 1) that the alternating torques would make without the meshes.
+        """Windup of the mesh bodies (n_bodies, top + 1) that the periodic loads would make without the meshes.
 
         Their angle is zero where that of the first pinion would be without windup.
         """
@@ -80,7 +80,8 @@ class BalanceProblem:
         motion = np.zeros((n_bodies, grid.top + 1), complex)
         if self.ratios is None:
             return motion
-        loads = harmonic_loads(self.shaft_torques, self.ratios, grid.cell_angle * grid.cells / (2.0 * np.pi))
+        turns = grid.cell_angle * grid.cells / (2.0 * np.pi)
+        loads = harmonic_loads(self.periodic_loads, self.ratios, turns, turns * base)
         for harmonic, load in loads.items():
             if harmonic <= grid.top:
                 loaded = np.flatnonzero(load)

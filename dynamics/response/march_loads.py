@@ -1,4 +1,4 @@
-"""Columns of load through which a march acts on the drivetrain: motor, bracing, alternating and drag torques."""
+"""Columns of load through which a march acts on the drivetrain: motor, bracing, periodic loads and drag torques."""
 
 from collections.abc import Sequence
 
@@ -27,10 +27,10 @@ def march_model(
 
 
 def slow_loads(system: LinearSystem) -> Array:
-    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and alternating torques."""
+    """Return the loads (n, 2 + n_periodic_loads) of motor, twist and what alternates with a shaft."""
     drive = np.zeros(len(system.inertia))
     drive[system.drive_dof] = 1.0
-    return np.column_stack((drive, system.twist_load, *(torques.load for torques in system.shaft_torques)))
+    return np.column_stack((drive, system.twist_load, *(load.load for load in system.periodic_loads)))
 
 
 def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]:

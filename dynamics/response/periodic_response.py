@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.periodic_load import within_period
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import pinion_ratios, wound_state
@@ -224,13 +225,19 @@ class TimeIntegration:
             self.laws,
             wound.state,
             MarchSettings(
-                step=period.length / period.steps, substeps=1 if self.system.shaft_torques else period.steps
+                step=period.length / period.steps, substeps=1 if self._alternates else period.steps
             ),
             DriveLoads(drive_torque=wound.drive_torque, drag_torques=drags),
             self._model(tuple(drags)),
         )
         search = SteadySearch(march, self.system, load, wound, period, self.settings.tolerance)
         return self._run(march, search, period, drags)
+
+    @property
+    def _alternates(self) -> bool:
+        """Whether the period holds a load that alternates with a shaft."""
+        loads = within_period(self.system.periodic_loads, self._ratios, self._turns)
+        return any(load.parts for load in loads)
 
     def _period(self, speed: float) -> PeriodGrid:
         length = 2.0 * pi / speed * self._turns

@@ -245,8 +245,8 @@ class _Loops:
                 model=port_model(system, self.laws),
                 form=system.form,
                 load=self.load,
-                shaft_torques=system.shaft_torques,
-                ratios=ratios / ratios[system.drive_dof] if system.shaft_torques else None,
+                periodic_loads=system.periodic_loads,
+                ratios=ratios / ratios[system.drive_dof] if system.periodic_loads else None,
             )
         return self._problems[id(system)]
 

@@ -1,13 +1,13 @@
 """Search for a steady state in time: mean speed and mean torque held by corrections between blocks of periods."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.shaft_torque import waves_within
+from dynamics.drivetrain.periodic_load import within_period
 from dynamics.response.initial_state import WoundLoop, pinion_ratios
 from dynamics.response.march_inputs import DragTables
 from dynamics.response.time_march import Block, TimeMarch
@@ -43,12 +43,7 @@ class SteadySearch:
         self.steady, self.residual = False, float("inf")
         self._stiffness, self._period = wound.loop_stiffness, period
         ratios = pinion_ratios(system, march.laws)
-        self._torques = [
-            replace(
-                own, parts=tuple(p for p in own.parts if waves_within(p.order, ratios[own.dof], period.turns))
-            )
-            for own in system.shaft_torques
-        ]
+        self._loads = within_period(system.periodic_loads, ratios, period.turns)
         self._ratios = ratios
         self._inertia = float(ratios @ system.inertia @ ratios) / ratios[system.drive_dof]
         self._last: Array | None = None
@@ -61,12 +56,13 @@ class SteadySearch:
         march = self.march
         steps = self._period.steps
         samples = periods * steps // march.substeps
-        given = np.zeros((samples, 4 + len(self._torques)))
+        given = np.zeros((samples, 4 + len(self._loads)))
         given[:, 0], given[:, 1] = self.drive, self.twist
         before = march.pinion_angle()
         angle = before + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
-        for i, torques in enumerate(self._torques):
-            given[:, 4 + i] = torques.at(self._ratios[torques.dof] * angle)
+        for i, load in enumerate(self._loads):
+            ratio = float(self._ratios[load.dof])
+            given[:, 4 + i] = load.at(np.asarray(ratio * angle, float), ratio * self.speed)
         result = march.advance(given, drags=DragTables(torque=tables))
         span = periods * self._period.length
         mean_speed = (march.pinion_angle() - before) / span

@@ -91,7 +91,7 @@ class TimeMarch:
     """A drivetrain that is advanced in time; the only object of the dynamics that changes.
 
     Slow inputs, linear over a sample, are the motor torque (on ``system.drive_dof``), the bracing twist (on
-    ``system.twist_load``) and a torque for each entry of ``system.shaft_torques``. For each name in ``drags`` a torque
+    ``system.twist_load``) and a value for each entry of ``system.periodic_loads``. For each name in ``drags`` a torque
     brakes through ``system.drag_loads``: a function of the speed there at the end of every internal step.
     """
 
@@ -139,7 +139,7 @@ class TimeMarch:
         self._places = drag_places(system, drags)
         braked = drag_loads(system, drags)
         columns = np.column_stack((slow_loads(system), braked))
-        n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.shaft_torques), braked.shape[1]
+        n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.periodic_loads), braked.shape[1]
         self._n_slow = n_slow
         n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
         ports = np.zeros((n_meshes, 6))
@@ -197,9 +197,9 @@ class TimeMarch:
 
         Parameters
         ----------
-        given : (n_samples, 4 + n_shaft_torques) commands at the end of each sample: motor torque (feed-forward)
+        given : (n_samples, 4 + n_periodic_loads) commands at the end of each sample: motor torque (feed-forward)
             [N m], twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m], then the value of
-            each entry of ``system.shaft_torques`` [N m]
+            each entry of ``system.periodic_loads``
         offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
         speed_control, torque_control : of motor and bracing; without one its command is followed as it is
         drags : torque over speed of each drag; none brakes when left out

@@ -200,7 +200,7 @@ def run_schedule(
         control = replace(control, torque_limit=limit)
         at = command.time[0] + np.arange(first, first + count + 1) / sample_rate
         target = np.interp(at, command.time, command.speed) * drive_ratio
-        given = np.zeros((count, 4 + len(system.shaft_torques)))
+        given = np.zeros((count, 4 + len(system.periodic_loads)))
         given[:, 0] = inertia * np.diff(target) * sample_rate
         if command.twist is not None:
             given[:, 1] = np.interp(at[1:], command.time, command.twist)
@@ -209,8 +209,9 @@ def run_schedule(
             drive_angle[-1]
             + np.concatenate(([0.0], np.cumsum(0.5 * (target[1:] + target[:-1])))) / sample_rate
         )
-        for i, torque in enumerate(system.shaft_torques):
-            given[:, 4 + i] = torque.at(ratios[torque.dof] / drive_ratio * drive_angle[1:])
+        for i, periodic in enumerate(system.periodic_loads):
+            ratio = float(ratios[periodic.dof]) / drive_ratio
+            given[:, 4 + i] = periodic.at(ratio * drive_angle[1:], ratio * target[1:])
         if command.torque is not None:
             asked = np.interp(at[1:], command.time, command.torque)
             given[:, 3] = asked

@@ -54,6 +54,9 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
     QuantityKind(
         "inertia", "kg*m**2", {"kg m2": "kg*m**2", "kg cm2": "kg*cm**2", "g m2": "g*m**2"}, "0.01 kg m2"
     ),
+    QuantityKind(
+        "unbalance", "kg*m", {"g mm": "g*mm", "kg mm": "kg*mm", "g m": "g*m", "kg m": "kg*m"}, "50 g mm"
+    ),
     QuantityKind("temperature", "kelvin", {"degC": "degC", "K": "kelvin", "degF": "degF"}, "140 degC"),
     QuantityKind("temperature_difference", "kelvin", {"K": "kelvin"}, "20 K"),
     QuantityKind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),

@@ -16,11 +16,16 @@ from rigdesign.case.fields import (
     Name,
     Part,
     Size,
+    Slope,
+    Small,
+    Speed,
+    TemperatureDifference,
     Text,
     Tilt,
     Torque,
     TorsionalDamping,
     TorsionalStiffness,
+    Unbalance,
 )
 
 End = Literal["start", "end"]
@@ -52,6 +57,33 @@ class DiscInput(Part):
     """Mass moment of inertia about a diameter, for bending; half the polar one when left out."""
 
 
+class UnbalanceInput(Part):
+    """Unbalance at one place of a shaft."""
+
+    position: Gap
+    """Distance from the start of the shaft."""
+    unbalance: Unbalance
+    """Mass times its distance from the axis."""
+    angle: Angle = 0.0
+    """From +y in the sense of rotation, where the pinion of the first mesh passes zero."""
+
+
+class BowInput(Part):
+    """Shape of a shaft that is not straight without load; it turns with the shaft. Two bearings have to carry it."""
+
+    amplitude: Small = 0.0
+    """Residual bow: distance of its axis from the line through its bearings, half a sine between them."""
+    position: Gap | None = None
+    """Distance from the start of the shaft at which it has that amplitude; midway between the bearings when left
+    out."""
+    angle: Angle = 0.0
+    """Of the residual bow, from +y in the sense of rotation."""
+    temperature_difference: TemperatureDifference | None = None
+    """Across the diameter: bends the shaft with the curvature alpha dT / d."""
+    hot_side: Angle = 0.0
+    """Angle of the hot side, from +y in the sense of rotation."""
+
+
 class ShaftInput(Part):
     """Stepped shaft; positions on it count from its start."""
 
@@ -65,6 +97,18 @@ class ShaftInput(Part):
     """Loss factor of the shaft in torsion at the mesh frequency of the test speed, a damper beside every element that
     grows with frequency. Zero unless stated: that of steel, 0.0002 to 0.002, is far below what couplings and films
     take; seats and shrink fits reach 0.01."""
+
+    unbalances: Mapping[Name, UnbalanceInput] = {}
+    """Unbalances by name; they take the place of the balance grade of the drivetrain."""
+    balance_grade: float | None = Field(default=None, ge=0.0, le=4000.0)
+    """Balance quality grade G of ISO 21940-11 [mm/s], whose permissible unbalance stands in the planes of its bearings
+    in addition to ``unbalances``; that of the drivetrain when left out."""
+    balance_speed: Speed | None = None
+    """Speed of the shaft for which the grade holds; its highest of the schedule when left out."""
+    balance_angles: tuple[Angle, Angle] = (0.0, 0.0)
+    """Angles of the unbalances in the planes of its first and second bearing; half a turn apart they are a couple."""
+    bow: BowInput | None = None
+    """Residual and thermal bow; straight when left out."""
 
     def section_at(self, position: float) -> SectionInput | None:
         """Section at a distance from the start of the shaft [m], the first of two that meet; None beyond its end."""
@@ -116,6 +160,21 @@ class CouplingInput(Part):
     """Axis of the first shaft against that of the second as set up, across (y)."""
     cold_offset_vertical: Deviation = 0.0
     """Axis of the first shaft against that of the second as set up, upwards (z)."""
+    cold_angle_lateral: Slope = 0.0
+    """Slope of the axis of the first shaft against that of the second as set up, across (y) over x."""
+    cold_angle_vertical: Slope = 0.0
+    """Slope of the axis of the first shaft against that of the second as set up, upwards (z) over x."""
+    flange_run_out: Small = 0.0
+    """Distance of the centre of the flange of the first shaft from its axis, half of what a dial gauge reads."""
+    flange_run_out_angle: Angle = 0.0
+    """From +y in the sense of rotation."""
+    flange_tilt: Slope = 0.0
+    """Angle of the face of that flange from square."""
+    flange_tilt_angle: Angle = 0.0
+    """From +y in the sense of rotation."""
+    joint: Literal["constant_velocity", "hooke"] = "constant_velocity"
+    """hooke: a cross joint, which under an angle b between the axes turns one shaft ahead and back by b^2/4 twice a
+    turn, against its torsional stiffness."""
 
 
 class MotorInput(Part):
@@ -172,6 +231,9 @@ class DrivetrainInput(Part):
     shaft_model: ShaftModel = "elastic"
     """elastic: shafts that bend in bearings that give, gears in six degrees of freedom; torsional: shafts that only
     twist, as always at fidelity quick."""
+    balance_grade: float | None = Field(default=None, ge=0.0, le=4000.0)
+    """Balance quality grade G of ISO 21940-11 [mm/s] of all shafts that state neither one of their own nor unbalances;
+    2.5 when left out."""
     bearing_coefficients: Literal["computed", "stated"] = "computed"
     """Lateral stiffness and damping of the bearings: computed for load, speed and temperature of each stage, or
     ``radial_stiffness`` and ``radial_damping`` as each bearing states them."""

@@ -12,6 +12,10 @@ from rigdesign.case.rotation import has_hands, helix_hands
 
 AXIAL_STIFFNESS = 1e8
 """Of a thrust face or of the rings of a bearing that locates its shaft [N/m]."""
+BALANCE_GRADE = 2.5
+"""Of a shaft that states none, ISO 21940-11 [mm/s]."""
+BALANCE_GRADES = ("1", "6.3")
+"""What it may be: grinding-machine drives, and pumps and gear units in general."""
 STEEL_DENSITY = 7850.0
 """Of a disc whose mass is not stated [kg/m3]."""
 
@@ -34,6 +38,16 @@ def elastic_assumptions(
             yield from _bearing(f"gearboxes.{name}.bearings.{part}", bearing, train, condensed)
         yield from _hands(f"gearboxes.{name}", box)
     yield from _discs(train)
+    if train.balance_grade is None and any(
+        shaft.balance_grade is None and not shaft.unbalances for shaft in train.shafts.values()
+    ):
+        yield AssumptionRecord(
+            path="drivetrain.balance_grade",
+            value=f"{BALANCE_GRADE:g}",
+            reason="not stated: grade of turbines and machine-tool drives (ISO 21940-11, table 1), in phase in both "
+            "bearing planes; 1 for grinding drives, 6.3 for general machinery; take it from the balancing report",
+            range=BALANCE_GRADES,
+        )
     for name, coupling in train.couplings.items():
         if coupling.radial_stiffness is None and coupling.angular_stiffness is None:
             yield AssumptionRecord(

@@ -148,6 +148,10 @@ LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]
 LinearDamping = Annotated[float, Quantity("linear_damping", at_least="0 N s/m")]
 Mass = Annotated[float, Quantity("mass", above="0 kg", at_most="1000000 kg")]
 Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="100000 kg m2")]
+Unbalance = Annotated[float, Quantity("unbalance", at_least="0 g mm", at_most="100 kg m")]
+"""Mass times its distance from the axis."""
+Slope = Annotated[float, Quantity("angle", at_least="-100 mrad", at_most="100 mrad", example="0.5 mrad")]
+"""A small angle between axes, with its sign."""
 Voltage = Annotated[float, Quantity("voltage", above="0 V", at_most="100 V")]
 Resistance = Annotated[float, Quantity("resistance", at_least="0 ohm", at_most="100 kohm")]
 

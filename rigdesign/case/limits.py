@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from dynamics.standards.api617_2014 import LEAST_DECREMENT, MOST_CLEARANCE_SHARE, TORSIONAL_SEPARATION
 from rigdesign.base import units
 from rigdesign.case.fields import (
     Deviation,
@@ -116,6 +117,15 @@ class DynamicsLimits(Part):
     """A resonance is dangerous above this dynamic mesh force as a share of the mean one."""
     lift_off_share_maximum: Share | None = None
     """Share of time without tooth contact in a loaded stage."""
+    orbit_share_maximum: Positive = MOST_CLEARANCE_SHARE
+    """Most peak-to-peak motion once a turn in an oil film over its diametral clearance; API 617 has 0.75."""
+    logarithmic_decrement_minimum: Positive = LEAST_DECREMENT
+    """Least logarithmic decrement of lateral modes up to the speed of the fastest shaft, with the torque and without;
+    API 617 has 0.1."""
+    lateral_separation_minimum: Positive = 1.0
+    """Least distance of critical speeds from held speeds over that which API 617 asks for at their amplification."""
+    torsional_separation_minimum: Share = TORSIONAL_SEPARATION
+    """Least distance of torsional modes from once and twice a turn, as a share of that frequency; API 617 has 0.1."""
     contact_margin_minimum: Share | None = None
     """Least torque in a loaded stage as a share of the mean: what is left for errors the teeth of the model lack."""
 

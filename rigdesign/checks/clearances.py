@@ -28,14 +28,24 @@ PLAY_NOT_EXPANDED = of_gearboxes(EXPANSION, with_play)
 
 
 def _seal_gaps(solved: SolvedRig) -> Iterator[tuple[float, str]]:
-    """Warm gap of every seal; as drawn where the housing is not expanded."""
+    """Warm gap of every seal less the motion of the shaft once a turn; as drawn where the housing is not expanded."""
+    whirl = solved.seal_amplitudes
     for warm in solved.warm:
         for seal in warm.seals:
-            yield seal.minimum, f"{seal.name} at {math.degrees(seal.angle_of_minimum):.0f} deg"
+            amplitude = whirl.get((warm.stage, seal.name), 0.0)
+            where = f"{seal.name} at {math.degrees(seal.angle_of_minimum):.0f} deg"
+            yield seal.minimum - amplitude, where + _less(amplitude)
     for name in solved.unexpanded:
         for part, seals in solved.case.gearboxes[name].seals.items():
             if seals.kind == "contactless":
-                yield seals.radial_gap, f"{name}.{part}, as drawn"
+                found = [value for (_, seal), value in whirl.items() if seal == f"{name}.{part}"]
+                amplitude = max(found, default=0.0)
+                yield seals.radial_gap - amplitude, f"{name}.{part}, as drawn" + _less(amplitude)
+
+
+def _less(amplitude: float) -> str:
+    """What a shaft that whirls takes from a gap [m], in words."""
+    return f", less {MICROMETRE.shown(amplitude):.2g} um of whirl" if amplitude else ""
 
 
 def _plays(solved: SolvedRig) -> Iterator[tuple[float, str]]:
@@ -82,7 +92,8 @@ RULES = (
         title="smallest hot radial gap of a seal",
         procedure=(
             "Radial gap as drawn plus thermal expansion of bore and shaft and the offset between both at "
-            "the held stages; least over the circumference and all seals without contact."
+            "the held stages, less the motion of the shaft by unbalance, bow and run-out; least over the circumference "
+            "and all seals without contact."
         ),
         unit=MILLIMETRE,
         group=GROUP,

@@ -16,7 +16,7 @@ from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
 from rigdesign.coupling.loads import laws_of
-from rigdesign.coupling.shaft_torques import torques_left_out
+from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -129,11 +129,20 @@ def long_periods(solved: SolvedRig, check: Check) -> Omissions:
     rig = solved.rig
     if rig.drivetrain is None or rig.system is None or not solved.points:
         return
-    laws = laws_of(solved.points[-1].last.models)
+    last = solved.points[-1].last
+    laws = laws_of(last.models)
     missing = [f"differences between the teeth of {gear}" for gear in averaged_gears(rig, laws)]
-    missing += [f"alternating torque of {name}" for name in torques_left_out(rig, laws)]
+    missing += [f"alternating torque of {name}" for name in loads_left_out(rig, laws, last.system)]
     for what in missing:
         yield Omission(f"{what} (numerics.response_period = {rig.case.numerics.response_period})")
+    lines = lines_left_out(rig, laws, last.system)
+    if lines and solved.lateral is not None and check.value is not None:
+        share = max(mesh.share(lines) for stage in solved.lateral.of("held") for mesh in stage.meshes)
+        yield Omission(
+            f"unbalance, bow and run-out of {', '.join(lines)}: {100.0 * share:.2g} % of the mesh force by its linear "
+            f"response (numerics.response_period = {rig.case.numerics.response_period})",
+            size=share * abs(check.value),
+        )
 
 
 EXPANSION = "thermal expansion of gearbox {box}: {why}"

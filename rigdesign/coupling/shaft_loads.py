@@ -1,4 +1,5 @@
-"""Mean forces on the shafts of a rig: teeth with the hand of their helix, weight of shafts, discs and gears.
+"""Mean forces on the shafts of a rig: teeth with the hand of their helix, weight of shafts, discs and gears, couplings
+out of line.
 
 In the frame of the rig (`rigdesign.rig.shaft_axes`): x along the shafts, y across, z up.
 """
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.case.rotation import has_hands, helix_hands, pinion_hand
+from rigdesign.coupling.misalignment import coupling_forces
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig
 
@@ -48,7 +50,11 @@ def shaft_loads(rig: Rig, name: str, shaft: str, coupling_state: CouplingState) 
         for gear in (entry.pinion, entry.wheel)
         if box.gears[gear].shaft == shaft
     ]
-    return [*_weights(rig, name, shaft), *teeth]
+    couplings = [
+        ShaftLoad(position=place, force=force, axial=0.0, arm=np.zeros(2))
+        for place, force in coupling_forces(rig, shaft)
+    ]
+    return [*_weights(rig, name, shaft), *teeth, *couplings]
 
 
 def tooth_load(rig: Rig, mesh: str, gear: str, coupling_state: CouplingState) -> ShaftLoad:

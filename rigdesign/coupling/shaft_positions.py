@@ -17,6 +17,7 @@ from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.bearing.protocol import BearingState
 from dynamics.elastic_rig.running_state import RunningState
 from rigdesign.coupling.loop_system import bearing_coefficients, running_at
+from rigdesign.coupling.misalignment import standing_load
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
@@ -99,7 +100,8 @@ def _displacements(
     coupling_state: CouplingState,
 ) -> Array:
     """(n, 2) mean displacement of the reduced rig, rigid motions 0: under tooth forces with bearings as springs, which
-    the dynamics have as well; and the rest, by weight and by what journals move beyond the springs of their bearings.
+    the dynamics have as well; and the rest, by weight, couplings out of line and by what journals move beyond the
+    springs of their bearings.
 
     That part acts like a seat that is displaced: shafts on two bearings follow it straight, others bend.
     """
@@ -110,9 +112,8 @@ def _displacements(
         ratio = mesh.base_radii[1] / mesh.base_radii[0]
         teeth -= coupling_state.mesh_torque[mesh.name] * (pinion - ratio * wheel)
     stiffness = reduced.matrices(running).stiffness
-    springs = _elastic(
-        reduced.n_rigid, stiffness, np.column_stack([teeth, reduced.rows(rig.elastic.model.weight())])
-    )
+    standing = reduced.rows(rig.elastic.model.weight()) + standing_load(rig)
+    springs = _elastic(reduced.n_rigid, stiffness, np.column_stack([teeth, standing]))
     rest = np.zeros(reduced.size)
     for bearing in drivetrain.bearings:
         ports = reduced.ports[bearing.name][:2]

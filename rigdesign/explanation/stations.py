@@ -36,6 +36,7 @@ _BOX = "geometry of the housing that is meshed"
 _WARM = "flank of the loaded contact: load distribution, transmission error, mesh stiffness"
 _SUPPORT = "housing under the bearing: mass on a spring and damper in series with it"
 _BENDING = "spring and damper between the ends of two shafts that bend"
+_UNBALANCE = "force once a turn on a shaft that bends, with the square of its speed"
 _LIMIT = "limit that a result is held against"
 
 STATIONS: Mapping[str, tuple[Station, ...]] = {
@@ -48,6 +49,26 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__model="shafts that bend or only twist, at the fidelity of the run",
         coupling__loop_system="matrices of the loop: elastic with bearings, or torsional",
     ),
+    "drivetrain.balance_grade": _at(rig__rotating_parts=_UNBALANCE),
+    "drivetrain.shafts.*.balance_grade": _at(rig__rotating_parts=_UNBALANCE),
+    "drivetrain.shafts.*.balance_speed": _at(rig__rotating_parts=_UNBALANCE),
+    "drivetrain.shafts.*.balance_angles": _at(rig__rotating_parts=_UNBALANCE),
+    "drivetrain.shafts.*.unbalances.*": _at(rig__rotating_parts=_UNBALANCE),
+    "drivetrain.shafts.*.bow": _at(rig__rotating_parts="shape of a shaft without load, turning with it"),
+    **{
+        f"drivetrain.couplings.*.{key}": _at(
+            rig__rotating_parts="flange out of true: load once a turn on two shafts"
+        )
+        for key in ("flange_run_out", "flange_run_out_angle", "flange_tilt", "flange_tilt_angle")
+    },
+    **{
+        f"drivetrain.couplings.*.cold_angle_{key}": _at(
+            rig__rotating_parts="moment on two shafts by axes that stand at an angle",
+            rig__drivetrain="torque twice a turn of a cross joint",
+        )
+        for key in ("lateral", "vertical")
+    },
+    "drivetrain.couplings.*.joint": _at(rig__drivetrain="torque twice a turn of a cross joint"),
     "drivetrain.bearing_coefficients": _at(
         coupling__loop_system="stiffness and damping under the shafts: of each operating point, or as stated"
     ),
@@ -487,6 +508,15 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         checks__ramp="torque below the transition speed",
     ),
     "limits.dynamics": _at(checks__dynamics=_LIMIT),
+    **{
+        f"limits.dynamics.{key}": _at(checks__lateral=_LIMIT)
+        for key in (
+            "orbit_share_maximum",
+            "logarithmic_decrement_minimum",
+            "lateral_separation_minimum",
+            "torsional_separation_minimum",
+        )
+    },
     "limits.dynamics.dangerous_amplification": _at(records__resonances="which resonances are dangerous"),
     "limits.dynamics.dangerous_force_share": _at(records__resonances="which resonances are dangerous"),
     "limits.strength": _at(checks__strength=_LIMIT),

@@ -30,7 +30,7 @@ def ideal_response(rig: Rig, loop: LoadedCircuit) -> CurvePoint:
     assert rig.system is not None
     controlled = loop.bracing.mode == "torque_controlled"
     curve = periodic_response(
-        _without_shaft_torques(rig.system),
+        _without_periodic_loads(rig.system),
         [alike_teeth(law) for law in shifted_laws(rig, loop.models, loop.bracing)],
         [rig.pinion_speed(loop.point.speed)],
         LoopLoad(
@@ -47,14 +47,14 @@ def ideal_response(rig: Rig, loop: LoadedCircuit) -> CurvePoint:
 
 def is_ideal(rig: Rig) -> bool:
     """Whether the response of an iteration is the ideal one: it takes all teeth alike where it runs over one mesh."""
-    return rig.case.numerics.response_period == "mesh" and not (rig.system and rig.system.shaft_torques)
+    return rig.case.numerics.response_period == "mesh" and not (rig.system and rig.system.periodic_loads)
 
 
-def _without_shaft_torques(system: LinearSystem) -> LinearSystem:
+def _without_periodic_loads(system: LinearSystem) -> LinearSystem:
     """The system without oscillating torques; its modes stay known."""
-    if not system.shaft_torques:
+    if not system.periodic_loads:
         return system
-    reduced = replace(system, shaft_torques=())
+    reduced = replace(system, periodic_loads=())
     reduced.__dict__["form"] = system.form
     return reduced
 

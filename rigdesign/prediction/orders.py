@@ -127,10 +127,10 @@ class PointOrders:
             OscillatingTorque(
                 name=torques.name,
                 order=part.order * float(self.ratios[torques.dof]),
-                amplitude=part.torque * complex(np.exp(-1j * part.phase)),
+                amplitude=part.amplitude * complex(np.exp(-1j * part.phase)),
                 load=torques.load,
             )
-            for torques in self.system.shaft_torques
+            for torques in self.system.periodic_loads
             for part in torques.parts
         )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from rigdesign.base.finite import finite
 from rigdesign.case.model import Case
@@ -9,10 +10,12 @@ from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.housing import cooling_balance
+from rigdesign.records.lateral import lateral_vibration, seal_whirls
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
 from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
+from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow, MeshShift
 from rigdesign.results.warm_gearbox import WarmGearbox
@@ -39,6 +42,21 @@ class SolvedRig:
     """None where no thermal history was asked for."""
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
+
+    @cached_property
+    def lateral(self) -> LateralVibration | None:
+        """Lateral vibration; None for shafts that only twist."""
+        return lateral_vibration(self.rig, self.points)
+
+    @cached_property
+    def seal_amplitudes(self) -> Mapping[tuple[str, str], float]:
+        """Motion once a turn of the shaft in every seal without contact by stage and seal [m]; empty for shafts that
+        only twist."""
+        return {
+            (point.point.stage, seal.seal): seal.amplitude
+            for point in self.points
+            for seal in seal_whirls(self.rig, point)
+        }
 
     @property
     def mesh_errors(self) -> Mapping[str, float]:

@@ -45,6 +45,8 @@ def results_document(result: RunResult) -> dict[str, Any]:
     }
     if result.rolling_bearings:
         document["rolling_bearings"] = result.rolling_bearings
+    if result.lateral is not None:
+        document["lateral"] = result.lateral
     if result.rig_heat:
         document["rig_heat"] = result.rig_heat
     if result.oil_circuits:

@@ -15,6 +15,7 @@ from rigdesign.results.check import Checks
 from rigdesign.results.curves import Columns, curves_of
 from rigdesign.results.dynamics import DynamicsResult
 from rigdesign.results.flips import Flip
+from rigdesign.results.lateral_curves import lateral_curves
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.thermal import ExpansionResult, LossRow, OilRow, TemperatureField, ThermalResult
 from rigdesign.results.transient import TransientResult
@@ -93,6 +94,13 @@ class RunResult:
     """Per held stage {stage, losses_W, pump_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses of
     the shafts, jets of the pump and heaters put in what cooler and room take out; losses that are no heat stand
     apart."""
+    lateral: dict[str, Any] | None = None
+    """Shafts that bend: {stages: [{stage, torque, speed_rpm, modes: [{mode, family, shaft, frequency_Hz,
+    logarithmic_decrement, amplification, whirl, margin, required_margin}], bearings: [{bearing, shaft, orbit_um,
+    minor_um, clearance_um, share, force_N, static_load_N}], seals: [{seal, shaft, orbit_um}],
+    meshes: [{mesh, line, force_N, share}]}], curve: {speed_rpm,
+    bearings: [{bearing, orbit_um, clearance_um}]}}; orbits are the larger half axis, those of all lines added; torque
+    is held or lost; None for shafts that only twist."""
     rig_heat: list[dict[str, Any]] = field(default_factory=list)
     """Per held stage {stage, drive_power_W, mains_power_W, input_power_W, open_W, sources, room}; sources: {source,
     kind, power_W, room_W, oil_W, water_W, stored_W, no_heat_W}; room: {temperature_degC, limit_degC, heat_W, by_air_W,
@@ -153,7 +161,7 @@ class RunResult:
     @property
     def columns(self) -> dict[str, Columns]:
         """Every curve of the run by name as lists by ``quantity [unit]``: what curves/*.csv holds."""
-        return curves_of(self.expansion, self.dynamics, self.transient)
+        return curves_of(self.expansion, self.dynamics, self.transient) | lateral_curves(self.lateral)
 
     @property
     def curves(self) -> dict[str, dict[str, NDArray[Any]]]:

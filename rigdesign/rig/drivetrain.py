@@ -1,7 +1,7 @@
 """The power circuit of a case as a drivetrain of the dynamics package."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from dynamics.drivetrain.graph import Drivetrain
 from dynamics.drivetrain.parts import (
@@ -14,8 +14,8 @@ from dynamics.drivetrain.parts import (
     MeshConnection,
     Motor,
 )
+from dynamics.drivetrain.periodic_load import LoadOrder
 from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
-from dynamics.drivetrain.shaft_torque import ShaftTorque
 from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
@@ -56,7 +56,7 @@ def build_drivetrain(
                 ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
                 stiffness=coupling.torsional_stiffness,
                 damping=coupling.torsional_damping,
-                excitation=_shaft_torques(coupling.excitation),
+                excitation=(*_load_orders(coupling.excitation), *_cross_joint(coupling)),
                 flexibility=_flexibility(coupling),
             )
             for name, coupling in power.couplings.items()
@@ -211,13 +211,27 @@ def _motor(case: Case) -> Motor:
         shaft=motor.shaft,
         position=0.0 if motor.end == "start" else length,
         inertia=motor.inertia,
-        ripple=_shaft_torques(motor.ripple),
+        ripple=_load_orders(motor.ripple),
     )
 
 
-def _shaft_torques(torques: Sequence[HarmonicTorqueInput]) -> tuple[ShaftTorque, ...]:
+def _cross_joint(coupling: CouplingInput) -> Iterator[LoadOrder]:
+    """Torque of a cross joint under an angle b between its axes: tan(turn_2) = tan(turn_1) cos(b) holds the second
+    shaft back by b^2/4 sin(2 turn_1), to the second power of b, against the torsional stiffness.
+
+    Source: H. C. Seherr-Thoss, F. Schmelz, E. Aucktor, Universal Joints and Driveshafts, 2nd ed. 2006, chapter 1; as an
+    excitation by misalignment: M. Xu, R. D. Marangoni, J. Sound Vib. 176, 1994, 663.
+    """
+    squared = coupling.cold_angle_lateral**2 + coupling.cold_angle_vertical**2
+    if coupling.joint == "hooke" and squared:
+        yield LoadOrder(
+            order=2.0, amplitude=0.25 * squared * coupling.torsional_stiffness, phase=0.5 * math.pi
+        )
+
+
+def _load_orders(torques: Sequence[HarmonicTorqueInput]) -> tuple[LoadOrder, ...]:
     return tuple(
-        ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
+        LoadOrder(order=torque.order, amplitude=torque.torque, phase=torque.phase) for torque in torques
     )
 
 

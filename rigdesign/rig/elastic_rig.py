@@ -32,6 +32,8 @@ from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS
 from rigdesign.case.model import Case
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+from rigdesign.properties.materials import Material
+from rigdesign.rig.rotating_parts import misalignments, rotating_parts
 from rigdesign.rig.shaft_axes import ShaftAxis
 
 Array = NDArray[np.float64]
@@ -39,6 +41,9 @@ Face = Literal["front", "back"]
 
 REFERENCE_STIFFNESS = 1e8
 """Of every bearing in the state whose modes span the reduced rig [N/m]; any other stiffness is exact at rest."""
+SLOW = 8e3
+"""Highest mode of the rig that is reduced for lateral vibration [Hz]: with static shapes of all ports the prototype's
+modes up to 1 kHz and orbits are those of the rig with modes up to 50 kHz within 1e-4."""
 NOMINAL_TORQUE = 100.0
 """Torque at which the axial spring of a double-helical mesh takes its stiffness [N m]."""
 
@@ -64,11 +69,19 @@ class ElasticDrivetrain:
     @cached_property
     def reduced(self) -> ReducedElasticRig:
         """Modes up to the cutoff with static shapes of all ports."""
+        return self._reduced(self.cutoff)
+
+    @cached_property
+    def slow(self) -> ReducedElasticRig:
+        """The same with modes up to `SLOW` only: for what happens at the speed of the shafts."""
+        return self.reduced if self.cutoff <= SLOW else self._reduced(SLOW)
+
+    def _reduced(self, cutoff: float) -> ReducedElasticRig:
         reference = {
             bearing.name: _reference(bearing.name in self.pressed) for bearing in self.rig.drivetrain.bearings
         }
         rows = np.vstack([port_rows_of(self.model), *self.port_rows.values()])
-        return reduce_rig(self.model, reference, self.cutoff, rows)
+        return reduce_rig(self.model, reference, cutoff, rows)
 
     @cached_property
     def seen(self) -> SeenRig:
@@ -89,9 +102,10 @@ def elastic_rig(
     drivetrain: Drivetrain,
     axes: Mapping[str, ShaftAxis],
     pairs: Mapping[str, GearPair],
+    materials: Mapping[str, Material],
     housings: Sequence[HousingSupport] = (),
 ) -> ElasticRig:
-    """Shafts at their axes, bearings on their supports, what locates them axially.
+    """Shafts at their axes, bearings on their supports, what locates them axially and what shakes them.
 
     housings : condensed to the seats of their bearings, of the gearboxes whose case says so
 
@@ -104,6 +118,8 @@ def elastic_rig(
         axial_locations=tuple(_locations(case)),
         axial_mesh_springs=tuple(_double_helical(case, pairs)),
         axially_locating=(*_single_helical(case, pairs), *pressed_bearings(case)),
+        rotating=tuple(rotating_parts(case, drivetrain, materials)),
+        misalignments=tuple(misalignments(case)),
     )
 
 

@@ -235,7 +235,7 @@ class Rig:
         """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
         assert self.drivetrain is not None
         return ElasticDrivetrain(
-            rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self._seats),
+            rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
             cutoff=self.highest_mode,
             pressed=frozenset(pressed_bearings(self.case)),

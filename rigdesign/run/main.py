@@ -32,6 +32,7 @@ from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
+from rigdesign.results.rows.lateral import lateral_row
 from rigdesign.results.rows.oil_circuits import circuit_rows
 from rigdesign.results.rows.rig_heat import rig_heat_row
 from rigdesign.results.rows.rolling_bearings import rolling_bearing_row
@@ -142,6 +143,8 @@ def _converged(rig: Rig, say: Progress) -> list[PointResult]:
 def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
     """Checks and records of a solved rig."""
     case, rig, points = solved.case, solved.rig, list(solved.points)
+    _ = solved.lateral
+    clock.lap("lateral")
     checks = all_checks(solved)
     clock.lap("checks")
     losses = losses_by_stage(rig, points)
@@ -156,6 +159,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
         oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
         rolling_bearings=[rolling_bearing_row(found) for found in rolling_bearings(rig, points)],
+        lateral=None if solved.lateral is None else lateral_row(solved.lateral),
         cooler=[cooling_row(balance) for balance in solved.cooling],
         rig_heat=[rig_heat_row(balance.heat, rig.heat_parts.room) for balance in solved.cooling]
         if case.rig_heat.stated

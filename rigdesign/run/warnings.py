@@ -12,8 +12,8 @@ from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.periodic_loads import loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
@@ -129,7 +129,9 @@ def _deviating_teeth(solved: SolvedRig) -> Iterator[str]:
         return
     laws = laws_of(solved.points[-1].last.models)
     missing = [f"{gear}: its teeth differ" for gear in averaged_gears(rig, laws)]
-    missing += [f"{name}: its torque alternates" for name in torques_left_out(rig, laws)]
+    missing += [
+        f"{name}: its torque alternates" for name in loads_left_out(rig, laws, solved.points[-1].last.system)
+    ]
     for what in missing:
         yield (
             f"{what}, which a response over response_period = {rig.case.numerics.response_period} does not show: "

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
+from rigdesign.case.rules.rotating_parts import rotating_part_faults
 
 if TYPE_CHECKING:
     from rigdesign.case.bearings import BearingInput
@@ -29,7 +30,10 @@ LEAST_DIAMETRAL = 0.5
 def elastic_shaft_faults(case: "Case") -> Iterator[Fault]:
     """What keeps the shafts from bending in their bearings; nothing where they only twist."""
     train = case.drivetrain
-    if train is None or train.shaft_model != "elastic":
+    if train is None:
+        return
+    yield from rotating_part_faults(case)
+    if train.shaft_model != "elastic":
         return
     yield from _supported_twice(case)
     yield from _thin_discs(train)

@@ -6,6 +6,7 @@ from rigdesign.report.sections.clearances import CLEARANCE_DETAILS, CLEARANCES
 from rigdesign.report.sections.decision import DECISION
 from rigdesign.report.sections.ground import HAND_CHECKS, NOT_MODELLED, PROVENANCE, WARNINGS
 from rigdesign.report.sections.inputs import DRIVETRAIN_INPUTS, INPUTS
+from rigdesign.report.sections.lateral import LATERAL
 from rigdesign.report.sections.loads import LOAD_DETAILS, LOADS
 from rigdesign.report.sections.losses import LOSS_DETAILS, LOSSES
 from rigdesign.report.sections.oil_circuits import OIL_CIRCUITS
@@ -23,6 +24,7 @@ SECTIONS: tuple[ReportSection, ...] = (
     DRIVERS,
     RANGES,
     LOADS,
+    LATERAL,
     LOSSES,
     OIL_CIRCUITS,
     RIG_HEAT,

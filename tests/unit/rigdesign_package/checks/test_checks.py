@@ -36,7 +36,7 @@ def held(stage: str, factors: tuple[float, float], rpm: float = 12000.0, **last:
     response = SimpleNamespace(dynamic_factor=np.array(factors), mean=np.array([180.0, 186.9]))
     return SimpleNamespace(
         point=SimpleNamespace(stage=stage, speed=rpm * RPM, torque=180.0),
-        last=SimpleNamespace(response=response, **last),
+        last=SimpleNamespace(response=response, **({"system": None} | last)),
     )
 
 

@@ -23,7 +23,9 @@ def axial_play(*plays: tuple[float, float]) -> Check:
         for i, (drawn, warm) in enumerate(plays)
     )
     warm = WarmGearbox(gearbox="test", stage="test", shafts=shafts)
-    solved: Any = SimpleNamespace(case=load_case(PROTOTYPE), warm=[warm], points=(), unexpanded=())
+    solved: Any = SimpleNamespace(
+        case=load_case(PROTOTYPE), warm=[warm], points=(), unexpanded=(), seal_amplitudes={}
+    )
     return next(check for check in checks(solved) if check.id == "clearance.axial_play")
 
 

@@ -36,6 +36,7 @@ COMPLETE = (
     "dynamics.ramp_peak.*",  # the time run holds whole turns and all swinging torques
     "dynamics.lift_off.*",
     "dynamics.contact_margin.*",
+    "lateral.*",  # linear about the load of the stage, as they say
     "specimen.load_cycles",  # commanded
     "ramp.*",
     "bearing.speed",  # commanded
@@ -110,12 +111,16 @@ def family_of(identity: str) -> RuleFamily:
     return max(keys, key=lambda family: len(family.key))
 
 
+LATERAL = ("orbit", "separation", "stability", "stability_without_torque", "torsional_separation")
+
+
 def test_every_family_of_rules_means_a_check() -> None:
     known = (
         known_ids()
         | {f"bought_part.{quantity}" for quantity in (*RESULTS, "given")}
         | {"transient.soak.test", "oil.supply.warm.lines.mesh", "transient.oil_supply.warm.lines.mesh"}
         | {"oil.room_temperature", "flank.edge_pressure.test"}
+        | {f"lateral.{key}" for key in LATERAL}
     )
     meant = {family_of(identity).key for identity in known}
     assert [family.key for family in REGISTRY.families() if family.key not in meant] == []

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.shaft_torque import ShaftTorque
+from dynamics.drivetrain.periodic_load import LoadOrder
 from dynamics.flank.field import FlankField
 from dynamics.flank.microgeometry import Microgeometry, pitch_waves
 from dynamics.mesh.flank import alike_teeth, mesh_law
@@ -46,7 +46,7 @@ def test_defaults_leave_all_teeth_alike() -> None:
         assert model.law.scale_1.tolist() == model.law.scale_2.tolist() == [1.0]
         assert model.law.tooth_offset_2 == 0
     assert locked_share(rig) == 1.0
-    assert rig.system is not None and rig.system.shaft_torques == ()
+    assert rig.system is not None and rig.system.periodic_loads == ()
 
 
 def test_profile_slope_takes_from_the_root_what_it_adds_to_the_tip() -> None:
@@ -226,13 +226,13 @@ def test_teeth_that_do_not_come_back_in_the_period_are_averaged(
 
 def test_a_swinging_torque_needs_an_order() -> None:
     with pytest.raises(ValueError, match="must be above 0"):
-        ShaftTorque(order=0.0, torque=1.0)
+        LoadOrder(order=0.0, amplitude=1.0)
 
 
 def warned(case: Case) -> list[str]:
     """Warnings of a response that leaves out what single teeth and alternating torques do."""
     rig, models = built(case)
-    point = SimpleNamespace(last=SimpleNamespace(models=models))
+    point = SimpleNamespace(last=SimpleNamespace(models=models, system=None))
     solved: Any = SimpleNamespace(rig=rig, points=[point])
     return list(_deviating_teeth(solved))
 

@@ -1,0 +1,121 @@
+"""Lateral vibration of the shafts: SI records. Amplitudes are half axes of ellipses."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Literal
+
+from dynamics.elastic_rig.lateral import RigMode
+
+Torque = Literal["held", "lost"]
+"""Whether the bearings carry the torque of the stage, or the weight alone after the loop has lost it at speed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingWhirl:
+    """Motion and force once a turn in one bearing."""
+
+    bearing: str
+    """``gearbox.bearing``."""
+    shaft: str
+    orbits: Mapping[str, float]
+    """Larger half axis of the orbit by the shaft line that shakes it [m]."""
+    minor: float
+    """Smaller half axis of the largest of them, negative for backward whirl [m]."""
+    clearance: float | None
+    """Of an oil film, diametral, as it runs [m]; None for rolling elements."""
+    force: float
+    """Largest force once a turn, those of all lines added [N]."""
+    static_load: float
+    """[N]"""
+
+    @property
+    def amplitude(self) -> float:
+        """Largest distance from the mean position, the orbits of all lines added in the worst phase [m]."""
+        return sum(self.orbits.values())
+
+    @property
+    def clearance_share(self) -> float | None:
+        """Peak-to-peak motion over the diametral clearance."""
+        return None if not self.clearance else 2.0 * self.amplitude / self.clearance
+
+
+@dataclass(frozen=True, kw_only=True)
+class SealWhirl:
+    """Motion once a turn in one seal."""
+
+    seal: str
+    shaft: str
+    amplitude: float
+    """Largest distance from the mean position, of all lines [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshWhirl:
+    """Force that unbalance, bow and run-out make in a mesh once a turn, teeth at their mean stiffness."""
+
+    mesh: str
+    """``gearbox.mesh``."""
+    forces: Mapping[str, float]
+    """Amplitude along the line of action by the shaft line that makes it [N]."""
+    mean: float
+    """Force of the mean torque [N]."""
+
+    def share(self, lines: Iterable[str] | None = None) -> float:
+        """Of the mean force, some lines or all added in the worst phase; infinite without a torque."""
+        force = sum(value for line, value in self.forces.items() if lines is None or line in lines)
+        return force / self.mean if self.mean > 0.0 else inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Separation:
+    """A mode next to the speed of its shaft or to an excitation of it."""
+
+    mode: RigMode
+    speed: float
+    """Of the shaft at the held stage [rad/s]."""
+    harmonic: int
+    margin: float
+    """Distance of the mode from harmonic times speed, over that [-]; negative for a mode below."""
+    required: float
+    """Least distance [-]; 0 where the mode is critically damped."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageLateral:
+    """One held stage, with its torque or after it is lost."""
+
+    stage: str
+    torque: Torque
+    speed: float
+    """Where the case counts it [rad/s]."""
+    modes: tuple[RigMode, ...]
+    bearings: tuple[BearingWhirl, ...] = ()
+    seals: tuple[SealWhirl, ...] = ()
+    meshes: tuple[MeshWhirl, ...] = ()
+    separations: tuple[Separation, ...] = ()
+    """Lateral modes against once a turn."""
+    torsional: tuple[Separation, ...] = ()
+    """Torsional modes against once and twice a turn, the nearest first."""
+    highest_turn: float = 0.0
+    """Of the fastest shaft [Hz]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedWhirl:
+    """Bearings at one speed of the curve [rad/s]."""
+
+    speed: float
+    bearings: tuple[BearingWhirl, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LateralVibration:
+    """All held stages, and the whirl over speed under torque and temperatures of the one that speaks for the rig."""
+
+    stages: tuple[StageLateral, ...]
+    curve: tuple[SpeedWhirl, ...]
+
+    def of(self, torque: Torque) -> tuple[StageLateral, ...]:
+        """Stages with their torque, or without."""
+        return tuple(stage for stage in self.stages if stage.torque == torque)
