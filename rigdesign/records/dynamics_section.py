@@ -14,11 +14,14 @@ from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.reversed_bending import bent_both_ways
 from rigdesign.records.time_run import ramp_history
+from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
 from rigdesign.results.rows import dynamics as rows
+from rigdesign.results.rows.campbell import campbell_row
 from rigdesign.results.rows.flank_rating import flank_rating_row
 from rigdesign.results.rows.loaded_contact import loaded_contact_row
+from rigdesign.results.rows.section_torques import section_torque_rows
 from rigdesign.results.rows.tooth_history import tooth_history_row
 from rigdesign.rig.model import Rig
 
@@ -32,6 +35,7 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
+    diagram, torques = loop_vibration(rig, run, loads)
     return DynamicsResult(
         gearboxes={
             rig.mesh_labels[name]: _mesh_section(rig, run, mesh, loads.meshes[rig.mesh_labels[name]])
@@ -58,6 +62,8 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
             for gear, history in loads.teeth.items()
         ],
         loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
+        campbell=campbell_row(diagram),
+        section_torques=section_torque_rows(torques),
     )
 
 

@@ -1,6 +1,6 @@
 """The curves of a result as columns: what curves/*.csv holds and `RunResult.curves` gives as arrays."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from rigdesign.base.output_folder import file_stem
@@ -79,6 +79,10 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
         )
     if dynamics.ramp is not None:
         yield "ramp", _ramp(dynamics.ramp)
+    if dynamics.campbell is not None:
+        yield "campbell", _campbell(dynamics.campbell)
+    if dynamics.section_torques is not None:
+        yield "section_torques", _section_torques(dynamics.section_torques["over_speed"])
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
@@ -119,6 +123,23 @@ def _ramp(ramp: RampHistory) -> Columns:
             for bound, values in envelopes.items()
         },
     }
+
+
+def _campbell(campbell: Mapping[str, Any]) -> Columns:
+    """A mode that is damped out at a speed has no value there."""
+    columns: Columns = {"speed [rpm]": list(campbell["speed_rpm"])}
+    for mode in campbell["modes"]:
+        columns[f"mode {mode['mode']} frequency [Hz]"] = list(mode["frequency_Hz"])
+        columns[f"mode {mode['mode']} damping ratio [1]"] = list(mode["damping_ratio"])
+    return columns
+
+
+def _section_torques(over_speed: Mapping[str, Any]) -> Columns:
+    columns: Columns = {"speed [rpm]": list(over_speed["speed_rpm"])}
+    for place in over_speed["places"]:
+        for key, words in (("mean", "mean"), ("half_peak_to_peak", "half peak-to-peak"), ("peak", "peak")):
+            columns[f"{place['place']} {words} [Nm]"] = list(place[f"{key}_Nm"])
+    return columns
 
 
 def _oil_power(power: OilPowerCurve) -> Columns:

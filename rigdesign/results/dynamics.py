@@ -150,3 +150,13 @@ class DynamicsResult:
     """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain, excited}: mesh and shaft
     orders that meet a mode of the closed loop; order_of: gearbox or shaft, speed_rpm that of its pinion or its own;
     excited: the mesh reaches the mode."""
+    campbell: dict[str, Any] | None = None
+    """Modes of the closed loop over speed, bearings as they run there: {speed_rpm (of the first pinion), modes:
+    [{mode, shape, driven_by, frequency_Hz, damping_ratio, gain: {gearbox}}], orders: [{kind, of, harmonic,
+    per_turn}], crossings: [{mode, kind, of, harmonic, speed_rpm, frequency_Hz, damping_ratio, gain}],
+    modes_left_out}; lists of modes run over speed_rpm, None where a mode is damped out."""
+    section_torques: dict[str, Any] | None = None
+    """Torque in every section of the shafts, joint and mesh, from the periodic responses: {held: [{place, kind, part,
+    from_mm, to_mm, stage, speed_rpm, mean_Nm, half_peak_to_peak_Nm, peak_Nm, time_run_peak_Nm, shear_stress_MPa}],
+    over_speed: {torque, speed_rpm, places: [{place, ..., mean_Nm, half_peak_to_peak_Nm, peak_Nm}]}}; of a section
+    where it is highest."""
