@@ -109,5 +109,3 @@ def _partners(old: Complex, new: Complex, before: ShapedModes, after: ShapedMode
     apart = np.abs(np.log(frequencies[0][:, None] / frequencies[1]))
     rows, columns = linear_sum_assignment(apart - assurance)
     return {int(k): int(j) for j, k in zip(rows, columns) if assurance[j, k] >= ALIKE}
-
-

@@ -32,6 +32,13 @@ class TorqueSection:
     section: Section | None = None
 
     @property
+    def name(self) -> str:
+        """As it is called in tables: part and place [mm], or kind and part."""
+        if self.kind != "shaft":
+            return f"{self.kind} {self.part}"
+        return f"{self.part} {1e3 * self.start:.0f} to {1e3 * self.end:.0f} mm"
+
+    @property
     def shear_per_torque(self) -> float:
         """Nominal shear stress at the surface per torque [Pa/(N m)]; 0 of a joint."""
         if self.section is None:
@@ -71,9 +78,7 @@ def twist_rows(springs: Sequence[TwistSpring], braced: str | None) -> TwistRows:
         rows=np.array([spring.row for spring in springs]),
         stiffness=np.array([spring.stiffness for spring in springs]),
         damping=np.array([spring.damping for spring in springs]),
-        bracing=np.array(
-            [float(s.section.kind == "coupling" and s.section.part == braced) for s in springs]
-        ),
+        bracing=np.array([float(s.section.kind == "coupling" and s.section.part == braced) for s in springs]),
     )
 
 

@@ -48,7 +48,8 @@ class SectionTorques:
         base = 2.0 * np.pi / (count * float(wave.time[1] - wave.time[0]))
         loads = self._mesh_loads(wave)
         spectrum = np.fft.rfft(loads, axis=1) / count
-        top = count // 4
+        cells = round(self.laws[0].teeth_1 * point.speed / base)  # mesh periods in the period
+        top = min(count // 4, cells * (point.harmonics.shape[1] - 1))
         drive_speed = point.speed / float(self.ratios[self.system.mesh_ports[0, 0]])
         omega = base * np.arange(1, top + 1)
         form = self.system.form
@@ -59,9 +60,7 @@ class SectionTorques:
         rate = self.seen @ states
         rows = self.rows
         coefficients = np.zeros((len(rows.sections), count // 2 + 1), complex)
-        coefficients[:, 1 : top + 1] = (
-            rows.stiffness[:, None] / (1j * omega) + rows.damping[:, None]
-        ) * rate
+        coefficients[:, 1 : top + 1] = (rows.stiffness[:, None] / (1j * omega) + rows.damping[:, None]) * rate
         coefficients[:, 0] = self._mean(point, spectrum[:, 0].real, drive_speed, drag_torques or {})
         return np.asarray(np.fft.irfft(coefficients * count, count, axis=1))
 
@@ -75,7 +74,7 @@ class SectionTorques:
         return np.array(found)
 
     def _driven(self, wave: Waveform, base: float, drive_speed: float, top: int) -> Complex:
-        """Modal loads (n_states, top) of torques that alternate with a shaft, phases by the mean angle of the pinion."""
+        """Modal loads (n_states, top) of torques that alternate with a shaft, in phase with the pinion."""
         form = self.system.form
         loads = np.zeros((form.poles.size, top), complex)
         if not self.system.shaft_torques:

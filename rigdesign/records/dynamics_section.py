@@ -8,6 +8,7 @@ from typing import Any
 from dynamics.drivetrain.modes import order_crossings, sampling_audit, shaft_frequencies
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import factor_points, iso_factor, own_ratio
+from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.loaded_contact import loaded_contact
@@ -19,6 +20,8 @@ from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.results.rows.campbell import campbell_row
+from rigdesign.results.rows.dwell import dwell_row
+from rigdesign.results.rows.dynamic_root import dynamic_root_rows
 from rigdesign.results.rows.flank_rating import flank_rating_row
 from rigdesign.results.rows.loaded_contact import loaded_contact_row
 from rigdesign.results.rows.section_torques import section_torque_rows
@@ -35,7 +38,7 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
-    diagram, torques = loop_vibration(rig, run, loads)
+    vibration = loop_vibration(rig, run, loads)
     return DynamicsResult(
         gearboxes={
             rig.mesh_labels[name]: _mesh_section(rig, run, mesh, loads.meshes[rig.mesh_labels[name]])
@@ -62,8 +65,10 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
             for gear, history in loads.teeth.items()
         ],
         loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
-        campbell=campbell_row(diagram),
-        section_torques=section_torque_rows(torques),
+        campbell=campbell_row(vibration.campbell),
+        section_torques=section_torque_rows(vibration.torques),
+        dwell=dwell_row(vibration.dwell),
+        dynamic_root=dynamic_root_rows(dynamic_root(rig, run)),
     )
 
 

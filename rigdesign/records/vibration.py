@@ -1,23 +1,33 @@
 """Modes over speed and dynamic torques of the warm loop, on two cores where there are two."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.records.campbell import campbell
+from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.results.campbell import CampbellRecord
+from rigdesign.results.dwell import DwellRecord
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.section_torques import SectionTorqueRecord
 from rigdesign.rig.model import Rig
 
 
-def loop_vibration(
-    rig: Rig, run: DynamicRun, loads: DynamicLoads
-) -> tuple[CampbellRecord, SectionTorqueRecord]:
-    """Campbell diagram and torques of every section; loads : of the run."""
+@dataclass(frozen=True)
+class LoopVibration:
+    """What the warm loop does over speed."""
+
+    campbell: CampbellRecord
+    torques: SectionTorqueRecord
+    dwell: DwellRecord
+
+
+def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibration:
+    """Campbell diagram, torques of every section, speeds at which the rig may dwell; loads : of the run."""
     top = max(run.curves.response.speeds) / rig.pinion_speed(1.0)
     states = loop_states(rig, run.test, float(top))
     works: list[Callable[[], CampbellRecord | SectionTorqueRecord]] = [
@@ -27,4 +37,4 @@ def loop_vibration(
     with BackgroundTasks(works) as tasks:
         diagram, torques = tasks.results()
     assert isinstance(diagram, CampbellRecord) and isinstance(torques, SectionTorqueRecord)
-    return diagram, torques
+    return LoopVibration(diagram, torques, dwell_record(rig, run, loads, torques, diagram))

@@ -81,6 +81,8 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
         yield "ramp", _ramp(dynamics.ramp)
     if dynamics.campbell is not None:
         yield "campbell", _campbell(dynamics.campbell)
+    if dynamics.dynamic_root is not None and dynamics.dynamic_root["curves"]:
+        yield "dynamic_root_stress", _dynamic_root(dynamics.dynamic_root["curves"])
     if dynamics.section_torques is not None:
         yield "section_torques", _section_torques(dynamics.section_torques["over_speed"])
 
@@ -132,6 +134,30 @@ def _campbell(campbell: Mapping[str, Any]) -> Columns:
         columns[f"mode {mode['mode']} frequency [Hz]"] = list(mode["frequency_Hz"])
         columns[f"mode {mode['mode']} damping ratio [1]"] = list(mode["damping_ratio"])
     return columns
+
+
+def _dynamic_root(curves: Sequence[Mapping[str, Any]]) -> Columns:
+    """All curves below each other, distinguished by the first columns."""
+    header = (
+        "gearbox", "gear", "gauge", "stage", "pinion speed [rpm]", "rolling angle [deg]", "dynamic [N/mm2]",
+        "quasi-static [N/mm2]", "strain [um/m]", "strain rate [1/s]",
+    )  # fmt: skip
+    keys = ("rolling_angle_deg", "dynamic_MPa", "quasi_static_MPa", "strain_um_m", "strain_rate_per_s")
+    return _columns(
+        header,
+        (
+            (
+                curve["gearbox"],
+                curve["gear"],
+                curve["gauge"],
+                curve["stage"],
+                curve["pinion_speed_rpm"],
+                *values,
+            )
+            for curve in curves
+            for values in zip(*(curve[key] for key in keys), strict=True)
+        ),
+    )
 
 
 def _section_torques(over_speed: Mapping[str, Any]) -> Columns:

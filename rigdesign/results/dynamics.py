@@ -160,3 +160,14 @@ class DynamicsResult:
     from_mm, to_mm, stage, speed_rpm, mean_Nm, half_peak_to_peak_Nm, peak_Nm, time_run_peak_Nm, shear_stress_MPa}],
     over_speed: {torque, speed_rpm, places: [{place, ..., mean_Nm, half_peak_to_peak_Nm, peak_Nm}]}}; of a section
     where it is highest."""
+    dynamic_root: dict[str, Any] | None = None
+    """Root stress in motion over the rolling angle at the held stages and the speeds of numerics.root_stress_speeds:
+    {curves: [{gearbox, gear, gauge (empty: the most stressed point), stage (empty: a speed asked for),
+    pinion_speed_rpm, highest_MPa, highest_quasi_static_MPa, ratio, highest_strain_um_m, highest_strain_rate_per_s,
+    rolling_angle_deg, dynamic_MPa, quasi_static_MPa, strain_um_m, strain_rate_per_s, source}], missing: [{speed_rpm,
+    reason}]}."""
+    dwell: dict[str, Any] | None = None
+    """Speeds to avoid and the recommended ramp, pinion speeds: {share_limit, shaft_share_limit, margin, low_rpm,
+    high_rpm, bands: [{low_rpm, high_rpm, resonances: [{kind, where, speed_rpm, share, low_rpm, high_rpm}]}],
+    safe: [{low_rpm, high_rpm}], stages: [{stage, kind, speed_rpm, computed, band, nearest_safe_rpm}], ramp: [{step,
+    action, speed_rpm, torque_Nm, reason}], highest: {speed_rpm, kind: share over speed}}."""

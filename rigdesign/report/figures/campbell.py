@@ -23,6 +23,8 @@ ORDER_STYLES: Mapping[str, dict[str, Any]] = {
 MARKERS: Mapping[str, str] = {"mesh": "o", "shaft": "s", "coupling": "^"}
 LABEL_DISTANCE = 0.038
 """Least distance of two labels at the right edge, as a share of the height."""
+LEADER = {"arrowstyle": "-", "color": MUTED, "linewidth": 0.5, "relpos": (0.0, 0.5)}
+"""Line from a label to its mode."""
 LONGEST = 50
 """Characters of the name of a mode."""
 
@@ -124,7 +126,7 @@ def _edge_labels(axes: "Axes", values: Sequence[float], texts: Sequence[str]) ->
     for i, at, place in zip(order, spread, places):
         axes.annotate(
             words(texts[i]), (1.0, place), (1.035, at), xycoords="axes fraction", textcoords="axes fraction",
-            fontsize=7.5, va="center", arrowprops={"arrowstyle": "-", "color": MUTED, "linewidth": 0.5, "relpos": (0.0, 0.5)},
+            fontsize=7.5, va="center", arrowprops=LEADER,
             annotation_clip=False,
         )  # fmt: skip
 

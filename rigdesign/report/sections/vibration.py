@@ -1,7 +1,12 @@
 """Vibration of the power circuit: modes over speed, dynamic torque, and at which speeds the rig may dwell."""
 
+from typing import TYPE_CHECKING, Any
+
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
 
 
 def held_speeds(result: RunResult) -> dict[str, float]:
@@ -12,15 +17,29 @@ def held_speeds(result: RunResult) -> dict[str, float]:
 
 def _vibration(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures.campbell import campbell_diagram
+    from rigdesign.report.figures.dwell import dwell_figure
+    from rigdesign.report.figures.dynamic_root import place
     from rigdesign.report.figures.section_torques import section_torque_figure
 
     dynamics = result.dynamics
     assert dynamics is not None
-    shown: Values = {"campbell_figure": None, "torque_figure": None, "torques": []}
+    shown: Values = {
+        "campbell_figure": None,
+        "torque_figure": None,
+        "torques": [],
+        "roots": {},
+        "gauge_label": place,
+    }
     held = held_speeds(result)
+    shown["leading"] = leading
+    if dynamics.dwell is not None:
+        shown["dwell_figure"] = draw(
+            dwell_figure(dynamics.dwell), "Dynamic shares over speed and the bands to avoid"
+        )
     if dynamics.campbell is not None and dynamics.campbell["modes"]:
         shown["campbell_figure"] = draw(
-            campbell_diagram(dynamics.campbell, held), "Modes of the closed loop and excitation orders over speed"
+            campbell_diagram(dynamics.campbell, held),
+            "Modes of the closed loop and excitation orders over speed",
         )
     if dynamics.section_torques is not None:
         shown["torque_figure"] = draw(
@@ -28,7 +47,24 @@ def _vibration(result: RunResult, draw: Draw) -> Values:
             "Half peak-to-peak torque in meshes, joints and shafts over speed",
         )
         shown["torques"] = _governing(dynamics.section_torques["held"])
+    if dynamics.dynamic_root is not None:
+        shown["roots"] = _roots(dynamics.dynamic_root["curves"], draw)
     return shown
+
+
+def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
+    """Figure of every gearbox: its gauges where it has some, else the most stressed points."""
+    from rigdesign.report.figures.dynamic_root import dynamic_root_figure
+
+    found = {}
+    for gearbox in dict.fromkeys(curve["gearbox"] for curve in curves):
+        own = [curve for curve in curves if curve["gearbox"] == gearbox]
+        gauged = [curve for curve in own if curve["gauge"]]
+        found[gearbox] = draw(
+            dynamic_root_figure(gauged or own),
+            f"Root stress and strain rate in gearbox {gearbox} over the rolling angle",
+        )
+    return found
 
 
 def _governing(held: list[dict[str, object]]) -> list[dict[str, object]]:
@@ -39,6 +75,15 @@ def _governing(held: list[dict[str, object]]) -> list[dict[str, object]]:
         if key not in found or float(str(row["peak_Nm"])) > float(str(found[key]["peak_Nm"])):
             found[key] = row
     return list(found.values())
+
+
+def leading(band: dict[str, Any], most: int = 4) -> list[dict[str, Any]]:
+    """Resonances that make a band: of every kind the strongest, then the strongest of the rest, by speed."""
+    ranked = sorted(band["resonances"], key=lambda one: -(one["share"] or 0.0))
+    first = {one["kind"]: one for one in reversed(ranked)}
+    chosen = list(first.values())
+    chosen += [one for one in ranked if one not in chosen][: max(0, most - len(chosen))]
+    return sorted(chosen, key=lambda one: float(one["speed_rpm"]))
 
 
 def _turns(result: RunResult) -> bool:
