@@ -112,5 +112,5 @@ def section_torques(system: LinearSystem, laws: Sequence[MeshLaw], rows: TwistRo
         packed=tuple(pack_meshes([law]) for law in laws),
         ratios=line_ratios(system, laws),
         seen=rows.rows @ system.form.velocity_shapes,
-        flexibility=np.linalg.solve(held.T, rows.rows.T).T,
+        flexibility=np.asarray(np.linalg.solve(held.T, rows.rows.T).T, float),
     )

@@ -95,8 +95,8 @@ def excitation_orders(rig: Rig) -> Iterator[ExcitationOrder]:
     motor = rig.drivetrain.motor
     for part in motor.ripple:
         _add(labels, ("shaft", part.order, part.order * _turns(rig, motor.shaft)), "motor")
-    for (kind, harmonic, cycles), of in labels.items():
-        yield ExcitationOrder(kind=kind, of=tuple(of), harmonic=harmonic, cycles=cycles)
+    for (kind, of_turn, cycles), of in labels.items():
+        yield ExcitationOrder(kind=kind, of=tuple(of), harmonic=of_turn, cycles=cycles)
 
 
 def _add(

@@ -6,6 +6,7 @@ stress: held stages, and the speeds the case asks for (``numerics.root_stress_sp
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -19,6 +20,7 @@ from dynamics.gear.normal_arc import normal_arc
 from rigdesign.coupling.loads import MeshModel, laws_of
 from rigdesign.records import root
 from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loaded_contact import ROOT
 from rigdesign.records.speed_response import SpeedResponse, held_response, response_at
 from rigdesign.results.dynamic_root import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
 from rigdesign.results.stress_source import FROM_INFLUENCE, StressSource
@@ -108,7 +110,7 @@ class _MeshCurves:
         for gear, _ in GEARS:
             young = self.rig.materials[self.rig.mesh_gear(self.mesh, gear).material].elastic_modulus
             stresses, source = self._most_stressed(gear)
-            yield self._curve(gear, "", stresses, lambda stress, e=young: stress / e, source)
+            yield self._curve(gear, "", stresses, partial(_uniaxial, young), source)
             if self.rig.mesh_stiffness == "influence_numbers":
                 yield from self._gauges(gear)
 
@@ -129,7 +131,7 @@ class _MeshCurves:
             return curves, roots.source
         field = self.fields.of(self.rig, model, gear, 1)
         numbers = self.rig.tooth_influence.of_pair(self.rig.pairs[model.name])[gear]
-        inside = numbers.fillet.tangent >= root.ROOT
+        inside = numbers.fillet.tangent >= ROOT
         few = PairForces(self.moving.path[::COARSE], self.moving.force[::COARSE])
         _, point, face = field.within(inside).course(few).highest_at
         weights = np.zeros((len(inside), len(field.face)))
@@ -200,6 +202,11 @@ class _MeshCurves:
             strain_rate=tuple((speed * np.gradient(strained, angle)).tolist()),
             source=source,
         )
+
+
+def _uniaxial(young: float, stress: Array) -> Array:
+    """Strain of a stress along one direction."""
+    return stress / young
 
 
 def _sense(gear: Gear) -> float:

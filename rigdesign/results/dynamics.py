@@ -171,3 +171,16 @@ class DynamicsResult:
     high_rpm, bands: [{low_rpm, high_rpm, resonances: [{kind, where, speed_rpm, share, low_rpm, high_rpm}]}],
     safe: [{low_rpm, high_rpm}], stages: [{stage, kind, speed_rpm, computed, band, nearest_safe_rpm}], ramp: [{step,
     action, speed_rpm, torque_Nm, reason}], highest: {speed_rpm, kind: share over speed}}."""
+    waterfalls: list[dict[str, Any]] = field(default_factory=list)
+    """Spectrum of the mesh torque over the run-up, from the time run: {gearbox, stage, pinion_speed_rpm,
+    frequency_Hz, amplitude_Nm: rows over speed of columns over frequency, teeth}; empty where no torque is kept."""
+    spectra: list[dict[str, Any]] = field(default_factory=list)
+    """At the held stages: {gearbox, stage, pinion_speed_rpm, mean_Nm, teeth, order, amplitude_Nm: of the time run
+    over the order of the pinion; mesh_harmonic_order, mesh_harmonic_amplitude_Nm: of the periodic response}."""
+    pair_shares: list[dict[str, Any]] = field(default_factory=list)
+    """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
+    force at that moment, in motion), share_quasi_static, force_over_mean}."""
+    contact_loss_maps: list[dict[str, Any]] = field(default_factory=list)
+    """Least torque of a mesh over its mean, and share of the time without contact: {gearbox, pinion_speed_rpm,
+    torque_Nm, least_share, lift_off_share: rows over torque of columns over speed, None without a response}; empty at
+    fidelity quick and where the response repeats after a revolution."""

@@ -149,12 +149,12 @@ def _crossings(axes: "Axes", crossings: Sequence[Mapping[str, Any]]) -> None:
             )  # fmt: skip
 
 
-def _whole(value: float, position: int | None = None) -> str:
+def _whole(value: float, position: float = 0.0) -> str:
     text = f"{value:,.0f}" if value >= 10000 else f"{value:.0f}"
     return text.replace(",", NARROW_SPACE)
 
 
-def _some(value: float, position: int | None = None) -> str:
+def _some(value: float, position: float = 0.0) -> str:
     """Label of minor ticks: 2 and 5 of each decade."""
     lead = value / 10.0 ** np.floor(np.log10(value) + 1e-9)
     return _whole(value) if round(lead, 6) in (2.0, 5.0) else ""

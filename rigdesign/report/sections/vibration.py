@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
@@ -22,34 +23,70 @@ def _vibration(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures.section_torques import section_torque_figure
 
     dynamics = result.dynamics
-    assert dynamics is not None
+    assert dynamics is not None and dynamics.campbell is not None
+    held = held_speeds(result)
+    torques = dynamics.section_torques
     shown: Values = {
+        "dwell_figure": None,
         "campbell_figure": None,
         "torque_figure": None,
-        "torques": [],
-        "roots": {},
+        "torques": _governing(torques["held"]) if torques else [],
+        "roots": _roots(dynamics.dynamic_root["curves"], draw) if dynamics.dynamic_root else {},
         "gauge_label": place,
+        "leading": leading,
+        **_in_motion(result, draw),
     }
-    held = held_speeds(result)
-    shown["leading"] = leading
     if dynamics.dwell is not None:
         shown["dwell_figure"] = draw(
             dwell_figure(dynamics.dwell), "Dynamic shares over speed and the bands to avoid"
         )
-    if dynamics.campbell is not None and dynamics.campbell["modes"]:
+    if dynamics.campbell["modes"]:
         shown["campbell_figure"] = draw(
             campbell_diagram(dynamics.campbell, held),
             "Modes of the closed loop and excitation orders over speed",
         )
-    if dynamics.section_torques is not None:
+    if torques:
         shown["torque_figure"] = draw(
-            section_torque_figure(dynamics.section_torques["over_speed"], held),
+            section_torque_figure(torques["over_speed"], held),
             "Half peak-to-peak torque in meshes, joints and shafts over speed",
         )
-        shown["torques"] = _governing(dynamics.section_torques["held"])
-    if dynamics.dynamic_root is not None:
-        shown["roots"] = _roots(dynamics.dynamic_root["curves"], draw)
     return shown
+
+
+def _in_motion(result: RunResult, draw: Draw) -> Values:
+    """Figures of spectra and contact."""
+    from rigdesign.report.figures.contact_in_motion import contact_loss_figure, pair_share_figure
+    from rigdesign.report.figures.spectra import spectrum_figure, waterfall_figure
+
+    dynamics = result.dynamics
+    assert dynamics is not None
+    styles = gearbox_styles(result)
+    figures = {
+        "waterfall_figure": (
+            waterfall_figure,
+            dynamics.waterfalls,
+            "Spectrum of the mesh torque over the speed of the run-up",
+        ),
+        "spectrum_figure": (
+            spectrum_figure,
+            dynamics.spectra,
+            "Spectrum of the mesh torque at the held stages",
+        ),
+        "share_figure": (
+            pair_share_figure,
+            dynamics.pair_shares,
+            "Share of a tooth pair over the rolling angle",
+        ),
+        "loss_figure": (
+            contact_loss_figure,
+            dynamics.contact_loss_maps,
+            "Least torque over the mean by speed and torque",
+        ),
+    }
+    return {
+        name: draw(figure(rows, styles), text) if rows else None
+        for name, (figure, rows, text) in figures.items()
+    }
 
 
 def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
