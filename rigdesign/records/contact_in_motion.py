@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,5 +131,5 @@ def _bands(rig: Rig, states: Sequence[LoopState]) -> DrivetrainOverSpeed:
     speeds = [rig.pinion_speed(state.speed) for state in states]
     if len({id(state.system) for state in states}) == 1:
         return states[0].system
-    limits = tuple(math.sqrt(a * b) for a, b in zip(speeds[:-1], speeds[1:]))
+    limits = tuple(math.sqrt(a * b) for a, b in pairwise(speeds))
     return SpeedBands(limits=limits, systems=tuple(state.system for state in states))

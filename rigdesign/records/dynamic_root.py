@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from dynamics.contact.root_field import PairForces, RootField, Side, root_field
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model, solve_static
-from dynamics.errors import DynamicsNotConverged
 from dynamics.gear.normal_arc import normal_arc
 from rigdesign.coupling.loads import MeshModel, laws_of
 from rigdesign.records import root
@@ -70,10 +69,9 @@ def dynamic_root(rig: Rig, run: DynamicRun) -> DynamicRootRecord:
     for speed in rig.case.numerics.root_stress_speeds:
         if any(abs(own.speed - speed) <= SAME * speed for own in found):
             continue
-        try:
-            found.append(response_at(rig, run.test, speed))
-        except DynamicsNotConverged as reason:
-            missing.append(MissingRootSpeed(speed=speed, reason=str(reason)))
+        found.append(response_at(rig, run.test, speed))
+        if found[-1].response is None:
+            missing.append(MissingRootSpeed(speed=speed, reason=found[-1].reason))
     fields = _Fields()
     curves = [
         curve
@@ -88,10 +86,13 @@ def _curves(rig: Rig, state: SpeedResponse, fields: _Fields) -> Iterator[Dynamic
     still = solve_static(ports, LoopLoad(torque=state.torque))
     for mesh in range(len(rig.mesh_names)):
         model = state.models[mesh]
-        (moving,) = root.dynamic_forces(model, [state.response], mesh)
         resting = root.static_forces(model, still, ports, mesh)
+        moving = resting
+        if state.response is not None:
+            (moving,) = root.dynamic_forces(model, [state.response], mesh)
         if moving.force.any() and resting.force.any():
-            yield from _MeshCurves(rig, state, mesh, moving, resting, fields).all()
+            front = bool(still.mean_torque[mesh] > 0.0)
+            yield from _MeshCurves(rig, state, mesh, moving, resting, fields, front).all()
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +105,7 @@ class _MeshCurves:
     moving: PairForces
     resting: PairForces
     fields: _Fields
+    front: bool
 
     def all(self) -> Iterator[DynamicRootCurve]:
         """The most stressed point of pinion and wheel, and their gauges."""
@@ -152,7 +154,7 @@ class _MeshCurves:
         """Mean over the grid of a gauge, as `gauge_stress.stress_at` takes it."""
         model = self.state.models[self.mesh]
         drawn = self.rig.pairs[model.name]
-        front = bool(self.state.response.flank[self.mesh] > 0)
+        front = self.front
         field = self.fields.of(self.rig, model, gear, 1 if gauge.front == front else -1)
         fillet = self.rig.tooth_influence.of_pair(drawn)[gear].fillet
         places = normal_arc(drawn.gears[gear], fillet.point, fillet.arc)
@@ -193,6 +195,7 @@ class _MeshCurves:
             gear=dict(GEARS)[gear],
             gauge=gauge,
             stage=self.state.stage,
+            in_motion=self.state.response is not None,
             speed=speed,
             pinion_speed=pinion,
             angle=tuple(angle.tolist()),

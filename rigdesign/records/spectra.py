@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.response.schedule import Stage
+from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.curves import own_ratio
@@ -30,6 +31,10 @@ ORDERS = 600
 """Points of the spectrum of a held stage, each the largest around it."""
 LEAST_SAMPLES = 1024
 """Of a held stage, below which it has no spectrum."""
+HIGHEST_HARMONIC = 4
+"""Mesh order up to which the periodic response is shown."""
+MOST_LINES, LEAST_LINE = 240, 1e-5
+"""Lines of its spectrum, and the least amplitude of one over the highest."""
 SETTLED = 0.25
 """Share of a held stage left out at its beginning: what its start has set off dies down."""
 
@@ -81,7 +86,7 @@ def _held(rig: Rig, run: DynamicRun, point: PointResult, mesh: int) -> HeldSpect
     teeth = rig.pairs[name].teeth[0]
     speed = own_ratio(rig, mesh) * response.speed
     order, amplitude = _orders_of_run(rig, run, point.point.stage, mesh)
-    harmonics = response.harmonics[mesh, 1:]
+    harmonic_order, harmonic_amplitude = _orders_of_wave(response, mesh, teeth, speed)
     return HeldSpectrum(
         mesh=rig.mesh_labels[name],
         stage=point.point.stage,
@@ -89,10 +94,25 @@ def _held(rig: Rig, run: DynamicRun, point: PointResult, mesh: int) -> HeldSpect
         mean=abs(float(response.mean[mesh])),
         order=tuple(order.tolist()),
         amplitude=tuple(amplitude.tolist()),
-        harmonic_order=tuple((teeth * np.arange(1.0, harmonics.size + 1)).tolist()),
-        harmonic_amplitude=tuple(harmonics.tolist()),
+        harmonic_order=tuple(harmonic_order.tolist()),
+        harmonic_amplitude=tuple(harmonic_amplitude.tolist()),
         teeth=teeth,
     )
+
+
+def _orders_of_wave(point: CurvePoint, mesh: int, teeth: int, speed: float) -> tuple[Array, Array]:
+    """Orders of the pinion and amplitudes of the periodic response; speed : of the pinion [rad/s].
+
+    Up to the fourth mesh order and some; of more than `MOST_LINES` lines those that are highest.
+    """
+    wave = point.wave
+    count = wave.time.size
+    base = 2.0 * math.pi / (count * float(wave.time[1] - wave.time[0]))
+    top = min(count // 4, int((HIGHEST_HARMONIC + 0.5) * teeth * speed / base))
+    amplitude = 2.0 * np.abs(np.fft.rfft(wave.torque[mesh]))[1 : top + 1] / count
+    lines = np.sort(np.argsort(-amplitude, kind="stable")[:MOST_LINES])
+    lines = lines[amplitude[lines] > LEAST_LINE * amplitude.max(initial=0.0)]
+    return base / speed * (lines + 1.0), amplitude[lines]
 
 
 def _orders_of_run(rig: Rig, run: DynamicRun, stage: str, mesh: int) -> tuple[Array, Array]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
-from dynamics.errors import DynamicsNotConverged
 from dynamics.response.harmonic_walk import MOST_HARMONICS, mesh_cells
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -24,9 +23,10 @@ BELOW = 0.98
 
 @dataclass(frozen=True)
 class SpeedResponse:
-    """A periodic state with the loop it was found in; stage : empty where none holds the speed.
+    """A periodic state with the loop it was sought in; stage : empty where none holds the speed.
 
     speed : stated [rad/s]; torque : with its sign, at the control mesh [N m]
+    response : None where none was found, with the reason
     """
 
     stage: str
@@ -34,7 +34,8 @@ class SpeedResponse:
     torque: float
     models: tuple[MeshModel, ...]
     system: LinearSystem
-    response: CurvePoint
+    response: CurvePoint | None
+    reason: str = ""
 
 
 def held_response(rig: Rig, point: PointResult) -> SpeedResponse:
@@ -52,11 +53,6 @@ def response_at(rig: Rig, held: PointResult, speed: float) -> SpeedResponse:
 
     By harmonic balance; far below the curves of the case its harmonics end below the highest modes, which then answer
     as springs.
-
-    Raises
-    ------
-    DynamicsNotConverged
-        No periodic response is found.
     """
     last = held.last
     point = replace(held.point, speed=speed)
@@ -80,5 +76,5 @@ def response_at(rig: Rig, held: PointResult, speed: float) -> SpeedResponse:
         ),
     )
     if curve.failed:
-        raise DynamicsNotConverged(curve.failed[0][1])
+        return SpeedResponse("", speed, torque, last.models, system, None, curve.failed[0][1])
     return SpeedResponse("", speed, torque, last.models, system, curve.points[0])

@@ -19,6 +19,8 @@ class DynamicRootCurve:
     """Name of the strain gauge; empty for the point of fillet and face that is stressed most."""
     stage: str
     """Held stage; empty for a speed that the case asks for."""
+    in_motion: bool
+    """False where no periodic response was found at an asked speed: the dynamic stress is then the quasi-static one."""
     speed: float
     """Of the gear [rad/s]."""
     pinion_speed: float
@@ -48,7 +50,7 @@ class DynamicRootCurve:
 
 @dataclass(frozen=True, kw_only=True)
 class MissingRootSpeed:
-    """A speed asked for at which no periodic response was found."""
+    """A speed asked for at which no periodic response was found; its curves are quasi-static."""
 
     speed: float
     """Stated [rad/s]."""

@@ -37,7 +37,7 @@ class HeldSpectrum:
     amplitude: Row
     """(n,) largest around each order [N m]"""
     harmonic_order: Row
-    """(h,) of the periodic response: the mesh frequency and its multiples."""
+    """(h,) of the periodic response: mesh orders, and those between them where its period is longer than a mesh."""
     harmonic_amplitude: Row
     """(h,) [N m]"""
     teeth: int

@@ -85,15 +85,19 @@ def spectrum_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
                 row["order"], np.maximum(row["amplitude_Nm"], floor), color=style.colour, linewidth=0.7,
                 label="time run, as far as its samples hold",
             )  # fmt: skip
-        heights = row["mesh_harmonic_amplitude_Nm"][:HARMONICS]
-        orders = row["mesh_harmonic_order"][:HARMONICS]
-        axes.vlines(orders, floor, heights, color=INK, linewidth=1.3)
-        axes.plot(orders, heights, "o", color=INK, markersize=3.5, label="periodic response, mesh orders")
-        for harmonic, (order, height) in enumerate(zip(orders, heights, strict=True), start=1):
-            axes.annotate(
-                "f_z" if harmonic == 1 else f"{harmonic} f_z", (order, height), textcoords="offset points",
-                xytext=(0, 4), ha="center", fontsize=7.5,
-            )  # fmt: skip
+        orders, heights = row["mesh_harmonic_order"], row["mesh_harmonic_amplitude_Nm"]
+        axes.vlines(orders, floor, heights, color=INK, linewidth=1.0)
+        axes.plot(orders, heights, "o", color=INK, markersize=2.6, label="periodic response")
+        for harmonic in range(1, HARMONICS + 1):
+            height = max(
+                (h for o, h in zip(orders, heights, strict=True) if abs(o - harmonic * row["teeth"]) < 0.01),
+                default=None,
+            )
+            if height is not None:
+                axes.annotate(
+                    "f_z" if harmonic == 1 else f"{harmonic} f_z", (harmonic * row["teeth"], height),
+                    textcoords="offset points", xytext=(0, 4), ha="center", fontsize=7.5,
+                )  # fmt: skip
         axes.set_yscale("log")
         highest = max([*heights, *row["amplitude_Nm"]], default=1.0)
         axes.set_ylim(max(floor, 1e-5 * highest), 6.0 * highest)

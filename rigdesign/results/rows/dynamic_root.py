@@ -24,6 +24,7 @@ def _curve(curve: DynamicRootCurve) -> dict[str, Any]:
         "gear": curve.gear,
         "gauge": curve.gauge,
         "stage": curve.stage,
+        "in_motion": curve.in_motion,
         "pinion_speed_rpm": curve.pinion_speed * RPM,
         "highest_MPa": max(curve.dynamic) * MPA,
         "highest_quasi_static_MPa": max(curve.quasi_static) * MPA,
