@@ -12,16 +12,20 @@ from dynamics.bearing.protocol import BearingOperation, HeatStar, OilSupply
 from dynamics.bearing.rolling import RollingBearing
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
 from dynamics.bearing.rolling_heat import SeatConductances, shaft_path
+from dynamics.elastic_rig.statics import static_deflection
 from rigdesign import load_case
+from rigdesign.case import Case
 from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_heat import conductances
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.shaft_loads import shaft_loads
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
     heat_into_films,
@@ -34,6 +38,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.transient.oil import oil_conditions
 from tests.builders.rolling_rig import FED, GREASE, SPLASH, rolling_case
+from tests.builders.shaft_weight import weight_on_bearing
 from thermal.conduction.steady import solve_steady
 
 OIL = OilSupply(
@@ -169,7 +174,8 @@ def test_axial_force_goes_to_the_locating_bearing_and_tilts_the_shaft(tmp_path: 
     axial = torque / pair.gears[0].reference_radius * math.tan(math.radians(15.0))
     assert loads["test.pinion_rear"].axial == pytest.approx(axial, rel=1e-9)
     assert loads["test.pinion_front"].axial == 0.0
-    weight = 9.81 * (0.5 * rig.shaft_mass("test_pinion") + 0.5 * pair.masses[0])
+    assert rig.drivetrain is not None
+    weight = weight_on_bearing(rig, "test.pinion_front", rig.drivetrain.gear("test.pinion").mass)
     force = 0.5 * torque / pair.base_radii[0]
     alpha = pair.working_pressure_angle
     by_hand = math.hypot(
@@ -198,7 +204,7 @@ def test_bearings_that_press_each_other_share_the_axial_force_of_the_gears(
     rig = build_rig(load_case(path), "quick")
     state = initial_state(rig, held_points(rig)[0])
     front, rear = (bearing_loads(rig, state)[name] for name in others)
-    gears = axial_force(rig, "test", "test_pinion", state)
+    gears = axial_force(shaft_loads(rig, "test", "test_pinion", state))
     own = [share * load.radial for share, load in zip(induced, (front, rear), strict=True)]
     assert gears > 0.0 and rear.axial - front.axial == pytest.approx(gears)
     assert rear.axial == pytest.approx(
@@ -222,3 +228,68 @@ def test_a_sump_that_finds_its_temperature_takes_what_the_bearings_leave_in_the_
     sumps = sump_temperatures(rig, {"test": field})
     streams = oil_streams(rig, losses.losses, films, none | heat_into_oil(field), sumps)
     assert next(s.heat for s in streams if s.name == "test.gear_oil") == pytest.approx(0.0, abs=1e-3)
+
+
+def tapered(tmp_path: Path, arrangement: str) -> Case:
+    """Single-helical gears on tapered roller bearings of a stated arrangement."""
+    path = rolling_case(
+        tmp_path,
+        dip=False,
+        test_oil=FED,
+        slave_oil=FED,
+        others={"test.pinion_front": "30206", "test.pinion_rear": "30306"},
+    )
+    text = path.read_text().replace(
+        'normal_module = "4.5 mm"', 'normal_module = "4.35 mm", helix_angle = "15 deg"'
+    )
+    path.write_text(text)
+    return load_case(path).with_value("gearboxes.test.bearings.pinion_front.arrangement", arrangement)
+
+
+@pytest.mark.parametrize("arrangement", ["back_to_back", "face_to_face"])
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_hand_and_arrangement_say_which_tapered_bearing_the_gears_press(
+    tmp_path: Path, arrangement: str, hand: str
+) -> None:
+    """Forces of the shaft on both bearings and of the gears balance along x; back to back the shaft pulls the front
+    bearing rearwards."""
+    case = tapered(tmp_path, arrangement).with_value("gearboxes.test.gears.pinion.helix_hand", hand)
+    rig = build_rig(case, "quick")
+    state = initial_state(rig, held_points(rig)[0])
+    loads = bearing_loads(rig, state)
+    front, rear = loads["test.pinion_front"], loads["test.pinion_rear"]
+    pushed = sum(load.axial for load in shaft_loads(rig, "test", "test_pinion", state))
+    assert abs(pushed) > 100.0
+    assert front.axial_sense * front.axial + rear.axial_sense * rear.axial == pytest.approx(pushed)
+    outwards = 1.0 if arrangement == "back_to_back" else -1.0
+    assert (front.axial_sense, rear.axial_sense) == (outwards, -outwards)
+    for load, share in ((front, 1.0 / 3.2), (rear, 1.0 / 3.8)):
+        assert load.axial >= share * load.radial * (1.0 - 1e-9)
+
+
+def test_tapered_bearings_hold_their_shaft_axially_by_their_rollers(tmp_path: Path) -> None:
+    """The axial stiffness of the shaft is that of both rows: one newton moves it by 1 / (k_front + k_rear), where
+    turning it out of the way is locked; a spring of its own is left to the other shafts."""
+    case = tapered(tmp_path, "face_to_face")
+    rig = replace(build_rig(case, "quick"), shaft_model="elastic")
+    point = held_points(rig)[0]
+    state = initial_state(rig, point)
+    bearings = solve_bearings(rig, point, state)
+    located = {location.bearing for location in rig.elastic.rig.axial_locations}
+    pair = {"test.pinion_front", "test.pinion_rear"}
+    assert rig.elastic.pressed == pair and located.isdisjoint(pair)
+    running = running_state(rig, point, state, bearings)
+    stiffness = {name: running.bearings[name].padded()[0] for name in pair}
+    assert all(
+        matrix[2, 2] > 1e7 and abs(matrix[2, 0]) + abs(matrix[2, 1]) > 1e6 for matrix in stiffness.values()
+    )
+    model = rig.elastic.model
+    axial = model.row("test.pinion_front", "u_x")
+    bent = static_deflection(model, running, axial).deflection
+    stiff = sum(matrix[2, :] @ (model.ports[name] @ bent) for name, matrix in stiffness.items())
+    assert stiff == pytest.approx(1.0, rel=1e-6)
+    assert (
+        1.0 / sum(m[2, 2] for m in stiffness.values())
+        < axial @ bent
+        < 4.0 / sum(m[2, 2] for m in stiffness.values())
+    )
