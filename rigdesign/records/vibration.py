@@ -10,11 +10,13 @@ from rigdesign.records.contact_in_motion import contact_loss_maps
 from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
+from rigdesign.records.press_fits import press_fits
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.results.campbell import CampbellRecord
 from rigdesign.results.contact_in_motion import ContactLossMap
 from rigdesign.results.dwell import DwellRecord
 from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.press_fit import PressFitCapacity
 from rigdesign.results.section_torques import SectionTorqueRecord
 from rigdesign.rig.model import Rig
 
@@ -29,6 +31,7 @@ class LoopVibration:
     torques: SectionTorqueRecord
     dwell: DwellRecord
     maps: Maps
+    press_fits: tuple[PressFitCapacity, ...]
 
 
 def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibration:
@@ -43,4 +46,10 @@ def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibrat
         diagram, maps = tasks.results()
     torques = section_torque_record(rig, run, loads, states)
     assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
-    return LoopVibration(diagram, torques, dwell_record(rig, run, loads, torques, diagram), maps)
+    return LoopVibration(
+        campbell=diagram,
+        torques=torques,
+        dwell=dwell_record(rig, run, loads, torques, diagram),
+        maps=maps,
+        press_fits=tuple(press_fits(rig, run, torques)),
+    )

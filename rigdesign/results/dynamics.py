@@ -184,3 +184,7 @@ class DynamicsResult:
     """Least torque of a mesh over its mean, and share of the time without contact: {gearbox, pinion_speed_rpm,
     torque_Nm, least_share, lift_off_share: rows over torque of columns over speed, None without a response}; empty at
     fidelity quick and where the response repeats after a revolution."""
+    press_fits: list[dict[str, Any]] = field(default_factory=list)
+    """Of every gear with an interference, at the held stages: {gear, stage, interference_um, interference_hot_um,
+    gear_degC, shaft_degC, pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
+    without torque)}."""
