@@ -43,8 +43,8 @@ def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibrat
         partial(contact_loss_maps, rig, run, states),
     ]
     with BackgroundTasks(works) as tasks:
+        torques = section_torque_record(rig, run, loads, states)
         diagram, maps = tasks.results()
-    torques = section_torque_record(rig, run, loads, states)
     assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
     return LoopVibration(
         campbell=diagram,

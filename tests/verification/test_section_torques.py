@@ -46,7 +46,7 @@ def mesh_loads(point: CurvePoint) -> np.ndarray:
 
 
 def harmonic(values: np.ndarray, number: int) -> np.ndarray:
-    return np.fft.rfft(values, axis=-1)[..., number] / values.shape[-1]
+    return np.asarray(np.fft.rfft(values, axis=-1)[..., number] / values.shape[-1])
 
 
 def base_frequency(point: CurvePoint) -> float:
