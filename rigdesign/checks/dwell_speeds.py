@@ -5,7 +5,14 @@ from dataclasses import dataclass, replace
 
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule
-from rigdesign.records.dwell_speeds import NEAR, SHAFT_SHARE, bounds_of, mesh_shares, near_shares
+from rigdesign.records.dwell_speeds import (
+    NEAR,
+    SHAFT_SHARE,
+    bounds_of,
+    mesh_shares,
+    near_shares,
+    order_resonances,
+)
 from rigdesign.records.resonance_bands import resonances
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -27,7 +34,7 @@ DWELL = DwellRule(
     procedure=(
         "Periodic response over speed: a peak counts where K_V exceeds one by more than dangerous_force_share, or "
         f"where half the peak-to-peak torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the "
-        "mean torque of the loop. The value is the distance of the nearest one from a dwell, as a share of its speed; "
+        "mean torque of the loop; so does a turning or coupling order that meets a mode of low damping. The value is the distance of the nearest one from a dwell, as a share of its speed; "
         "where there is none, as far as was looked."
     ),
     unit=NUMBER,
@@ -49,7 +56,7 @@ def checks(solved: SolvedRig) -> list[Check]:
 def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     """Of every stage that dwells within the computed speeds."""
     rig, run = solved.rig, solved.run
-    if run is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
+    if run is None or solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
     bounds = bounds_of(rig)
     reach = NEAR * bounds.margin
@@ -60,6 +67,7 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
             continue
         shares = [*mesh_shares(rig, run), *near_shares(rig, run, speed)]
         found = [one for share in shares for one in resonances(share, bounds.of(share), bounds.margin)]
+        found += order_resonances(rig, solved.loads.modes, bounds.margin)
         nearest = min(found, key=lambda one: one.distance(speed), default=None)
         if nearest is None or nearest.distance(speed) > reach:
             yield reach, f"stage {stage.name}: none within {100.0 * reach:.0f} % of its speed"

@@ -1,13 +1,16 @@
 """At which speeds the rig may dwell: bands of the response to avoid, stages in them, the ramp that follows."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.drivetrain.modes import LoopMode
 from dynamics.response.section_torque import section_torques
 from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.records.campbell import excitation_orders
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.ramp_steps import RampLimits, ramp_steps
@@ -147,6 +150,26 @@ def near_shares(rig: Rig, run: DynamicRun, speed: float) -> Iterator[DynamicShar
     speeds = np.array([point.speed for point in points])
     for name, own in places.items():
         yield DynamicShare("shaft torque", name, speeds, share[:, own].max(axis=1))
+
+
+def order_resonances(rig: Rig, modes: Sequence[LoopMode], margin: float) -> Iterator[AvoidedResonance]:
+    """Turning and coupling orders that meet a lively mode of a held point, wherever it lies.
+
+    modes : of the closed loop there, with the rigid rotation
+    """
+    oscillating = [mode for mode in modes if mode.frequency > 0.0]
+    for number, mode in enumerate(oscillating, start=1):
+        for order in excitation_orders(rig):
+            if order.kind != "mesh" and mode.damping_ratio < LIVELY:
+                speed = 2.0 * math.pi * mode.frequency / order.cycles
+                yield AvoidedResonance(
+                    kind="shaft order",
+                    where=f"{order.kind} {', '.join(order.of)}, order {order.harmonic:g}, mode {number} ({mode.name})",
+                    speed=speed,
+                    share=None,
+                    low=speed * (1.0 - margin),
+                    high=speed * (1.0 + margin),
+                )
 
 
 def _order_crossings(diagram: CampbellRecord, margin: float) -> list[AvoidedResonance]:

@@ -93,10 +93,11 @@ def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
     band = _band(found.bands, wanted)
     if band is None or wanted >= test:
         return wanted, why
-    windows = [(low, high) for low, high in found.safe if low <= test]
+    least = wanted if floating else 0.0
+    windows = [(max(low, least), high) for low, high in found.safe if low <= test and high > least]
     safe = nearest_safe(windows, wanted)
     if safe is None:
-        return wanted, f"{why}; no speed below the test speed lies outside the avoided bands"
+        return wanted, f"{why}; no speed from there to the test speed lies outside the avoided bands"
     return safe, f"{why}; moved from {wanted * RPM:.0f} rpm, which lies in the band {_span(band)}"
 
 
