@@ -34,8 +34,9 @@ DWELL = DwellRule(
     procedure=(
         "Periodic response over speed: a peak counts where K_V exceeds one by more than dangerous_force_share, or "
         f"where half the peak-to-peak torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the "
-        "mean torque of the loop; so does a turning or coupling order that meets a mode of low damping. The value is the distance of the nearest one from a dwell, as a share of its speed; "
-        "where there is none, as far as was looked."
+        "mean torque of the loop; so does a turning or coupling order that meets a mode of low damping. The "
+        "value is the distance of the nearest one from a dwell, as a share of its speed, 0 where the dwell itself is "
+        "above such a share; where there is none, as far as was looked."
     ),
     unit=NUMBER,
     group="dynamics",
@@ -68,12 +69,12 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
         shares = [*mesh_shares(rig, run), *near_shares(rig, run, speed)]
         found = [one for share in shares for one in resonances(share, bounds.of(share), bounds.margin)]
         found += order_resonances(rig, solved.loads.modes, bounds.margin)
-        nearest = min(found, key=lambda one: one.distance(speed), default=None)
-        if nearest is None or nearest.distance(speed) > reach:
+        nearest = min(found, key=lambda one: one.distance(speed, bounds.margin), default=None)
+        if nearest is None or nearest.distance(speed, bounds.margin) > reach:
             yield reach, f"stage {stage.name}: none within {100.0 * reach:.0f} % of its speed"
         else:
             yield (
-                nearest.distance(speed),
+                nearest.distance(speed, bounds.margin),
                 f"stage {stage.name} at {speed * RPM:.0f} rpm: {nearest.kind} of {nearest.where} peaks at "
                 f"{nearest.speed * RPM:.0f} rpm",
             )

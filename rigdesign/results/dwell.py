@@ -1,5 +1,6 @@
 """At which speeds a rig may dwell, and the ramp that follows: SI records. Speeds are those of the first pinion."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -23,9 +24,14 @@ class AvoidedResonance:
     high: float
     """[rad/s]"""
 
-    def distance(self, speed: float) -> float:
-        """Of a speed from the peak, as a share of that speed [-]; 0 within its width above the stated share."""
-        return abs(speed - self.speed) / speed
+    def distance(self, speed: float, margin: float = math.inf) -> float:
+        """Of a speed from the peak, as a share of that speed [-].
+
+        margin : by which the band goes beyond the peak at least; within the band and beyond it the response itself is
+            above the stated share, and the distance 0
+        """
+        beyond = abs(speed - self.speed) > margin * self.speed
+        return 0.0 if beyond and self.low < speed < self.high else abs(speed - self.speed) / speed
 
 
 @dataclass(frozen=True, kw_only=True)
