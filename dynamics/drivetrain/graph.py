@@ -139,6 +139,11 @@ def joints(drivetrain: Drivetrain) -> tuple[TorsionalJoint, ...]:
     return tuple(_Builder(drivetrain).joints)
 
 
+def shaft_chains(drivetrain: Drivetrain) -> dict[str, ShaftChain]:
+    """Stations of every shaft, as `assemble` numbers them."""
+    return _Builder(drivetrain).chains
+
+
 @dataclass
 class _Builder:
     """Collects bodies and joints of one assembly."""

@@ -13,7 +13,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.modes import LoopMode, ModeShape, energy_shares, modes_of_loop, shape_name
+from dynamics.drivetrain.modes import (
+    Describe,
+    LoopMode,
+    ModeShape,
+    energy_shares,
+    modes_of_loop,
+    shape_name,
+)
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.mesh.law import MeshLaw
@@ -35,7 +42,12 @@ def elastic_loop_modes(
     Raises DrivetrainError as `RunningState.check`.
     """
     system = seen.system(state)
-    return modes_of_loop(system, laws, highest_frequency, _Description(seen, system, state.bearings).of)
+    return modes_of_loop(system, laws, highest_frequency, description(seen, system, state))
+
+
+def description(seen: SeenRig, system: LinearSystem, state: RunningState) -> Describe:
+    """What names the shapes of a system made of a rig at a running state."""
+    return _Description(seen, system, state.bearings).of
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,8 @@ class Numerics(Part):
     """Last speed of the dynamic factor curve."""
     curve_speeds: Annotated[int, Field(ge=2, le=5000)] = 200
     """Speeds between both, evenly spaced; resonances get more."""
+    root_stress_speeds: tuple[Speed, ...] = ()
+    """Speeds at which root stress and strain rate are shown over the rolling angle, in addition to the held stages."""
     response_period: Literal["mesh", "revolution", "hunting_cycle"] = "mesh"
     """What the periodic response repeats after. When left out: a mesh; in a loop whose meshes pass teeth at different
     rates a revolution of the pinion of ``torque_at``, or the hunting cycle where that ends on part of a tooth."""

@@ -15,8 +15,8 @@ Influence = Literal[
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
-MOVE_NO_CHECK = ("gearboxes.*.gears.*.strain_gauges",)
-"""Inputs of what is measured, not of the rig."""
+MOVE_NO_CHECK = ("gearboxes.*.gears.*.strain_gauges", "numerics.root_stress_speeds")
+"""Inputs of what is measured or shown, not of the rig."""
 INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("limits.bearing.start_torque_limit",): ("start torque",),
     ("limits.ramp",): ("ramp limits",),

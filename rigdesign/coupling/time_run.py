@@ -41,6 +41,8 @@ ELASTIC_CUTOFF, MESH_ORDERS = 20e3, 1.25
 """Highest mode of the time run of elastic shafts at least [Hz], and per mesh frequency of the test speed."""
 DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
+MOST_SAMPLES = 4e6
+"""Samples of the time run up to which the mesh torques are kept for their spectra; a longer run has none."""
 RPM = np.pi / 30.0
 COMMAND_INTERVAL = 1e-3
 """Interval of the command samples [s]."""
@@ -101,7 +103,7 @@ def run_ramp(
             sample_rate=numerics.sample_rate,
             substeps=numerics.internal_steps,
             window=WINDOW,
-            keep_channels=False,
+            keep_channels=command.time[-1] * numerics.sample_rate <= MOST_SAMPLES,
             keep_accounts=False,
             cutoff=_cutoff(rig),
         ),

@@ -533,6 +533,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "numerics.curve_speed_start": _at(records__curves="first speed of the response over speed"),
     "numerics.curve_speed_end": _at(records__curves="last speed of the response over speed"),
     "numerics.curve_speeds": _at(records__curves="density of the response over speed"),
+    "numerics.root_stress_speeds": _at(
+        records__dynamic_root="speeds at which root stress and strain rate are shown over the rolling angle"
+    ),
     "numerics.response_period": _at(
         coupling__tooth_deviations="which tooth deviations the periodic response holds"
     ),

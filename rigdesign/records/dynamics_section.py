@@ -7,18 +7,29 @@ from typing import Any
 
 from dynamics.drivetrain.modes import order_crossings, sampling_audit, shaft_frequencies
 from rigdesign.coupling.loop import PointResult
+from rigdesign.records.contact_in_motion import pair_shares
 from rigdesign.records.curves import factor_points, iso_factor, own_ratio
+from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.reversed_bending import bent_both_ways
+from rigdesign.records.spectra import held_spectra, waterfalls
 from rigdesign.records.time_run import ramp_history
+from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
 from rigdesign.results.rows import dynamics as rows
+from rigdesign.results.rows.campbell import campbell_row
+from rigdesign.results.rows.contact_in_motion import contact_loss_row, pair_share_row
+from rigdesign.results.rows.dwell import dwell_row
+from rigdesign.results.rows.dynamic_root import dynamic_root_rows
 from rigdesign.results.rows.flank_rating import flank_rating_row
 from rigdesign.results.rows.loaded_contact import loaded_contact_row
+from rigdesign.results.rows.press_fit import press_fit_row
+from rigdesign.results.rows.section_torques import section_torque_rows
+from rigdesign.results.rows.spectra import spectrum_row, waterfall_row
 from rigdesign.results.rows.tooth_history import tooth_history_row
 from rigdesign.rig.model import Rig
 
@@ -32,6 +43,7 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
+    vibration = loop_vibration(rig, run, loads)
     return DynamicsResult(
         gearboxes={
             rig.mesh_labels[name]: _mesh_section(rig, run, mesh, loads.meshes[rig.mesh_labels[name]])
@@ -58,6 +70,15 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
             for gear, history in loads.teeth.items()
         ],
         loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
+        campbell=campbell_row(vibration.campbell),
+        section_torques=section_torque_rows(vibration.torques),
+        dwell=dwell_row(vibration.dwell),
+        press_fits=[press_fit_row(found) for found in vibration.press_fits],
+        contact_loss_maps=[contact_loss_row(found) for found in vibration.maps],
+        pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],
+        waterfalls=[waterfall_row(found) for found in waterfalls(rig, run)],
+        spectra=[spectrum_row(found) for found in held_spectra(rig, run)],
+        dynamic_root=dynamic_root_rows(dynamic_root(rig, run)),
     )
 
 

@@ -183,6 +183,13 @@ def _angle_between(rig: Rig, gear: str, first: GearInMesh, other: GearInMesh) ->
 
 def mean_stress(rig: Rig, place: GearInMesh, speed: float) -> MeanRootStress:
     """Tension that the root of a gear holds at a speed of the reference gear [rad/s]."""
+    disc, fit = seated_gear(rig, place)
+    gear = rig.mesh_gear(place.mesh, place.index)
+    return mean_root_stress(disc, rig.shaft_speed(gear.shaft, speed), fit)
+
+
+def seated_gear(rig: Rig, place: GearInMesh) -> tuple[GearDisc, PressFit | None]:
+    """A gear as a turning disc, and its press fit where the case states an interference."""
     pair, gear = rig.pairs[rig.mesh_names[place.mesh]], rig.mesh_gear(place.mesh, place.index)
     disc = GearDisc(
         bore=0.5 * gear.bore_diameter,
@@ -195,10 +202,10 @@ def mean_stress(rig: Rig, place: GearInMesh, speed: float) -> MeanRootStress:
     if gear.shaft_interference > 0.0:
         fit = PressFit(
             interference=gear.shaft_interference,
-            shaft=_solid(_shaft_material(rig, gear.shaft) or rig.materials[gear.material]),
+            shaft=_solid(shaft_material(rig, gear.shaft) or rig.materials[gear.material]),
             shaft_bore=_shaft_bore(rig, gear.shaft, gear.position),
         )
-    return mean_root_stress(disc, rig.shaft_speed(gear.shaft, speed), fit)
+    return disc, fit
 
 
 def sensitivity(rig: Rig, place: GearInMesh) -> float:
@@ -214,7 +221,8 @@ def _solid(material: Material) -> Solid:
     return Solid(young=material.elastic_modulus, poisson=material.poisson_ratio, density=material.density)
 
 
-def _shaft_material(rig: Rig, shaft: str) -> Material | None:
+def shaft_material(rig: Rig, shaft: str) -> Material | None:
+    """Of a shaft of the drivetrain; None of one that is not part of it."""
     power = rig.case.drivetrain
     return None if power is None or shaft not in power.shafts else rig.materials[power.shafts[shaft].material]
 

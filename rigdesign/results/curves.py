@@ -1,6 +1,6 @@
 """The curves of a result as columns: what curves/*.csv holds and `RunResult.curves` gives as arrays."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from rigdesign.base.output_folder import file_stem
@@ -79,6 +79,32 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
         )
     if dynamics.ramp is not None:
         yield "ramp", _ramp(dynamics.ramp)
+    if dynamics.campbell is not None:
+        yield "campbell", _campbell(dynamics.campbell)
+    for spectrum in dynamics.spectra:
+        if spectrum["order"]:
+            yield (
+                file_stem("spectrum", spectrum["gearbox"], spectrum["stage"]),
+                {"order of the pinion [1]": spectrum["order"], "amplitude [Nm]": spectrum["amplitude_Nm"]},
+            )
+    for shared in dynamics.pair_shares:
+        yield (
+            file_stem("pair_share", shared["gearbox"], shared["stage"]),
+            {
+                "rolling angle of the pinion [deg]": shared["rolling_angle_deg"],
+                "share [1]": shared["share"],
+                "share quasi-static [1]": shared["share_quasi_static"],
+                "force over mean [1]": shared["force_over_mean"],
+            },
+        )
+    for loss in dynamics.contact_loss_maps:
+        yield file_stem("contact_loss", loss["gearbox"]), _contact_loss(loss)
+    for waterfall in dynamics.waterfalls:
+        yield file_stem("waterfall", waterfall["gearbox"]), _waterfall(waterfall)
+    if dynamics.dynamic_root is not None and dynamics.dynamic_root["curves"]:
+        yield "dynamic_root_stress", _dynamic_root(dynamics.dynamic_root["curves"])
+    if dynamics.section_torques is not None:
+        yield "section_torques", _section_torques(dynamics.section_torques["over_speed"])
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
@@ -119,6 +145,74 @@ def _ramp(ramp: RampHistory) -> Columns:
             for bound, values in envelopes.items()
         },
     }
+
+
+def _campbell(campbell: Mapping[str, Any]) -> Columns:
+    """A mode that is damped out at a speed has no value there."""
+    columns: Columns = {"speed [rpm]": list(campbell["speed_rpm"])}
+    for mode in campbell["modes"]:
+        columns[f"mode {mode['mode']} frequency [Hz]"] = list(mode["frequency_Hz"])
+        columns[f"mode {mode['mode']} damping ratio [1]"] = list(mode["damping_ratio"])
+    return columns
+
+
+def _contact_loss(loss: Mapping[str, Any]) -> Columns:
+    """All points of the grid below each other."""
+    return _columns(
+        (
+            "torque [Nm]",
+            "pinion speed [rpm]",
+            "least torque over mean [1]",
+            "share of time without contact [1]",
+        ),
+        (
+            (torque, speed, least, lifted)
+            for torque, row, lift in zip(
+                loss["torque_Nm"], loss["least_share"], loss["lift_off_share"], strict=True
+            )
+            for speed, least, lifted in zip(loss["pinion_speed_rpm"], row, lift, strict=True)
+        ),
+    )
+
+
+def _waterfall(waterfall: Mapping[str, Any]) -> Columns:
+    """A column for every frequency, a row for every speed."""
+    columns: Columns = {"pinion speed [rpm]": list(waterfall["pinion_speed_rpm"])}
+    for frequency, values in zip(waterfall["frequency_Hz"], zip(*waterfall["amplitude_Nm"]), strict=True):
+        columns[f"amplitude at {frequency:.1f} Hz [Nm]"] = list(values)
+    return columns
+
+
+def _dynamic_root(curves: Sequence[Mapping[str, Any]]) -> Columns:
+    """All curves below each other, distinguished by the first columns."""
+    header = (
+        "gearbox", "gear", "gauge", "stage", "pinion speed [rpm]", "rolling angle [deg]", "dynamic [N/mm2]",
+        "quasi-static [N/mm2]", "strain [um/m]", "strain rate [1/s]",
+    )  # fmt: skip
+    keys = ("rolling_angle_deg", "dynamic_MPa", "quasi_static_MPa", "strain_um_m", "strain_rate_per_s")
+    return _columns(
+        header,
+        (
+            (
+                curve["gearbox"],
+                curve["gear"],
+                curve["gauge"],
+                curve["stage"],
+                curve["pinion_speed_rpm"],
+                *values,
+            )
+            for curve in curves
+            for values in zip(*(curve[key] for key in keys), strict=True)
+        ),
+    )
+
+
+def _section_torques(over_speed: Mapping[str, Any]) -> Columns:
+    columns: Columns = {"speed [rpm]": list(over_speed["speed_rpm"])}
+    for place in over_speed["places"]:
+        for key, words in (("mean", "mean"), ("half_peak_to_peak", "half peak-to-peak"), ("peak", "peak")):
+            columns[f"{place['place']} {words} [Nm]"] = list(place[f"{key}_Nm"])
+    return columns
 
 
 def _oil_power(power: OilPowerCurve) -> Columns:

@@ -150,3 +150,41 @@ class DynamicsResult:
     """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain, excited}: mesh and shaft
     orders that meet a mode of the closed loop; order_of: gearbox or shaft, speed_rpm that of its pinion or its own;
     excited: the mesh reaches the mode."""
+    campbell: dict[str, Any] | None = None
+    """Modes of the closed loop over speed, bearings as they run there: {speed_rpm (of the first pinion), modes:
+    [{mode, shape, driven_by, frequency_Hz, damping_ratio, gain: {gearbox}}], orders: [{kind, of, harmonic,
+    per_turn}], crossings: [{mode, kind, of, harmonic, speed_rpm, frequency_Hz, damping_ratio, gain}],
+    modes_left_out}; lists of modes run over speed_rpm, None where a mode is damped out."""
+    section_torques: dict[str, Any] | None = None
+    """Torque in every section of the shafts, joint and mesh, from the periodic responses: {held: [{place, kind, part,
+    from_mm, to_mm, stage, speed_rpm, mean_Nm, half_peak_to_peak_Nm, peak_Nm, time_run_peak_Nm, shear_stress_MPa}],
+    over_speed: {torque, speed_rpm, places: [{place, ..., mean_Nm, half_peak_to_peak_Nm, peak_Nm}]}}; of a section
+    where it is highest."""
+    dynamic_root: dict[str, Any] | None = None
+    """Root stress in motion over the rolling angle at the held stages and the speeds of numerics.root_stress_speeds:
+    {curves: [{gearbox, gear, gauge (empty: the most stressed point), stage (empty: a speed asked for),
+    pinion_speed_rpm, highest_MPa, highest_quasi_static_MPa, ratio, highest_strain_um_m, highest_strain_rate_per_s,
+    rolling_angle_deg, dynamic_MPa, quasi_static_MPa, strain_um_m, strain_rate_per_s, source}], missing: [{speed_rpm,
+    reason}]}."""
+    dwell: dict[str, Any] | None = None
+    """Speeds to avoid and the recommended ramp, pinion speeds: {share_limit, shaft_share_limit, margin, low_rpm,
+    high_rpm, bands: [{low_rpm, high_rpm, resonances: [{kind, where, speed_rpm, share, low_rpm, high_rpm}]}],
+    safe: [{low_rpm, high_rpm}], stages: [{stage, kind, speed_rpm, computed, band, nearest_safe_rpm}], ramp: [{step,
+    action, speed_rpm, torque_Nm, reason}], highest: {speed_rpm, kind: share over speed}}."""
+    waterfalls: list[dict[str, Any]] = field(default_factory=list)
+    """Spectrum of the mesh torque over the run-up, from the time run: {gearbox, stage, pinion_speed_rpm,
+    frequency_Hz, amplitude_Nm: rows over speed of columns over frequency, teeth}; empty where no torque is kept."""
+    spectra: list[dict[str, Any]] = field(default_factory=list)
+    """At the held stages: {gearbox, stage, pinion_speed_rpm, mean_Nm, teeth, order, amplitude_Nm: of the time run
+    over the order of the pinion; mesh_harmonic_order, mesh_harmonic_amplitude_Nm: of the periodic response}."""
+    pair_shares: list[dict[str, Any]] = field(default_factory=list)
+    """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
+    force at that moment, in motion), share_quasi_static, force_over_mean}."""
+    contact_loss_maps: list[dict[str, Any]] = field(default_factory=list)
+    """Least torque of a mesh over its mean, and share of the time without contact: {gearbox, pinion_speed_rpm,
+    torque_Nm, least_share, lift_off_share: rows over torque of columns over speed, None without a response}; empty at
+    fidelity quick and where the response repeats after a revolution."""
+    press_fits: list[dict[str, Any]] = field(default_factory=list)
+    """Of every gear with an interference, at the held stages: {gear, stage, interference_um, interference_hot_um,
+    gear_degC, shaft_degC, pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
+    without torque)}."""

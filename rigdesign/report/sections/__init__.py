@@ -16,6 +16,7 @@ from rigdesign.report.sections.rolling_bearings import ROLLING_BEARINGS
 from rigdesign.report.sections.section import ReportSection
 from rigdesign.report.sections.temperatures import TEMPERATURE_DETAILS, TEMPERATURES
 from rigdesign.report.sections.transient import TRANSIENT
+from rigdesign.report.sections.vibration import VIBRATION, VIBRATION_DETAILS
 from rigdesign.report.sections.viewer import VIEWER
 
 SECTIONS: tuple[ReportSection, ...] = (
@@ -24,6 +25,7 @@ SECTIONS: tuple[ReportSection, ...] = (
     DRIVERS,
     RANGES,
     LOADS,
+    VIBRATION,
     LATERAL,
     LOSSES,
     OIL_CIRCUITS,
@@ -41,6 +43,7 @@ SECTIONS: tuple[ReportSection, ...] = (
     RANGE_DETAILS,
     DRIVETRAIN_INPUTS,
     LOAD_DETAILS,
+    VIBRATION_DETAILS,
     LOSS_DETAILS,
     TEMPERATURE_DETAILS,
     CLEARANCE_DETAILS,

@@ -1,0 +1,83 @@
+"""Check of the speeds at which the rig dwells against resonances of meshes, shafts and joints."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
+from rigdesign.checks.rules import Rule
+from rigdesign.records.dwell_speeds import (
+    NEAR,
+    SHAFT_SHARE,
+    bounds_of,
+    mesh_shares,
+    near_shares,
+    order_resonances,
+)
+from rigdesign.records.resonance_bands import resonances
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check
+from rigdesign.results.units import NUMBER, RPM
+
+
+@dataclass(frozen=True, kw_only=True)
+class DwellRule(RuleFamily):
+    """A rule of good practice: it warns."""
+
+    def rule(self, limit: float | None, place: str = "") -> Rule:
+        """The rule with its limit."""
+        return replace(super().rule(limit, place), warn_only=True)
+
+
+DWELL = DwellRule(
+    key="dynamics.dwell_speed",
+    title="distance of dwell speeds from resonances of meshes, shafts and joints",
+    procedure=(
+        "Periodic response over speed: a peak counts where K_V exceeds one by more than dangerous_force_share, or "
+        f"where half the peak-to-peak torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the "
+        "mean torque of the loop; so does a turning or coupling order that meets a mode of low damping. The "
+        "value is the distance of the nearest one from a dwell, as a share of its speed, 0 where the dwell itself is "
+        "above such a share; where there is none, as far as was looked."
+    ),
+    unit=NUMBER,
+    group="dynamics",
+    source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
+    comparison=">=",
+    needs=LOADS,
+    absent="no stage dwells at a speed whose response is computed",
+    moved_by=frozenset({"start torque", "resonance limits"}),
+)
+
+
+def checks(solved: SolvedRig) -> list[Check]:
+    """The one check of the rig."""
+    rule = DWELL.rule(solved.case.limits.dynamics.resonance_distance_minimum)
+    return [DWELL.worst(solved, rule, _distances(solved))]
+
+
+def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
+    """Of every stage that dwells within the computed speeds."""
+    rig, run = solved.rig, solved.run
+    if run is None or solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
+        return
+    bounds = bounds_of(rig)
+    reach = NEAR * bounds.margin
+    speeds = run.curves.response.speeds
+    for stage in rig.case.schedule.resolved():
+        speed = rig.pinion_speed(stage.speed_end)
+        if not (stage.kind == "dwell" or stage.held) or not speeds[0] <= speed <= speeds[-1]:
+            continue
+        shares = [*mesh_shares(rig, run), *near_shares(rig, run, speed)]
+        found = [one for share in shares for one in resonances(share, bounds.of(share), bounds.margin)]
+        found += order_resonances(rig, solved.loads.modes, bounds.margin)
+        nearest = min(found, key=lambda one: one.distance(speed, bounds.margin), default=None)
+        if nearest is None or nearest.distance(speed, bounds.margin) > reach:
+            yield reach, f"stage {stage.name}: none within {100.0 * reach:.0f} % of its speed"
+        else:
+            yield (
+                nearest.distance(speed, bounds.margin),
+                f"stage {stage.name} at {speed * RPM:.0f} rpm: {nearest.kind} of {nearest.where} peaks at "
+                f"{nearest.speed * RPM:.0f} rpm",
+            )
+
+
+REGISTRY.register(Topic(order=11, families=(DWELL,), checks=checks))

@@ -1,0 +1,57 @@
+"""The linear loop at a few speeds, bearings as they run there under the torque of the governing held point."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.elastic_rig.running_state import RunningState
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.loop_system import running_state
+from rigdesign.coupling.time_run import held_points
+from rigdesign.rig.model import Rig
+
+COUNT = 6
+"""Speeds over the range, evenly in their logarithm; those of the held stages come on top."""
+SLOWEST = 0.04
+"""Lowest speed, as a share of the highest: bearings below are those there."""
+SAME = 0.03
+"""Share of a held speed within which another speed is left out."""
+
+
+@dataclass(frozen=True)
+class LoopState:
+    """The loop at a stated speed [rad/s]; state : None where the shafts only twist."""
+
+    speed: float
+    system: LinearSystem
+    state: RunningState | None
+
+
+def loop_states(rig: Rig, held: PointResult, top: float) -> tuple[LoopState, ...]:
+    """States up to a stated speed [rad/s], rising.
+
+    Shafts that only twist have one loop for all speeds: its lowest and highest.
+    """
+    at_held = [point.speed for point in held_points(rig) if 0.0 < point.speed <= top]
+    grid = np.geomspace(SLOWEST * top, top, COUNT).tolist()
+    if rig.shaft_model == "torsional":
+        assert rig.system is not None
+        return tuple(LoopState(speed, rig.system, None) for speed in sorted({grid[0], *at_held, top}))
+    free = [speed for speed in grid if all(abs(speed - own) > SAME * own for own in at_held)]
+    return tuple(_at(rig, held, speed) for speed in sorted({*free, *at_held}))
+
+
+def _at(rig: Rig, held: PointResult, speed: float) -> LoopState:
+    last = held.last
+    point = replace(last.point, speed=speed)
+    bearings = last.bearings if speed == last.point.speed else solve_bearings(rig, point, last.coupling_state)
+    state = running_state(rig, point, last.coupling_state, bearings)
+    return LoopState(speed, rig.elastic.seen.system(state), state)
+
+
+def nearest(states: Sequence[LoopState], speed: float) -> LoopState:
+    """The state whose speed is nearest in its logarithm."""
+    return min(states, key=lambda state: abs(np.log(state.speed / speed)))

@@ -1,0 +1,154 @@
+"""Dynamic torque in every section of the shafts, every joint and mesh: held stages and over speed.
+
+From the periodic responses: the forces of the meshes drive the linear loop between them. Over speed the loop has the
+matrices of the nearest of a few speeds (`loop_states`), the forces are those of every speed.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.twist_rows import TorqueSection, TwistRows, torsional_twist_rows
+from dynamics.elastic_rig.twist_rows import elastic_twist_rows
+from dynamics.response.section_torque import SectionTorques, section_torques
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.coupling.loads import laws_of, shifted_laws
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loop_states import LoopState, nearest
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.section_torques import (
+    HeldTorque,
+    SectionTorqueRecord,
+    TorqueOverSpeed,
+    TorquePlace,
+    TorqueSwing,
+)
+from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
+MOST_SPEEDS = 150
+"""Speeds of the curves at most; peaks of the mesh torque are always among them."""
+
+
+def section_torque_record(
+    rig: Rig, run: DynamicRun, loads: DynamicLoads, states: Sequence[LoopState]
+) -> SectionTorqueRecord:
+    """Torques of the held points of a run and of its governing curve."""
+    held: list[HeldTorque] = []
+    for point in run.points:
+        held += _held(rig, point, loads)
+    points = chosen(run.curves.response.points, MOST_SPEEDS)
+    return SectionTorqueRecord(
+        held=tuple(held),
+        torque=next(iter(run.curves.named)),
+        speeds=tuple(point.speed for point in points),
+        curves=tuple(_curves(rig, run, points, states)),
+    )
+
+
+def chosen(points: Sequence[CurvePoint], most: int) -> list[CurvePoint]:
+    """At most so many points of a curve, evenly by their number, and all at which the torque of a mesh peaks."""
+    if len(points) <= most:
+        return list(points)
+    swing = np.array([point.dynamic_factor_half_peak_to_peak for point in points])
+    inner = (swing[1:-1] >= swing[:-2]) & (swing[1:-1] >= swing[2:])
+    peaks = set((np.flatnonzero(inner.any(axis=1)) + 1).tolist())
+    rest = max(2, most - len(peaks))
+    even = set(np.linspace(0, len(points) - 1, rest).round().astype(int).tolist())
+    return [points[i] for i in sorted(peaks | even)]
+
+
+def twist_rows_of(rig: Rig, system: LinearSystem) -> TwistRows:
+    """Rows of the torques on the freedoms of a system of the rig."""
+    assert rig.drivetrain is not None
+    if rig.shaft_model == "torsional":
+        return torsional_twist_rows(rig.drivetrain)
+    return elastic_twist_rows(rig.elastic.seen, system)
+
+
+def _held(rig: Rig, point: PointResult, loads: DynamicLoads) -> Iterator[HeldTorque]:
+    last = point.last
+    assert last.system is not None and last.response is not None and point.setting is not None
+    laws = periodic_laws(rig, shifted_laws(rig, last.models, point.setting))
+    loop = section_torques(last.system, laws, twist_rows_of(rig, last.system))
+    torque = loop.over_period(last.response, last.drags)
+    speed = rig.pinion_speed(point.point.speed)
+    for place, section, swing in _swings(loop.rows, torque):
+        stress = section.shear_per_torque * swing.peak if section.section is not None else None
+        yield HeldTorque(
+            place=place,
+            stage=point.point.stage,
+            speed=speed,
+            swing=swing,
+            run_peak=None,
+            shear_stress=stress,
+        )
+    for mesh, name in enumerate(rig.mesh_names):
+        label = rig.mesh_labels[name]
+        stages = {load.stage: load.peak for load in loads.meshes[label].stage_loads}
+        yield HeldTorque(
+            place=TorquePlace(kind="mesh", part=label),
+            stage=point.point.stage,
+            speed=speed,
+            swing=mesh_swing(last.response, mesh),
+            run_peak=stages.get(point.point.stage),
+            shear_stress=None,
+        )
+
+
+def mesh_swing(point: CurvePoint, mesh: int) -> TorqueSwing:
+    """Torque of a mesh at its pinion."""
+    high, low = float(point.maximum[mesh]), float(point.minimum[mesh])
+    return TorqueSwing(
+        mean=abs(float(point.mean[mesh])), half_peak_to_peak=0.5 * (high - low), peak=max(abs(high), abs(low))
+    )
+
+
+def _swings(rows: TwistRows, torque: Array) -> Iterator[tuple[TorquePlace, TorqueSection, TorqueSwing]]:
+    """Of every section and joint, from the torque (r, count) of their springs: that with the highest peak."""
+    peak = np.abs(torque).max(axis=1)
+    members: dict[TorqueSection, list[int]] = {}
+    for i, section in enumerate(rows.sections):
+        members.setdefault(section, []).append(i)
+    for section, own in members.items():
+        worst = own[int(np.argmax(peak[own]))]
+        of_shaft = section.kind == "shaft"
+        place = TorquePlace(
+            kind=section.kind,
+            part=section.part,
+            start=section.start if of_shaft else None,
+            end=section.end if of_shaft else None,
+        )
+        swing = TorqueSwing(
+            mean=abs(float(torque[worst].mean())),
+            half_peak_to_peak=0.5 * float(np.ptp(torque[worst])),
+            peak=float(peak[worst]),
+        )
+        yield place, section, swing
+
+
+def _curves(
+    rig: Rig, run: DynamicRun, points: Sequence[CurvePoint], states: Sequence[LoopState]
+) -> Iterator[TorqueOverSpeed]:
+    warm = run.test.last
+    laws = periodic_laws(rig, laws_of(warm.models))
+    rows = twist_rows_of(rig, states[0].system)
+    loops: dict[int, SectionTorques] = {}
+    found: dict[TorquePlace, list[TorqueSwing]] = {}
+    per_stated = rig.pinion_speed(1.0)
+    for point in points:
+        system = nearest(states, point.speed / per_stated).system
+        if id(system) not in loops:
+            loops[id(system)] = section_torques(system, laws, rows)
+        torque = loops[id(system)].over_period(point, warm.drags)
+        for place, _, swing in _swings(rows, torque):
+            found.setdefault(place, []).append(swing)
+        for mesh, name in enumerate(rig.mesh_names):
+            place = TorquePlace(kind="mesh", part=rig.mesh_labels[name])
+            found.setdefault(place, []).append(mesh_swing(point, mesh))
+    for place, swings in found.items():
+        yield TorqueOverSpeed(place=place, swings=tuple(swings))

@@ -1,0 +1,189 @@
+"""Spectra of the mesh torque: over the run-up as a waterfall, and at the held stages with orders and sidebands.
+
+From the torque of the time run as it is kept, filtered to 0.4 of its sample rate; the mesh orders above that from the
+periodic response. Blocks of the waterfall are as long as the sweep allows: in T the mesh frequency moves by 1 / T.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.response.schedule import Stage
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.time_run import schedule_of
+from rigdesign.records.curves import own_ratio
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.results.spectra import HeldSpectrum, Waterfall
+from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
+FLAT = 0.4
+"""Share of the sample rate up to which the torque is kept as it is."""
+SHORTEST, LONGEST = 256, 8192
+"""Samples of a block of the waterfall."""
+OVERLAP = 0.5
+MOST_SPEEDS, MOST_FREQUENCIES = 72, 160
+"""Cells of a waterfall; each keeps its largest amplitude."""
+ORDERS = 600
+"""Points of the spectrum of a held stage, each the largest around it."""
+LEAST_SAMPLES = 1024
+"""Of a held stage, below which it has no spectrum."""
+HIGHEST_HARMONIC = 4
+"""Mesh order up to which the periodic response is shown."""
+MOST_LINES, LEAST_LINE = 240, 1e-5
+"""Lines of its spectrum, and the least amplitude of one over the highest."""
+SETTLED = 0.25
+"""Share of a held stage left out at its beginning: what its start has set off dies down."""
+
+
+def waterfalls(rig: Rig, run: DynamicRun) -> Iterator[Waterfall]:
+    """Of every mesh in the run-up over the widest range of speed; none without torques kept."""
+    torque = run.ramp.torque
+    rises = [
+        (stage, start, end)
+        for stage, start, end in _spans(rig)
+        if stage.kind == "speed" and stage.speed[1] > stage.speed[0]
+    ]
+    if not torque.size or not rises:
+        return
+    stage, start, end = max(rises, key=lambda rise: rise[0].speed[1] - rise[0].speed[0])
+    rate = 1.0 / float(run.ramp.time[1] - run.ramp.time[0])
+    own = slice(*np.searchsorted(run.ramp.time, [start, end]))
+    speed = run.ramp.speed[own]
+    for mesh, name in enumerate(rig.mesh_names):
+        ratio, teeth = own_ratio(rig, mesh), rig.pairs[name].teeth[0]
+        sweep = teeth * ratio * (stage.speed[1] - stage.speed[0]) / (2.0 * math.pi) / (end - start)
+        size = int(np.clip(2 ** round(math.log2(rate / math.sqrt(sweep))), SHORTEST, LONGEST))
+        if speed.size < 2 * size:
+            continue
+        middles, frequency, amplitude = _blocks(torque[mesh, own], size, rate)
+        places = _pooled_speeds(speed[middles], amplitude)
+        bins = _pooled_frequencies(frequency, places[1])
+        yield Waterfall(
+            mesh=rig.mesh_labels[name],
+            stage=stage.name,
+            speed=tuple((ratio * places[0]).tolist()),
+            frequency=tuple(bins[0].tolist()),
+            amplitude=tuple(tuple(row) for row in bins[1].tolist()),
+            per_turn=float(teeth),
+        )
+
+
+def held_spectra(rig: Rig, run: DynamicRun) -> Iterator[HeldSpectrum]:
+    """Of every mesh at every held point."""
+    for point in run.points:
+        for mesh in range(len(rig.mesh_names)):
+            yield _held(rig, run, point, mesh)
+
+
+def _held(rig: Rig, run: DynamicRun, point: PointResult, mesh: int) -> HeldSpectrum:
+    response = point.last.response
+    assert response is not None
+    name = rig.mesh_names[mesh]
+    teeth = rig.pairs[name].teeth[0]
+    speed = own_ratio(rig, mesh) * response.speed
+    order, amplitude = _orders_of_run(rig, run, point.point.stage, mesh)
+    harmonic_order, harmonic_amplitude = _orders_of_wave(response, mesh, teeth, speed)
+    return HeldSpectrum(
+        mesh=rig.mesh_labels[name],
+        stage=point.point.stage,
+        speed=speed,
+        mean=abs(float(response.mean[mesh])),
+        order=tuple(order.tolist()),
+        amplitude=tuple(amplitude.tolist()),
+        harmonic_order=tuple(harmonic_order.tolist()),
+        harmonic_amplitude=tuple(harmonic_amplitude.tolist()),
+        teeth=teeth,
+    )
+
+
+def _orders_of_wave(point: CurvePoint, mesh: int, teeth: int, speed: float) -> tuple[Array, Array]:
+    """Orders of the pinion and amplitudes of the periodic response; speed : of the pinion [rad/s].
+
+    Up to the fourth mesh order and some; of more than `MOST_LINES` lines those that are highest.
+    """
+    wave = point.wave
+    count = wave.time.size
+    base = 2.0 * math.pi / (count * float(wave.time[1] - wave.time[0]))
+    top = min(count // 4, int((HIGHEST_HARMONIC + 0.5) * teeth * speed / base))
+    amplitude = 2.0 * np.abs(np.fft.rfft(wave.torque[mesh]))[1 : top + 1] / count
+    lines = np.sort(np.argsort(-amplitude, kind="stable")[:MOST_LINES])
+    lines = lines[amplitude[lines] > LEAST_LINE * amplitude.max(initial=0.0)]
+    return base / speed * (lines + 1.0), amplitude[lines]
+
+
+def _orders_of_run(rig: Rig, run: DynamicRun, stage: str, mesh: int) -> tuple[Array, Array]:
+    """Orders of the pinion and amplitudes in the settled part of a stage of the time run; none without torques."""
+    nothing = np.zeros(0)
+    found = next(((start, end) for own, start, end in _spans(rig) if own.name == stage), None)
+    if not run.ramp.torque.size or found is None:
+        return nothing, nothing
+    start, end = found
+    first = start + SETTLED * (end - start)
+    own = slice(*np.searchsorted(run.ramp.time, [first, end]))
+    torque, speed = (
+        run.ramp.torque[mesh, own],
+        float(np.mean(run.ramp.speed[own] if own.stop > own.start else 0.0)),
+    )
+    if torque.size < LEAST_SAMPLES or speed <= 0.0:
+        return nothing, nothing
+    rate = 1.0 / float(run.ramp.time[1] - run.ramp.time[0])
+    frequency, amplitude = _spectrum(torque[None], rate)
+    kept = frequency <= FLAT * rate
+    order = 2.0 * math.pi * frequency[kept] / (own_ratio(rig, mesh) * speed)
+    return _pooled(order, amplitude[0, kept], ORDERS)
+
+
+def _spans(rig: Rig) -> Iterator[tuple[Stage, float, float]]:
+    """Every stage with its start and end in the time run [s]."""
+    schedule = schedule_of(rig)
+    yield from (
+        (stage, float(start), float(end))
+        for stage, start, end in zip(schedule.stages, schedule.starts[:-1], schedule.starts[1:])
+    )
+
+
+def _spectrum(blocks: Array, rate: float) -> tuple[Array, Array]:
+    """Frequencies (f,) [Hz] and amplitudes (b, f) of blocks (b, n) under a Hann window, means taken out."""
+    size = blocks.shape[1]
+    window = np.hanning(size + 1)[:-1]
+    values = (blocks - blocks.mean(axis=1, keepdims=True)) * window
+    amplitude = 2.0 * np.abs(np.fft.rfft(values, axis=1)) / window.sum()
+    return np.asarray(np.fft.rfftfreq(size, 1.0 / rate), float), np.asarray(amplitude, float)
+
+
+def _blocks(torque: Array, size: int, rate: float) -> tuple[NDArray[np.int64], Array, Array]:
+    """Middle sample of every block, frequencies as far as the torque is kept, amplitudes (blocks, f)."""
+    step = int(size * (1.0 - OVERLAP))
+    views = np.lib.stride_tricks.sliding_window_view(torque, size)[::step]
+    frequency, amplitude = _spectrum(views, rate)
+    kept = (frequency > 0.0) & (frequency <= FLAT * rate)
+    return size // 2 + step * np.arange(len(views)), frequency[kept], amplitude[:, kept]
+
+
+def _pooled_speeds(speed: Array, amplitude: Array) -> tuple[Array, Array]:
+    """Middles of even cells of speed, rising, and the largest amplitudes of the blocks in each; empty cells dropped."""
+    edges = np.linspace(speed.min(), speed.max(), min(MOST_SPEEDS, len(speed)) + 1)
+    cell = np.clip(np.searchsorted(edges, speed, side="right") - 1, 0, edges.size - 2)
+    used = np.unique(cell)
+    middles = 0.5 * (edges[:-1] + edges[1:])
+    return middles[used], np.array([amplitude[cell == i].max(axis=0) for i in used])
+
+
+def _pooled_frequencies(frequency: Array, amplitude: Array) -> tuple[Array, Array]:
+    """Middles of even cells of frequency and the largest amplitudes in each (s, f)."""
+    count = -(-frequency.size // MOST_FREQUENCIES)
+    starts = np.arange(0, frequency.size, count)
+    ends = np.minimum(starts + count, frequency.size) - 1
+    return 0.5 * (frequency[starts] + frequency[ends]), np.maximum.reduceat(amplitude, starts, axis=1)
+
+
+def _pooled(order: Array, amplitude: Array, most: int) -> tuple[Array, Array]:
+    """The largest of every group of neighbours, with its order."""
+    count = -(-order.size // most)
+    starts = np.arange(0, order.size, count)
+    best = [start + int(np.argmax(amplitude[start : start + count])) for start in starts]
+    return order[best], amplitude[best]

@@ -1,0 +1,160 @@
+"""Campbell diagram of the closed loop: modes over speed, excitation orders, crossings."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rigdesign.report.figures.drawing import finish, new_figure, words
+from rigdesign.report.numbers import NARROW_SPACE
+from rigdesign.report.palette import INK, MUTED, SERIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ORDER_STYLES: Mapping[str, dict[str, Any]] = {
+    "mesh": {"color": SERIES[0], "linestyle": "-"},
+    "shaft": {"color": SERIES[1], "linestyle": (0, (6.0, 2.0))},
+    "coupling": {"color": SERIES[2], "linestyle": (0, (1.2, 1.4))},
+}
+"""Lines of the excitation, by what excites."""
+MARKERS: Mapping[str, str] = {"mesh": "o", "shaft": "s", "coupling": "^"}
+LABEL_DISTANCE = 0.038
+"""Least distance of two labels at the right edge, as a share of the height."""
+LEADER = {"arrowstyle": "-", "color": MUTED, "linewidth": 0.5, "relpos": (0.0, 0.5)}
+"""Line from a label to its mode."""
+LONGEST = 50
+"""Characters of the name of a mode."""
+
+
+def campbell_diagram(campbell: Mapping[str, Any], held: Mapping[str, float]) -> "Figure":
+    """Both axes logarithmic: orders are parallel lines, from those of the shafts up to those of the teeth.
+
+    held : pinion speed of every held stage [rpm]
+    """
+    figure = new_figure(5.2)
+    axes = figure.subplots()
+    low, high = 0.75 * campbell["speed_rpm"][0], 1.02 * campbell["speed_rpm"][-1]
+    bottom, top = _frequencies(campbell, low, high)
+    axes.set(xscale="log", yscale="log", xlim=(low, high), ylim=(bottom, top))
+    _orders(axes, campbell["orders"])
+    _modes(axes, campbell)
+    _crossings(axes, campbell["crossings"])
+    for stage, speed in held.items():
+        axes.axvline(speed, color=MUTED, linewidth=0.9, linestyle=(0, (7.0, 1.6, 1.4, 1.6)))
+        axes.annotate(
+            words(stage), (speed, bottom), textcoords="offset points", xytext=(-3, 3), rotation=90, fontsize=7.5,
+            ha="right", va="bottom", color=MUTED,
+        )  # fmt: skip
+    finish(axes, "pinion speed n [rpm]", "frequency [Hz]")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(_whole)
+        axis.set_minor_formatter(_some)
+    axes.grid(visible=True, which="minor", linewidth=0.3)
+    figure.legend(loc="lower left", bbox_to_anchor=(0.075, 0.0), ncols=4, fontsize=7.5)
+    figure.subplots_adjust(left=0.085, right=0.63, top=0.955, bottom=0.175)
+    return figure
+
+
+def _frequencies(campbell: Mapping[str, Any], low: float, high: float) -> tuple[float, float]:
+    """Lowest and highest frequency shown [Hz]."""
+    modes = [f for mode in campbell["modes"] for f in mode["frequency_Hz"] if f is not None]
+    turning = [order["per_turn"] * low / 60.0 for order in campbell["orders"] if order["kind"] != "mesh"]
+    reached = [order["per_turn"] * high / 60.0 for order in campbell["orders"]]
+    least = min([*modes, *reached])
+    shafts = any(mode["driven_by"] == "shaft" for mode in campbell["modes"])
+    bottom = max(least / 4.0, min(turning, default=least)) if shafts else 0.5 * min(modes, default=least)
+    return bottom, 1.5 * max(modes, default=max(reached))
+
+
+def _orders(axes: "Axes", orders: Sequence[Mapping[str, Any]]) -> None:
+    low, high = axes.get_xlim()
+    bottom, top = axes.get_ylim()
+    named: set[str] = set()
+    for order in orders:
+        kind, slope = order["kind"], order["per_turn"] / 60.0
+        if slope * high <= bottom or slope * low >= top:
+            continue
+        label = {"mesh": "mesh orders", "shaft": "turning frequencies", "coupling": "coupling orders"}[kind]
+        axes.plot(
+            [low, high], [slope * low, slope * high], linewidth=0.9, **ORDER_STYLES[kind],
+            label=None if kind in named else label,
+        )  # fmt: skip
+        named.add(kind)
+        if kind == "mesh":
+            text = "f_z" if order["harmonic"] == 1 else f"{order['harmonic']:g} f_z"
+            at = min(0.97 * top / slope, 0.93 * high)
+            axes.annotate(
+                text, (at, slope * at), textcoords="offset points", xytext=(-9, 0), fontsize=7.5, ha="right",
+                va="top", color=SERIES[0],
+            )  # fmt: skip
+
+
+def _modes(axes: "Axes", campbell: Mapping[str, Any]) -> None:
+    speeds = campbell["speed_rpm"]
+    low, high = axes.get_xlim()
+    ends, texts = [], []
+    for number, mode in enumerate(campbell["modes"]):
+        values = [np.nan if f is None else f for f in mode["frequency_Hz"]]
+        axes.plot(
+            [low, *speeds, high], [values[0], *values, values[-1]], color=INK, linewidth=0.8,
+            label="modes of the closed loop" if number == 0 else None,
+        )  # fmt: skip
+        known = [f for f in values if np.isfinite(f)]
+        ends.append(known[-1])
+        texts.append(f"{mode['mode']}  {_short(mode['shape'])}")
+    _edge_labels(axes, ends, texts)
+
+
+def _edge_labels(axes: "Axes", values: Sequence[float], texts: Sequence[str]) -> None:
+    """Labels right of the plot, moved apart where they would touch, each with a line to its mode."""
+    bottom, top = (np.log(limit) for limit in axes.get_ylim())
+    order = np.argsort(values)
+    places = [(np.log(values[i]) - bottom) / (top - bottom) for i in order]
+    spread = list(places)
+    for _ in range(200):
+        for i in range(1, len(spread)):
+            lack = LABEL_DISTANCE - (spread[i] - spread[i - 1])
+            if lack > 1e-9:
+                spread[i] += 0.5 * lack
+                spread[i - 1] -= 0.5 * lack
+        if spread:
+            shift = max(0.0, 0.01 - spread[0]) - max(0.0, spread[-1] - 0.99)
+            spread = [place + shift for place in spread] if shift else spread
+    for i, at, place in zip(order, spread, places):
+        axes.annotate(
+            words(texts[i]), (1.0, place), (1.035, at), xycoords="axes fraction", textcoords="axes fraction",
+            fontsize=7.5, va="center", arrowprops=LEADER,
+            annotation_clip=False,
+        )  # fmt: skip
+
+
+def _short(name: str) -> str:
+    """Name of a mode, as many of its parts as there is room for."""
+    parts = name.split(", ")
+    while len(parts) > 1 and len(", ".join(parts)) > LONGEST:
+        parts.pop()
+    return re.sub(r"\s+", " ", ", ".join(parts))
+
+
+def _crossings(axes: "Axes", crossings: Sequence[Mapping[str, Any]]) -> None:
+    for kind, marker in MARKERS.items():
+        own = [item for item in crossings if item["kind"] == kind]
+        if own:
+            axes.plot(
+                [item["speed_rpm"] for item in own], [item["frequency_Hz"] for item in own], marker,
+                color=ORDER_STYLES[kind]["color"], markersize=3.6, label=f"crossing, {kind} order", zorder=5,
+            )  # fmt: skip
+
+
+def _whole(value: float, position: float = 0.0) -> str:
+    text = f"{value:,.0f}" if value >= 10000 else f"{value:.0f}"
+    return text.replace(",", NARROW_SPACE)
+
+
+def _some(value: float, position: float = 0.0) -> str:
+    """Label of minor ticks: 2 and 5 of each decade."""
+    lead = value / 10.0 ** np.floor(np.log10(value) + 1e-9)
+    return _whole(value) if round(lead, 6) in (2.0, 5.0) else ""

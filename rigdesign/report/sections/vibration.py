@@ -1,0 +1,137 @@
+"""Vibration of the power circuit: modes over speed, dynamic torque, and at which speeds the rig may dwell."""
+
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.report.sections.gearbox_styles import gearbox_styles
+from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.results.result import RunResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+
+def held_speeds(result: RunResult) -> dict[str, float]:
+    """Pinion speed of every held stage [rpm]."""
+    torques = result.dynamics.section_torques if result.dynamics is not None else None
+    return {row["stage"]: row["speed_rpm"] for row in torques["held"]} if torques else {}
+
+
+def _vibration(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures.campbell import campbell_diagram
+    from rigdesign.report.figures.dwell import dwell_figure
+    from rigdesign.report.figures.dynamic_root import place
+    from rigdesign.report.figures.section_torques import section_torque_figure
+
+    dynamics = result.dynamics
+    assert dynamics is not None and dynamics.campbell is not None
+    held = held_speeds(result)
+    torques = dynamics.section_torques
+    shown: Values = {
+        "dwell_figure": None,
+        "campbell_figure": None,
+        "torque_figure": None,
+        "torques": _governing(torques["held"]) if torques else [],
+        "roots": _roots(dynamics.dynamic_root["curves"], draw) if dynamics.dynamic_root else {},
+        "gauge_label": place,
+        "leading": leading,
+        **_in_motion(result, draw),
+    }
+    if dynamics.dwell is not None:
+        shown["dwell_figure"] = draw(
+            dwell_figure(dynamics.dwell), "Dynamic shares over speed and the bands to avoid"
+        )
+    if dynamics.campbell["modes"]:
+        shown["campbell_figure"] = draw(
+            campbell_diagram(dynamics.campbell, held),
+            "Modes of the closed loop and excitation orders over speed",
+        )
+    if torques:
+        shown["torque_figure"] = draw(
+            section_torque_figure(torques["over_speed"], held),
+            "Half peak-to-peak torque in meshes, joints and shafts over speed",
+        )
+    return shown
+
+
+def _in_motion(result: RunResult, draw: Draw) -> Values:
+    """Figures of spectra and contact."""
+    from rigdesign.report.figures.contact_in_motion import contact_loss_figure, pair_share_figure
+    from rigdesign.report.figures.spectra import spectrum_figure, waterfall_figure
+
+    dynamics = result.dynamics
+    assert dynamics is not None
+    styles = gearbox_styles(result)
+    figures = {
+        "waterfall_figure": (
+            waterfall_figure,
+            dynamics.waterfalls,
+            "Spectrum of the mesh torque over the speed of the run-up",
+        ),
+        "spectrum_figure": (
+            spectrum_figure,
+            dynamics.spectra,
+            "Spectrum of the mesh torque at the held stages",
+        ),
+        "share_figure": (
+            pair_share_figure,
+            dynamics.pair_shares,
+            "Share of a tooth pair over the rolling angle",
+        ),
+        "loss_figure": (
+            contact_loss_figure,
+            dynamics.contact_loss_maps,
+            "Least torque over the mean by speed and torque",
+        ),
+    }
+    return {
+        name: draw(figure(rows, styles), text) if rows else None
+        for name, (figure, rows, text) in figures.items()
+    }
+
+
+def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
+    """Figure of every gearbox: its gauges where it has some, else the most stressed points."""
+    from rigdesign.report.figures.dynamic_root import dynamic_root_figure
+
+    found = {}
+    for gearbox in dict.fromkeys(curve["gearbox"] for curve in curves):
+        own = [curve for curve in curves if curve["gearbox"] == gearbox]
+        gauged = [curve for curve in own if curve["gauge"]]
+        found[gearbox] = draw(
+            dynamic_root_figure(gauged or own),
+            f"Root stress and strain rate in gearbox {gearbox} over the rolling angle",
+        )
+    return found
+
+
+def _governing(held: list[dict[str, object]]) -> list[dict[str, object]]:
+    """Of every part the row with the highest peak, in the order of the list."""
+    found: dict[object, dict[str, object]] = {}
+    for row in held:
+        key = row["kind"], row["part"]
+        if key not in found or float(str(row["peak_Nm"])) > float(str(found[key]["peak_Nm"])):
+            found[key] = row
+    return list(found.values())
+
+
+def leading(band: dict[str, Any], most: int = 4) -> list[dict[str, Any]]:
+    """Resonances that make a band: of every kind the strongest, then the strongest of the rest, by speed."""
+    ranked = sorted(band["resonances"], key=lambda one: -(one["share"] or 0.0))
+    first = {one["kind"]: one for one in reversed(ranked)}
+    chosen = list(first.values())
+    chosen += [one for one in ranked if one not in chosen][: max(0, most - len(chosen))]
+    return sorted(chosen, key=lambda one: float(one["speed_rpm"]))
+
+
+def _turns(result: RunResult) -> bool:
+    return result.dynamics is not None and result.dynamics.campbell is not None
+
+
+VIBRATION = ReportSection(
+    id="vibration", title="Vibration of the power circuit", template="vibration.html.j2", values=_vibration,
+    applies=_turns,
+)  # fmt: skip
+VIBRATION_DETAILS = ReportSection(
+    id="vibration_details", title="Dynamic torque by section", template="vibration_details.html.j2",
+    applies=_turns, place="appendix",
+)  # fmt: skip

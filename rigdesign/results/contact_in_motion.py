@@ -1,0 +1,36 @@
+"""Contact of the teeth in motion: shares of the pairs and where contact is lost, SI records."""
+
+from dataclasses import dataclass
+
+Row = tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairShare:
+    """Force on one tooth pair over the way through the mesh at a held stage."""
+
+    mesh: str
+    stage: str
+    angle: Row
+    """(n,) rolling angle of the pinion, zero at the pitch point [rad]."""
+    share: Row
+    """(n,) of the force of the mesh at that moment, in motion [-]."""
+    static_share: Row
+    """(n,) at rest [-]"""
+    force: Row
+    """(n,) over the mean force of the mesh, in motion [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLossMap:
+    """Least torque of a mesh over its mean on a grid of speed and torque; None where no response was found."""
+
+    mesh: str
+    speed: Row
+    """(s,) of the pinion of the mesh [rad/s]"""
+    torque: Row
+    """(t,) stated [N m]"""
+    least_share: tuple[tuple[float | None, ...], ...]
+    """(t, s) [-]; 0 or less where flanks part."""
+    lift_off: tuple[tuple[float | None, ...], ...]
+    """(t, s) share of the time without contact [-]."""

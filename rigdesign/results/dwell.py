@@ -1,0 +1,97 @@
+"""At which speeds a rig may dwell, and the ramp that follows: SI records. Speeds are those of the first pinion."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+ResonanceKind = Literal["dynamic factor", "root stress", "shaft torque", "shaft order"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AvoidedResonance:
+    """Speeds around one peak of the response, or a crossing of a shaft order with a mode."""
+
+    kind: ResonanceKind
+    where: str
+    """Gearbox, gear, place of a torque, or mode."""
+    speed: float
+    """Of the peak [rad/s]."""
+    share: float | None
+    """Dynamic part over the mean there [-]; None of a crossing, whose response is not computed."""
+    low: float
+    """[rad/s]"""
+    high: float
+    """[rad/s]"""
+
+    def distance(self, speed: float, margin: float = math.inf) -> float:
+        """Of a speed from the peak, as a share of that speed [-].
+
+        margin : by which the band goes beyond the peak at least; within the band and beyond it the response itself is
+            above the stated share, and the distance 0
+        """
+        beyond = abs(speed - self.speed) > margin * self.speed
+        return 0.0 if beyond and self.low < speed < self.high else abs(speed - self.speed) / speed
+
+
+@dataclass(frozen=True, kw_only=True)
+class AvoidedBand:
+    """Resonances whose bands touch."""
+
+    low: float
+    """[rad/s]"""
+    high: float
+    """[rad/s]"""
+    resonances: tuple[AvoidedResonance, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DwellStage:
+    """A stage of the schedule that turns at one speed."""
+
+    stage: str
+    kind: str
+    speed: float
+    """[rad/s]"""
+    computed: bool
+    """Whether the response is known at its speed."""
+    band: AvoidedBand | None
+    """In which it lies."""
+    nearest_safe: float | None
+    """Nearest safe speed for a stage in a band [rad/s]; None where there is none."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RampStep:
+    """One step of the recommended ramp."""
+
+    action: str
+    speed: float
+    """At its end [rad/s]."""
+    torque: float
+    """Stated, at its end [N m]."""
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class DwellRecord:
+    """Bands to avoid between two speeds, what is left, the stages of the case and the recommended ramp."""
+
+    share_limit: float
+    """Of meshes and root stress [-]."""
+    shaft_share_limit: float
+    """Of the torque in shafts and joints [-]."""
+    margin: float
+    low: float
+    """[rad/s]"""
+    high: float
+    """[rad/s]"""
+    bands: tuple[AvoidedBand, ...]
+    safe: tuple[tuple[float, float], ...]
+    """[rad/s]"""
+    stages: tuple[DwellStage, ...]
+    ramp: tuple[RampStep, ...]
+    speeds: tuple[float, ...]
+    """(s,) [rad/s]"""
+    highest: Mapping[ResonanceKind, tuple[float, ...]]
+    """(s,) largest share of all quantities of a kind [-]."""

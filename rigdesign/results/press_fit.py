@@ -1,0 +1,34 @@
+"""Torque that the press fit of a gear carries, hot and at speed: SI record."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressFitCapacity:
+    """A gear on its shaft at a held stage."""
+
+    gear: str
+    """``gearbox.gear``"""
+    stage: str
+    interference: float
+    """Effective, on the diameter, at rest and 20 degC [m]."""
+    interference_hot: float
+    """[m]"""
+    gear_temperature: float
+    """[K]"""
+    shaft_temperature: float
+    """[K]"""
+    pressure_at_rest: float
+    """[Pa]"""
+    pressure: float
+    """Hot and at speed [Pa]; 0 where the seat is loose."""
+    friction: float
+    slip_torque: float
+    """[N m]"""
+    peak_torque: float
+    """Highest in the periodic response [N m]."""
+
+    @property
+    def safety(self) -> float | None:
+        """Slip torque over peak torque [-]; None without torque."""
+        return self.slip_torque / self.peak_torque if self.peak_torque > 0.0 else None

@@ -1,0 +1,30 @@
+"""Contact of the teeth in motion as rows of the result."""
+
+import math
+from typing import Any
+
+from rigdesign.results.contact_in_motion import ContactLossMap, PairShare
+from rigdesign.results.units import RPM
+
+
+def pair_share_row(found: PairShare) -> dict[str, Any]:
+    """Shares over the rolling angle of the pinion."""
+    return {
+        "gearbox": found.mesh,
+        "stage": found.stage,
+        "rolling_angle_deg": [math.degrees(angle) for angle in found.angle],
+        "share": list(found.share),
+        "share_quasi_static": list(found.static_share),
+        "force_over_mean": list(found.force),
+    }
+
+
+def contact_loss_row(found: ContactLossMap) -> dict[str, Any]:
+    """Rows over torque of columns over speed."""
+    return {
+        "gearbox": found.mesh,
+        "pinion_speed_rpm": [speed * RPM for speed in found.speed],
+        "torque_Nm": list(found.torque),
+        "least_share": [list(row) for row in found.least_share],
+        "lift_off_share": [list(row) for row in found.lift_off],
+    }
