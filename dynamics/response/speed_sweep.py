@@ -18,6 +18,7 @@ from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed
 from dynamics.drivetrain.static_loop import PortModel, port_model
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_branches import BranchSearch, HarmonicStates
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk, mesh_cells
 from dynamics.response.initial_state import pinion_ratios
@@ -84,10 +85,15 @@ class CurvePoint:
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseCurve:
-    """Points in the order of the speeds asked for; ``failed`` holds (speed [rad/s], reason) of the others."""
+    """Points in the order of the speeds asked for; ``failed`` holds (speed [rad/s], reason) of the others.
+
+    other_branch : where a second stable response exists at a speed, from which the motion does not come to the first
+        without a jump
+    """
 
     points: tuple[CurvePoint, ...]
     failed: tuple[tuple[float, str], ...]
+    other_branch: tuple[CurvePoint, ...] = ()
 
     @property
     def speeds(self) -> Array:
@@ -158,20 +164,23 @@ def periodic_response(
         )
     given = [float(speed) for speed in speeds]
     loops = _Loops(drivetrain, laws, load, settings)
-    drags = [drag_torques(speed) if callable(drag_torques) else drag_torques for speed in given]
-    found: dict[int, CurvePoint] = {}
-    reasons: dict[int, str] = dict.fromkeys(range(len(given)), "")
-    if "harmonic_balance" in settings.methods:
-        found, reasons = _by_harmonics(loops, given, drags)
-    if "time_integration" in settings.methods and reasons:
+    states = HarmonicStates(reasons=dict.fromkeys(range(len(given)), ""))
+    if given and "harmonic_balance" in settings.methods:
+        states = _by_harmonics(loops, given, drag_torques)
+    found = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.found.items()}
+    other = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.other.items()}
+    reasons = states.reasons
+    if "time_integration" in settings.methods:
         for i, reason in reasons.items():
+            drags = drag_torques(given[i]) if callable(drag_torques) else drag_torques
             try:
-                found[i] = _in_time(loops, given[i], drags[i])
+                found[i] = _in_time(loops, given[i], drags)
             except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
         points=tuple(found[i] for i in sorted(found)),
         failed=tuple((given[i], reasons[i]) for i in range(len(given)) if i not in found),
+        other_branch=tuple(other[i] for i in sorted(other)),
     )
 
 
@@ -197,6 +206,7 @@ def refined_response(
     curve = solve([float(speed) for speed in speeds])
     points = {point.speed: point for point in curve.points}
     failed = dict(curve.failed)
+    other = {point.speed: point for point in curve.other_branch}
     for _ in range(rounds):
         wanted = sorted(_between(sorted(points.values(), key=lambda point: point.speed), bend) - set(failed))
         if not wanted:
@@ -204,9 +214,11 @@ def refined_response(
         more = solve(wanted)
         points |= {point.speed: point for point in more.points}
         failed |= dict(more.failed)
+        other |= {point.speed: point for point in more.other_branch}
     return ResponseCurve(
         points=tuple(points[speed] for speed in sorted(points)),
         failed=tuple(sorted(failed.items())),
+        other_branch=tuple(other[speed] for speed in sorted(other)),
     )
 
 
@@ -259,32 +271,18 @@ class _Loops:
         return self._solvers[id(system)]
 
 
-def _by_harmonics(
-    loops: _Loops, speeds: Sequence[float], drags: Sequence[Mapping[str, float] | None]
-) -> tuple[dict[int, CurvePoint], dict[int, str]]:
-    """Points by index, and the reason for each that is missing.
-
-    First in the given order; then backwards through the gaps from their far side, where another branch lives.
-    """
+def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) -> HarmonicStates:
+    """States by index on stable branches, see `BranchSearch`."""
     settings = loops.settings
-    states: dict[int, HarmonicSolution] = {}
-    reasons: dict[int, str] = {}
-    last: HarmonicSolution | None = None
-    if not speeds:
-        return {}, {}
     walk = HarmonicWalk(loops.problem(speeds[0]), settings.period, settings.cutoff, settings.tolerance)
     ratio = float(walk.problem.model.ratios[0])
-    for order in (range(len(speeds)), range(len(speeds) - 1, -1, -1)):
-        for i in order:
-            if i not in states and (i in reasons or order.step > 0):
-                walk.take(loops.problem(speeds[i]))
-                try:
-                    states[i] = walk.solve(speeds[i] / ratio, drags[i], last)
-                    reasons.pop(i, None)
-                except DynamicsNotConverged as reason:
-                    reasons[i] = str(reason)
-            last = states.get(i, last)
-    return {i: point_of(loops.problem(speeds[i]).model, state) for i, state in states.items()}, reasons
+    search = BranchSearch(
+        walk,
+        lambda speed: loops.problem(speed * ratio),
+        lambda speed: drags(speed * ratio) if callable(drags) else drags,
+        np.array(speeds) / ratio,
+    )
+    return search.run()
 
 
 def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None) -> CurvePoint:
