@@ -1,9 +1,9 @@
 """Stable periodic responses at many speeds: walk, continuation round turning points, both branches of a jump.
 
-First a walk over the speeds in the order given, each state from the one before. Where a mesh loses contact the stability
-of what is found is tested. Speeds without a stable state are then sought along the branches: by arclength from the
-nearest states on both sides, or, where there are none, from a speed at which the response is plain. Last a walk the
-other way through the speeds with contact loss, which ends on the other branch where there are two.
+First a walk over the speeds in the order given, each state from the one before. Where a mesh loses contact the
+stability of what is found is tested. Speeds without a stable state are then sought along the branches: by arclength
+from the nearest states on both sides, or, where there are none, from a speed at which the response is plain. Last a
+walk the other way through the speeds with contact loss, which ends on the other branch where there are two.
 """
 
 from collections.abc import Callable, Mapping
@@ -47,11 +47,14 @@ class BranchSearch:
     ) -> None:
         """Prepare a search.
 
-        problem, drags : at a speed of the drive freedom [rad/s]; speeds : (n,) of that freedom, in the order of the walk
+        problem, drags : at a speed of the drive freedom [rad/s]; speeds : (n,) of it, in the order of the walk
         """
         self._walk, self._problem, self._drags, self._speeds = walk, problem, drags, speeds
         self._over_speed = SpeedProblem(problem=problem, drags=drags)
         self._open: dict[int, bool] = {}
+        self._not_mesh_periodic: set[int] = set()
+        """Where the branch is there, and left by a motion of another period: no turning point is to be passed."""
+        self._unstable_states: dict[int, list[HarmonicSolution]] = {}
         self.states = HarmonicStates()
 
     def run(self) -> HarmonicStates:
@@ -63,8 +66,7 @@ class BranchSearch:
                 self._trace_gaps()
             if any(self._open.values()):
                 self._walk_back()
-        missing = [i for i in range(len(self._speeds) - 1, -1, -1) if i not in found]
-        if missing and found:
+        if found and len(found) + len(self._not_mesh_periodic) < len(self._speeds):
             self._walk_over(range(len(self._speeds) - 1, -1, -1))
         return self.states
 
@@ -72,7 +74,7 @@ class BranchSearch:
         """Each speed that has no state yet from the state before it."""
         last: HarmonicSolution | None = None
         for i in order:
-            if i not in self.states.found:
+            if i not in self.states.found and i not in self._not_mesh_periodic:
                 try:
                     self._keep(i, self._solved(i, last))
                 except DynamicsNotConverged as reason:
@@ -88,8 +90,14 @@ class BranchSearch:
         """Keep a stable state; DynamicsNotConverged for one that is not."""
         if self._walk.cells == 1:
             self._open[i] = False
+            known = self._unstable_states.setdefault(i, [])
+            if any(self._same(state, other) for other in known):
+                return
             reason = self._unstable(state, i)
             if reason:
+                known.append(state)
+                if "(fold" not in reason:
+                    self._not_mesh_periodic.add(i)
                 raise DynamicsNotConverged(reason)
         self.states.found[i] = state
         self.states.reasons.pop(i, None)
@@ -112,9 +120,10 @@ class BranchSearch:
 
     def _trace_gaps(self) -> None:
         """Trace the branches through the speeds that have no state, from what is next to them."""
-        for gap in _runs(sorted(self.states.reasons, key=lambda i: self._speeds[i]), self._speeds):
+        missing = sorted(set(self.states.reasons) - self._not_mesh_periodic, key=lambda i: self._speeds[i])
+        for gap in _runs(missing, self._speeds):
             for rising in (True, False):
-                if all(i in self.states.found for i in gap):
+                if all(i in self.states.found or i in self._not_mesh_periodic for i in gap):
                     break
                 start = self._beside(gap, rising=rising)
                 if start is not None:
@@ -160,10 +169,6 @@ class BranchSearch:
                     self.states.other[i] = solved
             except DynamicsNotConverged as reason:
                 self.states.reasons[i] = str(reason)
-            if all(k in self.states.found for k in gap) and abs(state.speed - start.speed) > 0.9 * (
-                high - low
-            ):
-                return
 
     def _walk_back(self) -> None:
         """The other way through neighbouring speeds with contact loss, from the state after them."""

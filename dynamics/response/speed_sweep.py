@@ -23,6 +23,7 @@ from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk, mesh_cells
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.modal_model import DEFAULT_CUTOFF
+from dynamics.response.motion_kind import PERIODIC, Motion
 from dynamics.response.periodic_response import Period, PeriodicResponse, TimeIntegration, TimeSettings
 from dynamics.response.waveform import Waveform, waveform
 
@@ -35,8 +36,10 @@ DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | Non
 class CurvePoint:
     """Steady periodic state at one mean speed.
 
-    speed : of the pinion of the first mesh [rad/s]; method : how it was found; residual : relative, of that
-    method flank : (n_meshes,) +1 where the front flank carries the mean torque, -1 the back flank
+    speed : of the pinion of the first mesh [rad/s]; method : how it was found; residual : relative, of that method
+    motion : whether it repeats in the asked period, after several of them, or not at all; the statistics are then those
+    of the periods that ``wave`` holds
+    flank : (n_meshes,) +1 where the front flank carries the mean torque, -1 the back flank
     mean, maximum, minimum : (n_meshes,) torque transmitted at the pinion, positive in load direction [N m]
     harmonics : (n_meshes, n + 1) mean and amplitudes of that torque over the orders of the mesh frequency
     [N m] lift_off_share : (n_meshes,) share of the period without contact [-]
@@ -60,6 +63,7 @@ class CurvePoint:
     friction_power: Array
     damping_power: Array
     wave: Waveform = field(repr=False)
+    motion: Motion = PERIODIC
 
     @property
     def dynamic_factor(self) -> Array:
@@ -286,11 +290,15 @@ def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) ->
 
 
 def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None) -> CurvePoint:
+    """The response to which a march comes; over one mesh it may be subharmonic, or not repeat at all, and says so."""
     result = loops.solver(speed).periodic(speed, loops.load, drags)
+    model = loops.problem(speed).model
+    cells = mesh_cells(model, loops.settings.period, loops.load.control_mesh)[0]
+    if loops.settings.period == "mesh":
+        return point_in_time(model, result, cells * round(result.period * speed / loops.solver(speed).turns))
     if not result.steady:
         raise DynamicsNotConverged("; ".join(result.warnings))
-    model = loops.problem(speed).model
-    return point_in_time(model, result, mesh_cells(model, loops.settings.period, loops.load.control_mesh)[0])
+    return point_in_time(model, result, cells)
 
 
 def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
@@ -342,6 +350,7 @@ def point_in_time(model: PortModel, result: PeriodicResponse, cells: int) -> Cur
         friction_power=wave.friction_power,
         damping_power=wave.damping_power,
         wave=wave,
+        motion=result.motion,
     )
 
 
