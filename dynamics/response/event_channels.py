@@ -6,6 +6,7 @@ any instant of a march.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -123,15 +124,13 @@ def _beams(seen: SeenRig, own: Callable[[Array], Array]) -> Iterator[Channel]:
 
 
 def _element_names(drivetrain: Drivetrain, shaft: str) -> list[str]:
-    stations = tuple(
-        part.position
-        for part in (
-            *drivetrain.gears, *drivetrain.bearings, *drivetrain.drag_places, drivetrain.motor
-        )
-        if part.shaft == shaft
-    )  # fmt: skip
+    places = [(part.shaft, part.position) for part in drivetrain.gears]
+    places += [(part.shaft, part.position) for part in drivetrain.bearings]
+    places += [(part.shaft, part.position) for part in drivetrain.drag_places]
+    places.append((drivetrain.motor.shaft, drivetrain.motor.position))
+    stations = tuple(position for own, position in places if own == shaft)
     positions = discretise(drivetrain.shaft(shaft), stations).positions
-    return [_named(shaft, a, b) for a, b in zip(positions, positions[1:])]
+    return [_named(shaft, a, b) for a, b in pairwise(positions)]
 
 
 def _named(shaft: str, start: float, end: float) -> str:

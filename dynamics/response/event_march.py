@@ -23,6 +23,7 @@ from dynamics.response.march_loads import march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.time_march import TimeMarch
+from dynamics.response.tooth_loss import Member, teeth_in_mesh
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,10 @@ class Trip:
     channel: int | None
     limit: float = 0.0
     delay: float = 0.0
+
+    def crossed(self, values: Array) -> bool:
+        """Whether values of all channels (n_channels,) trip it."""
+        return self.channel is None or abs(float(values[self.channel])) > self.limit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,9 +147,11 @@ class EventMarch:
             before_torque=0.5 * (before["least"] + before["greatest"]).mean(axis=1),
         )
 
-    def pinion_angles(self) -> Array:
-        """Angle of the pinion of every mesh at the instant of the event (n_meshes,) [rad]."""
-        return np.asarray(self._start.state.angles[self._system.mesh_ports[:, 0]])
+    def carrying_teeth(self, mesh: int, member: Member, count: int) -> tuple[int, ...]:
+        """Adjacent teeth of a gear from the one that carries most at the instant of the event on."""
+        law, (pinion, wheel) = self._laws[mesh], self._start.state.angles[self._system.mesh_ports[mesh]]
+        approach = law.base_radius_1 * pinion - law.base_radius_2 * wheel + law.offset
+        return teeth_in_mesh(law, float(pinion), float(approach), member, count)
 
     def _period(self) -> float:
         return 2.0 * np.pi / self._start.speed / self._laws[0].teeth_1
@@ -189,9 +196,8 @@ class EventMarch:
             torque = radius[:, None] * block.force
             least[:, i], greatest[:, i] = torque.min(axis=1), torque.max(axis=1)
             still += (block.force == 0.0).mean(axis=1)
-            if tripped is None and trip is not None and trip.channel is not None:
-                if abs(values[trip.channel, i]) > trip.limit:
-                    tripped = now
+            if tripped is None and trip is not None and trip.crossed(values[:, i]):
+                tripped = now
         braked = None if tripped is None or trip is None else tripped + trip.delay
         return {
             "time": np.arange(1, n + 1) / SAMPLE_RATE, "speed": speed, "drive": drive, "least": least,

@@ -4,13 +4,13 @@ A lost tooth is one whose flanks stand back by more than the gears can approach 
 law. Which teeth carry at an instant follows from the angle of the pinion.
 """
 
-import math
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
+from dynamics.mesh.force import tooth_forces
 from dynamics.mesh.law import MeshLaw, back_deviations
 
 Array = NDArray[np.float64]
@@ -20,22 +20,25 @@ GONE = 0.05
 """Gap of a tooth that is not there [m]: beyond what a loop unwinds by."""
 
 
-def teeth_in_mesh(
-    law: MeshLaw, angle: float, member: Member, count: int, *, back: bool = False
-) -> tuple[int, ...]:
-    """Numbers of adjacent teeth of a gear from the one next to the pitch point on, in the order in which they come.
+def teeth_in_mesh(law: MeshLaw, angle: float, approach: float, member: Member, count: int) -> tuple[int, ...]:
+    """Numbers of adjacent teeth of a gear: the one that carries most, then those that come next.
 
-    angle : of the pinion [rad]; back : the back flank of the pinion carries
+    angle : of the pinion [rad]; approach : of the gears [m]
+
+    Raises DynamicsInputError where no tooth carries.
     """
-    lead = law.base_radius_1 * angle
-    middle = 0.5 * law.base_pitch
-    first = math.floor((law.phase + lead + middle) / law.base_pitch)
-    if back:
-        first = math.ceil((lead - law.back_phase - middle) / law.base_pitch)
+    forces = tooth_forces(law, angle, approach)
+    front, back = forces.front[0].sum(axis=1), forces.back[0].sum(axis=1)
+    force, behind = (back, 1) if back.sum() > front.sum() else (front, 0)
+    if not force.max() > 0.0:
+        raise DynamicsInputError(
+            f"approach = {approach:.3g} m: no tooth carries; load the mesh before one is lost"
+        )
+    first = int(forces.pair[0, int(force.argmax())])
     pairs = range(first, first + count)
     if member == "pinion":
         return tuple(pair % law.teeth_1 for pair in pairs)
-    return tuple((pair + law.tooth_offset_2 + back) % law.teeth_2 for pair in pairs)
+    return tuple((pair + law.tooth_offset_2 + behind) % law.teeth_2 for pair in pairs)
 
 
 def without_teeth(law: MeshLaw, member: Member, teeth: tuple[int, ...]) -> MeshLaw:

@@ -51,6 +51,13 @@ def _one(value: Callable[[EventRecord], float | None], where: str) -> Callable[[
     return values
 
 
+def _trip(record: EventRecord) -> Values:
+    """A monitor that never trips needs more than the time for which it was watched."""
+    if record.untripped is not None:
+        return [(record.untripped, f"no crossing within {record.untripped:g} s")]
+    return [] if record.tripped is None else [(record.tripped, "first crossing of the limit of the monitor")]
+
+
 def _family(
     name: str,
     title: str,
@@ -83,7 +90,7 @@ FAMILIES = (
     ),
     _family(
         "trip_time_maximum", "time until the monitor trips", SECOND, ToothLoss,
-        _one(lambda record: record.tripped, "first crossing of the limit of the monitor"),
+        _trip,
         f"{MARCH}: first crossing of the limit by the channel watched.",
     ),
     _family(

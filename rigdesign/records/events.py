@@ -22,7 +22,7 @@ from dynamics.response.event_march import (
 )
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.tooth_loss import teeth_in_mesh, without_teeth
+from dynamics.response.tooth_loss import without_teeth
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
@@ -253,9 +253,7 @@ def _curve(
 
 def _tooth_loss(place: _EventPlace, event: ToothLoss) -> EventRecord:
     march, mesh = place.march(), place.rig.mesh_names.index(event.mesh)
-    law, angle = place.laws[mesh], float(march.pinion_angles()[mesh])
-    back = place.coupling_state.mesh_torque[event.mesh] < 0.0
-    teeth = teeth_in_mesh(law, angle, event.gear, event.teeth, back=back)
+    teeth = march.carrying_teeth(mesh, event.gear, event.teeth)
     laws = [without_teeth(own, event.gear, teeth) if m == mesh else own for m, own in enumerate(place.laws)]
     trip, notes = _trip(place, event)
     brake = Brake(torque=event.brake_torque)
@@ -266,6 +264,7 @@ def _tooth_loss(place: _EventPlace, event: ToothLoss) -> EventRecord:
     )
     if trip is not None and history.tripped is None:
         notes = (*notes, f"the monitor does not trip within {event.duration:g} s")
+        record = replace(record, untripped=event.duration)
     standstill = None
     if history.tripped is not None:
         standstill = event.trip_delay + time_to_standstill(
@@ -349,7 +348,7 @@ def _overspeed(place: _EventPlace, test: PointResult) -> EventRecord:
         dynamic_factor=factors,
         resonance=resonance,
         resonance_distance=distance,
-        notes=(*notes, "rotor burst and blade-like stresses of discs are not modelled"),
+        notes=(*notes, "bursting of discs and rotors is not modelled"),
     )
 
 

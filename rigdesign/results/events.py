@@ -57,6 +57,8 @@ class EventRecord:
     reversals: tuple[Reversal, ...] = ()
     tripped: float | None = None
     """Time until the limit of the monitor is crossed [s]."""
+    untripped: float | None = None
+    """Time for which a monitor was watched that never tripped [s]."""
     standstill: float | None = None
     """Time until the rig stands, from the trip or the stop on [s]."""
     dynamic_factor: dict[str, float] = field(default_factory=dict)

@@ -50,6 +50,12 @@ def _tooth_loss(case: "Case", at: str, event: ToothLoss) -> Iterator[Fault]:
     meshes = [f"{box}.{mesh}" for box, own in case.gearboxes.items() for mesh in own.meshes]
     if event.mesh not in meshes:
         yield unknown(f"{at}.mesh", event.mesh, meshes, "mesh")
+    if event.trip_time_maximum is not None and event.trip_time_maximum >= event.duration:
+        yield Fault(
+            f"{at}.trip_time_maximum", show(event.trip_time_maximum, "time"),
+            f"is not below {show(event.duration, 'time')}, for which the event is followed",
+            "raise duration or lower the limit",
+        )  # fmt: skip
     if event.monitor is None:
         return
     assert case.drivetrain is not None

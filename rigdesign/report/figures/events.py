@@ -30,7 +30,7 @@ def event_figure(event: Mapping[str, Any]) -> "Figure":
         if event["time_to_trip_s"] is not None:
             axes.axvline(1e3 * event["time_to_trip_s"], color=INK, linewidth=0.8, linestyle=":", label="trip")
         finish(axes, ylabel=f"{quantity}\n[{unit_text('Nm')}]")
-        axes.legend(loc="upper right", ncols=3)
+        axes.legend(loc="center right", ncols=3)
     axes_list[-1].set_xlabel("time from the event on [ms]")
     axes_list[-1].set_xlim(0.0, time[-1])
     figure.subplots_adjust(left=0.085, right=0.985, top=0.97, bottom=0.12, hspace=0.12)

@@ -6,6 +6,8 @@ from rigdesign.results.events import EventRecord
 from rigdesign.results.units import RPM
 
 UNITS = {"bearing force": "N"}
+LEAST_SHARE = 0.05
+"""Part of the peak below which what was there before is no measure of it."""
 
 
 def event_row(found: EventRecord) -> dict[str, Any]:
@@ -23,7 +25,7 @@ def event_row(found: EventRecord) -> dict[str, Any]:
                 "unit": UNITS.get(peak.quantity, "N m"),
                 "before": peak.before,
                 "peak": peak.peak,
-                "factor": peak.peak / abs(peak.before) if abs(peak.before) > 1e-3 * peak.peak else None,
+                "factor": peak.peak / abs(peak.before) if abs(peak.before) > LEAST_SHARE * peak.peak else None,
                 "time_s": peak.time,
             }
             for peak in found.peaks
