@@ -32,11 +32,16 @@ OTHER_BRANCH = 0.02
 
 @dataclass
 class HarmonicStates:
-    """States by index of the speed, those of a second stable branch, and the reason for each that is missing."""
+    """States by index of the speed, those of a second stable branch, and the reason for each that is missing.
+
+    not_mesh_periodic : where the branch is there, and left by a motion of another period: no turning point is to be
+        passed
+    """
 
     found: dict[int, HarmonicSolution] = field(default_factory=dict)
     other: dict[int, HarmonicSolution] = field(default_factory=dict)
     reasons: dict[int, str] = field(default_factory=dict)
+    not_mesh_periodic: set[int] = field(default_factory=set)
 
 
 class BranchSearch:
@@ -52,8 +57,6 @@ class BranchSearch:
         self._walk, self._problem, self._drags, self._speeds = walk, problem, drags, speeds
         self._over_speed = SpeedProblem(problem=problem, drags=drags)
         self._open: dict[int, bool] = {}
-        self._not_mesh_periodic: set[int] = set()
-        """Where the branch is there, and left by a motion of another period: no turning point is to be passed."""
         self._unstable_states: dict[int, list[HarmonicSolution]] = {}
         self.states = HarmonicStates()
 
@@ -66,7 +69,7 @@ class BranchSearch:
                 self._trace_gaps()
             if any(self._open.values()):
                 self._walk_back()
-        if found and len(found) + len(self._not_mesh_periodic) < len(self._speeds):
+        if found and len(found) + len(self.states.not_mesh_periodic) < len(self._speeds):
             self._walk_over(range(len(self._speeds) - 1, -1, -1))
         return self.states
 
@@ -74,7 +77,7 @@ class BranchSearch:
         """Each speed that has no state yet from the state before it."""
         last: HarmonicSolution | None = None
         for i in order:
-            if i not in self.states.found and i not in self._not_mesh_periodic:
+            if i not in self.states.found and i not in self.states.not_mesh_periodic:
                 try:
                     self._keep(i, self._solved(i, last))
                 except DynamicsNotConverged as reason:
@@ -97,7 +100,7 @@ class BranchSearch:
             if reason:
                 known.append(state)
                 if "(fold" not in reason:
-                    self._not_mesh_periodic.add(i)
+                    self.states.not_mesh_periodic.add(i)
                 raise DynamicsNotConverged(reason)
         self.states.found[i] = state
         self.states.reasons.pop(i, None)
@@ -120,10 +123,12 @@ class BranchSearch:
 
     def _trace_gaps(self) -> None:
         """Trace the branches through the speeds that have no state, from what is next to them."""
-        missing = sorted(set(self.states.reasons) - self._not_mesh_periodic, key=lambda i: self._speeds[i])
+        missing = sorted(
+            set(self.states.reasons) - self.states.not_mesh_periodic, key=lambda i: self._speeds[i]
+        )
         for gap in _runs(missing, self._speeds):
             for rising in (True, False):
-                if all(i in self.states.found or i in self._not_mesh_periodic for i in gap):
+                if all(i in self.states.found or i in self.states.not_mesh_periodic for i in gap):
                     break
                 start = self._beside(gap, rising=rising)
                 if start is not None:

@@ -32,6 +32,10 @@ Method = Literal["harmonic_balance", "time_integration"]
 DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | None
 
 
+LONG_SEARCH, SHORT_SEARCH = 2.0, 0.5
+"""Simulated time in which a steady state is sought at most [s]; the short one where none of the asked period exists."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class CurvePoint:
     """Steady periodic state at one mean speed.
@@ -178,7 +182,8 @@ def periodic_response(
         for i, reason in reasons.items():
             drags = drag_torques(given[i]) if callable(drag_torques) else drag_torques
             try:
-                found[i] = _in_time(loops, given[i], drags)
+                longest = SHORT_SEARCH if i in states.not_mesh_periodic else LONG_SEARCH
+                found[i] = _in_time(loops, given[i], drags, longest)
             except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
@@ -250,7 +255,7 @@ class _Loops:
     ) -> None:
         self.drivetrain, self.laws, self.load, self.settings = drivetrain, laws, load, settings
         self._problems: dict[int, BalanceProblem] = {}
-        self._solvers: dict[int, TimeIntegration] = {}
+        self._solvers: dict[tuple[int, float], TimeIntegration] = {}
 
     def problem(self, speed: float) -> BalanceProblem:
         """Harmonic balance at a speed of the first pinion [rad/s]."""
@@ -266,13 +271,15 @@ class _Loops:
             )
         return self._problems[id(system)]
 
-    def solver(self, speed: float) -> TimeIntegration:
-        """Time integration at a speed of the first pinion [rad/s]."""
+    def solver(self, speed: float, longest: float) -> TimeIntegration:
+        """Time integration at a speed of the first pinion [rad/s] for ``longest`` [s] at most."""
         system = self.drivetrain.at(speed)
-        if id(system) not in self._solvers:
-            settings = TimeSettings(period=self.settings.period, cutoff=self.settings.cutoff)
-            self._solvers[id(system)] = TimeIntegration(system, self.laws, settings)
-        return self._solvers[id(system)]
+        if (id(system), longest) not in self._solvers:
+            settings = TimeSettings(
+                period=self.settings.period, cutoff=self.settings.cutoff, longest_time=longest
+            )
+            self._solvers[id(system), longest] = TimeIntegration(system, self.laws, settings)
+        return self._solvers[id(system), longest]
 
 
 def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) -> HarmonicStates:
@@ -289,13 +296,14 @@ def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) ->
     return search.run()
 
 
-def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None) -> CurvePoint:
+def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None, longest: float) -> CurvePoint:
     """The response to which a march comes; over one mesh it may be subharmonic, or not repeat at all, and says so."""
-    result = loops.solver(speed).periodic(speed, loops.load, drags)
+    solver = loops.solver(speed, longest)
+    result = solver.periodic(speed, loops.load, drags)
     model = loops.problem(speed).model
     cells = mesh_cells(model, loops.settings.period, loops.load.control_mesh)[0]
     if loops.settings.period == "mesh":
-        return point_in_time(model, result, cells * round(result.period * speed / loops.solver(speed).turns))
+        return point_in_time(model, result, cells * round(result.period * speed / solver.turns))
     if not result.steady:
         raise DynamicsNotConverged("; ".join(result.warnings))
     return point_in_time(model, result, cells)

@@ -69,7 +69,7 @@ def _family(
     return EventFamily(
         key=f"event.{name}", title=f"{title} in the event {{place}}", unit=unit, group=GROUP,
         source=f"events.{{place}}.{name}", procedure=procedure, places=_of(part), part=part, limit_key=name,
-        found=found, comparison=">=" if name.endswith("minimum") else "<=",
+        found=found, moved_by=frozenset({"events", "housing"}), comparison=">=" if name.endswith("minimum") else "<=",
         absent="the event does not come to it: " + title,
     )  # fmt: skip
 
