@@ -112,13 +112,12 @@ FAMILIES = (
 
 
 def checks(solved: SolvedRig) -> Iterator[Check]:
-    """Every limit that an event states; one that it leaves out is no check."""
+    """Rules of every event; a limit that it leaves out makes its rule not applicable."""
     records = {record.name: record for record in solved.events}
     for name, event in solved.case.events.items():
         for family in FAMILIES:
-            limit = getattr(event, family.limit_key, None) if isinstance(event, family.part) else None
-            if limit is not None:
-                rule = family.rule(limit, name)
+            if isinstance(event, family.part):
+                rule = family.rule(getattr(event, family.limit_key), name)
                 record = records.get(name)
                 yield family.worst(solved, rule, [] if record is None else family.found(record))
 
