@@ -1,9 +1,10 @@
 """Periodic response of the loop over speed, by harmonic balance where it may be trusted, else in time.
 
 Harmonic balance is used where its harmonics reach 1.5 times the highest oscillating mode that the propagator
-keeps; it walks over the speeds in the order given, each start taken from the speed before, so that a rising
-and a falling list may end on different branches of a jump. Where it fails or may not be used,
-``dynamics.response.periodic_response`` runs to a tested steady state in time.
+keeps. It follows the stable branches over the speeds (``dynamics.response.harmonic_branches``): a walk in the order
+given, round turning points by arclength, and back for a second stable response. Where no mesh-periodic response lasts,
+``dynamics.response.periodic_response`` marches in time and says what the motion is: steady, subharmonic, quasi-periodic
+or chaotic.
 """
 
 from collections.abc import Callable, Mapping, Sequence
