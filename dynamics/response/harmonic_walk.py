@@ -86,6 +86,16 @@ class HarmonicWalk:
                 reason = error
         raise reason
 
+    def solve_near(
+        self, speed: float, drags: Mapping[str, float] | None, start: HarmonicSolution
+    ) -> HarmonicSolution:
+        """State at a speed on the branch of ``start``, which lies next to it; else DynamicsNotConverged."""
+        grid = self.grid(speed)
+        try:
+            return self._solve(resample(start, grid), speed, drags)
+        except DynamicsNotConverged:
+            return self._solve(resample(start, replace(grid, samples=4 * grid.samples)), speed, drags)
+
     def _solve(
         self, start: HarmonicSolution, speed: float, drags: Mapping[str, float] | None
     ) -> HarmonicSolution:

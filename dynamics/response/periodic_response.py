@@ -25,6 +25,7 @@ from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF, ModalModel
+from dynamics.response.motion_kind import LONGEST, Motion, growth_per_period, kind_of, repeats_after
 from dynamics.response.steady_search import PeriodGrid, SteadySearch
 from dynamics.response.time_march import TimeMarch
 
@@ -33,6 +34,8 @@ Period = Literal["mesh", "revolution", "hunting_cycle"]
 
 INTERNAL_RATE = 320e3
 """Internal steps per second: eight per sample at 40 kHz."""
+SHOWN_PERIODS = 120
+"""Periods of a motion that is searched for one and has none."""
 LEAST_STEPS = 64
 """Internal steps per period at least."""
 
@@ -55,6 +58,8 @@ class PeriodicResponse:
     joint_loss : mean power of joint and linear bearing damping [W]
     drag_loss : name -> mean power of each drag torque [W]
     drive_power : motor torque times mean speed of its freedom [W]; bracing_power : of the twist [W]
+    motion : whether it repeats after the asked period, after several of them (``period`` is then as long), or not at
+        all; then the arrays show ``SHOWN_PERIODS`` periods
     steady : the test was met; residual : change of the torque over a block, extrapolated, relative to its
         peak-to-peak value; periods : marched; unconverged_steps : contact iterations that ended early
     end : state at the end of the period, a start for a neighbouring speed
@@ -82,6 +87,7 @@ class PeriodicResponse:
     drag_loss: dict[str, float]
     drive_power: float
     bracing_power: float
+    motion: Motion
     steady: bool
     residual: float
     periods: int
@@ -176,7 +182,10 @@ def periodic_by_time(
 
 
 class TimeIntegration:
-    """Periodic responses of one drivetrain by time integration; its modal models are shared between speeds."""
+    """Periodic responses of one drivetrain by time integration; its modal models are shared between speeds.
+
+    turns : of the first pinion in the asked period
+    """
 
     def __init__(
         self, system: LinearSystem, laws: Sequence[MeshLaw], settings: TimeSettings = DEFAULT_TIME
@@ -184,7 +193,7 @@ class TimeIntegration:
         """Raises DynamicsInputError as ``pinion_ratios`` and ``period_length``."""
         self.system, self.laws, self.settings = system, laws, settings
         self._ratios = pinion_ratios(system, laws)
-        self._turns = period_length(laws, [self._ratios[p] for p in system.mesh_ports[:, 0]], settings.period)
+        self.turns = period_length(laws, [self._ratios[p] for p in system.mesh_ports[:, 0]], settings.period)
         self._models: dict[tuple[str, ...], ModalModel] = {}
 
     def periodic(
@@ -240,12 +249,12 @@ class TimeIntegration:
         return any(load.parts for load in loads)
 
     def _period(self, speed: float) -> PeriodGrid:
-        length = 2.0 * pi / speed * self._turns
+        length = 2.0 * pi / speed * self.turns
         # whole steps per mesh of the first pair: what lies above the step rate then folds back on mesh orders only
-        meshes = round(self._turns * self.laws[0].teeth_1)
+        meshes = round(self.turns * self.laws[0].teeth_1)
         least = max(self.settings.least_steps, length * self.settings.internal_rate)
         return PeriodGrid(
-            speed=speed, turns=self._turns, length=length, steps=meshes * ceil(least / meshes - 1e-9)
+            speed=speed, turns=self.turns, length=length, steps=meshes * ceil(least / meshes - 1e-9)
         )
 
     def _model(self, drags: tuple[str, ...]) -> ModalModel:
@@ -259,19 +268,32 @@ class TimeIntegration:
         """March blocks of periods until the search is steady or the time is over."""
         tables = np.array([[value, value] for value in drags.values()]).reshape(len(drags), 2)
         per_block = max(1, ceil(2e-3 / period.length))
-        blocks = max(4, ceil(self.settings.longest_time / (per_block * period.length)))
-        done = 0
-        before, block = march.accounts(), None
-        for _ in range(blocks):
+        most = max(4 * per_block, ceil(self.settings.longest_time / period.length))
+        done, block = 0, None
+        before = march.accounts()
+        while done < most and not search.steady:
+            if (
+                done >= most // 2
+            ):  # a block of 12 periods repeats for subharmonic motions of order 2, 3, 4, 6, 12
+                per_block = LONGEST * ceil(per_block / LONGEST)
             before = march.accounts()
             block = search.block(per_block, tables)
             done += per_block
-            if search.steady:
-                break
+        shown, motion = per_block, kind_of(1 if search.steady else 0)
+        if self.settings.period == "mesh":
+            before = march.accounts()
+            shown = max(per_block, 2 * LONGEST) if search.steady else SHOWN_PERIODS
+            block = search.held(shown, tables)
+            motion = kind_of(repeats_after(block.force, period.steps))
+            work = march.accounts().since(before)
+            if not motion.periods:
+                motion = kind_of(0, growth_per_period(search.parting(shown, tables)))
+        else:
+            work = march.accounts().since(before)
         assert block is not None
-        work = march.accounts().since(before)
-        span = per_block * period.length
+        span = shown * period.length
         speed, steps = period.speed, period.steps
+        steps *= (motion.periods or shown) if self.settings.period == "mesh" else 1
         last = slice(block.force.shape[1] - steps, None)
         radius = np.array([law.base_radius_1 for law in self.laws])
         force = block.force[:, last]
@@ -280,8 +302,7 @@ class TimeIntegration:
         if not search.steady:
             warnings.append(
                 f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} "
-                f"periods, limit {self.settings.tolerance:.0e}; allow a longer time or another period "
-                "(subharmonic motion has none of this length)"
+                f"periods, limit {self.settings.tolerance:.0e}; the motion is {motion}"
             )
         if march.unconverged:
             warnings.append(
@@ -289,7 +310,7 @@ class TimeIntegration:
             )
         return PeriodicResponse(
             speed=speed,
-            period=period.length,
+            period=steps * march.step,
             time=np.asarray(march.step * np.arange(1, steps + 1), float),
             torque=dynamic,
             force=force,
@@ -310,6 +331,7 @@ class TimeIntegration:
             drag_loss=dict(zip(drags, (work.drag / span).tolist())),
             drive_power=search.balanced_drive * speed * float(self._ratios[self.system.drive_dof]),
             bracing_power=float(work.slow_work[1]) / span,
+            motion=motion,
             steady=search.steady,
             residual=search.residual,
             periods=done,

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.shaft_torque import harmonic_loads
+from dynamics.drivetrain.periodic_load import harmonic_loads
 from dynamics.drivetrain.static_loop import line_ratios
 from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
@@ -74,15 +74,17 @@ class SectionTorques:
         return np.array(found)
 
     def _driven(self, wave: Waveform, base: float, drive_speed: float, top: int) -> Complex:
-        """Modal loads (n_states, top) of torques that alternate with a shaft, in phase with the pinion."""
+        """Modal loads (n_states, top) of loads that alternate with a shaft, in phase with the pinion."""
         form = self.system.form
         loads = np.zeros((form.poles.size, top), complex)
-        if not self.system.shaft_torques:
+        if not self.system.periodic_loads:
             return loads
         pinion = float(self.ratios[self.system.mesh_ports[0, 0]])
         lead = float(np.mean(wave.angle[0] / pinion - drive_speed * (wave.time - wave.time[0])))
         turns = drive_speed / base
-        for harmonic, load in harmonic_loads(self.system.shaft_torques, self.ratios, turns).items():
+        for harmonic, load in harmonic_loads(
+            self.system.periodic_loads, self.ratios, turns, drive_speed
+        ).items():
             if harmonic <= top:
                 phase = np.exp(1j * lead * harmonic / turns)
                 loads[:, harmonic - 1] += 0.5 * phase * (form.loads @ load)

@@ -1,9 +1,10 @@
 """Periodic response of the loop over speed, by harmonic balance where it may be trusted, else in time.
 
 Harmonic balance is used where its harmonics reach 1.5 times the highest oscillating mode that the propagator
-keeps; it walks over the speeds in the order given, each start taken from the speed before, so that a rising
-and a falling list may end on different branches of a jump. Where it fails or may not be used,
-``dynamics.response.periodic_response`` runs to a tested steady state in time.
+keeps. It follows the stable branches over the speeds (``dynamics.response.harmonic_branches``): a walk in the order
+given, round turning points by arclength, and back for a second stable response. Where no mesh-periodic response lasts,
+``dynamics.response.periodic_response`` marches in time and says what the motion is: steady, subharmonic, quasi-periodic
+or chaotic.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,10 +19,12 @@ from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed
 from dynamics.drivetrain.static_loop import PortModel, port_model
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_branches import BranchSearch, HarmonicStates
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk, mesh_cells
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.modal_model import DEFAULT_CUTOFF
+from dynamics.response.motion_kind import PERIODIC, Motion
 from dynamics.response.periodic_response import Period, PeriodicResponse, TimeIntegration, TimeSettings
 from dynamics.response.waveform import Waveform, waveform
 
@@ -30,12 +33,18 @@ Method = Literal["harmonic_balance", "time_integration"]
 DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | None
 
 
+LONG_SEARCH, SHORT_SEARCH = 2.0, 0.5
+"""Simulated time in which a steady state is sought at most [s]; the short one where none of the asked period exists."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class CurvePoint:
     """Steady periodic state at one mean speed.
 
-    speed : of the pinion of the first mesh [rad/s]; method : how it was found; residual : relative, of that
-    method flank : (n_meshes,) +1 where the front flank carries the mean torque, -1 the back flank
+    speed : of the pinion of the first mesh [rad/s]; method : how it was found; residual : relative, of that method
+    motion : whether it repeats in the asked period, after several of them, or not at all; the statistics are then those
+    of the periods that ``wave`` holds
+    flank : (n_meshes,) +1 where the front flank carries the mean torque, -1 the back flank
     mean, maximum, minimum : (n_meshes,) torque transmitted at the pinion, positive in load direction [N m]
     harmonics : (n_meshes, n + 1) mean and amplitudes of that torque over the orders of the mesh frequency
     [N m] lift_off_share : (n_meshes,) share of the period without contact [-]
@@ -59,6 +68,7 @@ class CurvePoint:
     friction_power: Array
     damping_power: Array
     wave: Waveform = field(repr=False)
+    motion: Motion = PERIODIC
 
     @property
     def dynamic_factor(self) -> Array:
@@ -84,10 +94,15 @@ class CurvePoint:
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseCurve:
-    """Points in the order of the speeds asked for; ``failed`` holds (speed [rad/s], reason) of the others."""
+    """Points in the order of the speeds asked for; ``failed`` holds (speed [rad/s], reason) of the others.
+
+    other_branch : where a second stable response exists at a speed, from which the motion does not come to the first
+        without a jump
+    """
 
     points: tuple[CurvePoint, ...]
     failed: tuple[tuple[float, str], ...]
+    other_branch: tuple[CurvePoint, ...] = ()
 
     @property
     def speeds(self) -> Array:
@@ -158,20 +173,24 @@ def periodic_response(
         )
     given = [float(speed) for speed in speeds]
     loops = _Loops(drivetrain, laws, load, settings)
-    drags = [drag_torques(speed) if callable(drag_torques) else drag_torques for speed in given]
-    found: dict[int, CurvePoint] = {}
-    reasons: dict[int, str] = dict.fromkeys(range(len(given)), "")
-    if "harmonic_balance" in settings.methods:
-        found, reasons = _by_harmonics(loops, given, drags)
-    if "time_integration" in settings.methods and reasons:
+    states = HarmonicStates(reasons=dict.fromkeys(range(len(given)), ""))
+    if given and "harmonic_balance" in settings.methods:
+        states = _by_harmonics(loops, given, drag_torques)
+    found = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.found.items()}
+    other = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.other.items()}
+    reasons = states.reasons
+    if "time_integration" in settings.methods:
         for i, reason in reasons.items():
+            drags = drag_torques(given[i]) if callable(drag_torques) else drag_torques
             try:
-                found[i] = _in_time(loops, given[i], drags[i])
+                longest = SHORT_SEARCH if i in states.not_mesh_periodic else LONG_SEARCH
+                found[i] = _in_time(loops, given[i], drags, longest)
             except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
         points=tuple(found[i] for i in sorted(found)),
         failed=tuple((given[i], reasons[i]) for i in range(len(given)) if i not in found),
+        other_branch=tuple(other[i] for i in sorted(other)),
     )
 
 
@@ -197,6 +216,7 @@ def refined_response(
     curve = solve([float(speed) for speed in speeds])
     points = {point.speed: point for point in curve.points}
     failed = dict(curve.failed)
+    other = {point.speed: point for point in curve.other_branch}
     for _ in range(rounds):
         wanted = sorted(_between(sorted(points.values(), key=lambda point: point.speed), bend) - set(failed))
         if not wanted:
@@ -204,9 +224,11 @@ def refined_response(
         more = solve(wanted)
         points |= {point.speed: point for point in more.points}
         failed |= dict(more.failed)
+        other |= {point.speed: point for point in more.other_branch}
     return ResponseCurve(
         points=tuple(points[speed] for speed in sorted(points)),
         failed=tuple(sorted(failed.items())),
+        other_branch=tuple(other[speed] for speed in sorted(other)),
     )
 
 
@@ -234,7 +256,7 @@ class _Loops:
     ) -> None:
         self.drivetrain, self.laws, self.load, self.settings = drivetrain, laws, load, settings
         self._problems: dict[int, BalanceProblem] = {}
-        self._solvers: dict[int, TimeIntegration] = {}
+        self._solvers: dict[tuple[int, float], TimeIntegration] = {}
 
     def problem(self, speed: float) -> BalanceProblem:
         """Harmonic balance at a speed of the first pinion [rad/s]."""
@@ -250,49 +272,42 @@ class _Loops:
             )
         return self._problems[id(system)]
 
-    def solver(self, speed: float) -> TimeIntegration:
-        """Time integration at a speed of the first pinion [rad/s]."""
+    def solver(self, speed: float, longest: float) -> TimeIntegration:
+        """Time integration at a speed of the first pinion [rad/s] for ``longest`` [s] at most."""
         system = self.drivetrain.at(speed)
-        if id(system) not in self._solvers:
-            settings = TimeSettings(period=self.settings.period, cutoff=self.settings.cutoff)
-            self._solvers[id(system)] = TimeIntegration(system, self.laws, settings)
-        return self._solvers[id(system)]
+        if (id(system), longest) not in self._solvers:
+            settings = TimeSettings(
+                period=self.settings.period, cutoff=self.settings.cutoff, longest_time=longest
+            )
+            self._solvers[id(system), longest] = TimeIntegration(system, self.laws, settings)
+        return self._solvers[id(system), longest]
 
 
-def _by_harmonics(
-    loops: _Loops, speeds: Sequence[float], drags: Sequence[Mapping[str, float] | None]
-) -> tuple[dict[int, CurvePoint], dict[int, str]]:
-    """Points by index, and the reason for each that is missing.
-
-    First in the given order; then backwards through the gaps from their far side, where another branch lives.
-    """
+def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) -> HarmonicStates:
+    """States by index on stable branches, see `BranchSearch`."""
     settings = loops.settings
-    states: dict[int, HarmonicSolution] = {}
-    reasons: dict[int, str] = {}
-    last: HarmonicSolution | None = None
-    if not speeds:
-        return {}, {}
     walk = HarmonicWalk(loops.problem(speeds[0]), settings.period, settings.cutoff, settings.tolerance)
     ratio = float(walk.problem.model.ratios[0])
-    for order in (range(len(speeds)), range(len(speeds) - 1, -1, -1)):
-        for i in order:
-            if i not in states and (i in reasons or order.step > 0):
-                walk.take(loops.problem(speeds[i]))
-                try:
-                    states[i] = walk.solve(speeds[i] / ratio, drags[i], last)
-                    reasons.pop(i, None)
-                except DynamicsNotConverged as reason:
-                    reasons[i] = str(reason)
-            last = states.get(i, last)
-    return {i: point_of(loops.problem(speeds[i]).model, state) for i, state in states.items()}, reasons
+    search = BranchSearch(
+        walk,
+        lambda speed: loops.problem(speed * ratio),
+        lambda speed: drags(speed * ratio) if callable(drags) else drags,
+        np.array(speeds) / ratio,
+    )
+    return search.run()
 
 
-def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None) -> CurvePoint:
-    result = loops.solver(speed).periodic(speed, loops.load, drags)
+def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None, longest: float) -> CurvePoint:
+    """The response to which a march comes; over one mesh it may be subharmonic, or not repeat at all, and says so."""
+    solver = loops.solver(speed, longest)
+    result = solver.periodic(speed, loops.load, drags)
+    model = loops.problem(speed).model
+    cells = mesh_cells(model, loops.settings.period, loops.load.control_mesh)[0]
+    if loops.settings.period == "mesh":
+        return point_in_time(model, result, cells * round(result.period * speed / solver.turns))
     if not result.steady:
         raise DynamicsNotConverged("; ".join(result.warnings))
-    model = loops.problem(speed).model
-    return point_in_time(model, result, mesh_cells(model, loops.settings.period, loops.load.control_mesh)[0])
+    return point_in_time(model, result, cells)
 
 
 def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
@@ -344,6 +359,7 @@ def point_in_time(model: PortModel, result: PeriodicResponse, cells: int) -> Cur
         friction_power=wave.friction_power,
         damping_power=wave.damping_power,
         wave=wave,
+        motion=result.motion,
     )
 
 

@@ -15,6 +15,10 @@ from dynamics.response.time_march import Block, TimeMarch
 Array = NDArray[np.float64]
 
 
+SMALL = 1e-9
+"""Difference in speed from which two marches part, over the speed [-]."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class PeriodGrid:
     """One period: mean speed of the first pinion [rad/s], its turns, length [s] and internal steps."""
@@ -55,15 +59,8 @@ class SteadySearch:
         """March some periods with constant drag torques (n_drags, 2), correct, and return what was marched."""
         march = self.march
         steps = self._period.steps
-        samples = periods * steps // march.substeps
-        given = np.zeros((samples, 4 + len(self._loads)))
-        given[:, 0], given[:, 1] = self.drive, self.twist
         before = march.pinion_angle()
-        angle = before + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
-        for i, load in enumerate(self._loads):
-            ratio = float(self._ratios[load.dof])
-            given[:, 4 + i] = load.at(np.asarray(ratio * angle, float), ratio * self.speed)
-        result = march.advance(given, drags=DragTables(torque=tables))
+        result = march.advance(self._given(periods), drags=DragTables(torque=tables))
         span = periods * self._period.length
         mean_speed = (march.pinion_angle() - before) / span
         radius = np.array([law.base_radius_1 for law in march.laws])
@@ -76,6 +73,31 @@ class SteadySearch:
         if not self.steady:
             self._correct(mean_speed, drift, span, torque_error)
         return result
+
+    def held(self, periods: int, tables: Array) -> Block:
+        """March some periods without corrections."""
+        return self.march.advance(self._given(periods), drags=DragTables(torque=tables))
+
+    def parting(self, periods: int, tables: Array) -> Array:
+        """Distance from a march that starts with a small difference, by period, over the peak force (periods,) [-]."""
+        given, drags = self._given(periods), DragTables(torque=tables)
+        other = self.march.continued(self.march.system, self.march.model)
+        other.kick(SMALL * self.speed * np.cos(np.arange(len(self._ratios))))
+        first, second = (march.advance(given, drags=drags).force for march in (self.march, other))
+        apart = (np.abs(first - second) / np.abs(first).max(axis=1, keepdims=True)).max(axis=0)
+        return np.asarray(apart.reshape(periods, -1).max(axis=1))
+
+    def _given(self, periods: int) -> Array:
+        """Commands over some periods: drive torque and twist as they are."""
+        march = self.march
+        samples = periods * self._period.steps // march.substeps
+        given = np.zeros((samples, 4 + len(self._loads)))
+        given[:, 0], given[:, 1] = self.drive, self.twist
+        angle = march.pinion_angle() + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
+        for i, load in enumerate(self._loads):
+            ratio = float(self._ratios[load.dof])
+            given[:, 4 + i] = load.at(np.asarray(ratio * angle, float), ratio * self.speed)
+        return given
 
     def _test(self, wave: Array, mean: float, torque_error: float, mean_speed: float) -> None:
         if self._last is not None:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.static_loop import PortModel
 from dynamics.mesh.force import evaluate_mesh
-from dynamics.response.harmonic_balance import in_time, motion_of_mesh
+from dynamics.response.harmonic_equations import in_time, motion_of_mesh
 from dynamics.response.harmonic_problem import HarmonicSolution
 
 Array = NDArray[np.float64]

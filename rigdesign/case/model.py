@@ -14,6 +14,7 @@ from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
+from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.inputs import InputRow, input_rows
@@ -100,6 +101,8 @@ class Case(Part):
     """Tolerances and sizes of the models."""
     transient: Transient = Transient()
     """Warm-up, dwell and stops that ``check --transient`` follows."""
+    events: Mapping[Name, Event] = {}
+    """Events by name: loss of teeth, emergency stop, overspeed."""
     document: Document = Document()
     """Who answers for the report; moves no result and is left out of the hash."""
 

@@ -11,7 +11,7 @@ from typing import Literal
 Influence = Literal[
     "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
     "thermal history", "coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
-    "rig heat", "flank rating",
+    "rig heat", "flank rating", "events",
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
@@ -29,6 +29,7 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("limits.strength",): ("strength limits",),
     ("limits",): (),
     ("test_plan",): ("test time",),
+    ("events",): ("events",),
     ("transient",): ("thermal history",),
     (
         "gearboxes.*.seals.*.axial_travel",

@@ -539,6 +539,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "numerics.response_period": _at(
         coupling__tooth_deviations="which tooth deviations the periodic response holds"
     ),
+    "events.*": _at(records__events="march from the steady state at speed and torque of the event"),
     "transient": _at(transient__phases="phases of the thermal history"),
     "transient.events": _at(transient__thermal_history="what is followed in addition to the schedule"),
     "transient.still_film": _at(transient__oil="least film of surfaces in still air"),

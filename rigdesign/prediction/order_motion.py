@@ -42,7 +42,13 @@ def ideal_response(rig: Rig, loop: LoadedCircuit) -> CurvePoint:
     )
     if curve.failed:
         raise DynamicsNotConverged(f"mesh-periodic response at {loop.point.stage!r}: {curve.failed[0][1]}")
-    return curve.points[0]
+    (found,) = curve.points
+    if found.motion.periods != 1:
+        raise DynamicsNotConverged(
+            f"mesh-periodic response at {loop.point.stage!r}: the motion is {found.motion}, must repeat in every mesh; "
+            "ask at a higher torque or another speed"
+        )
+    return found
 
 
 def is_ideal(rig: Rig) -> bool:

@@ -201,6 +201,7 @@ def factor_points(rig: Rig, mesh: int, curve: ResponseCurve) -> list[DynamicFact
     """The K_V(n) curve of one mesh with that of ISO 6336-1, over the speed of its own pinion."""
     name = rig.mesh_names[mesh]
     ratio = own_ratio(rig, mesh)
+    other = {point.speed: float(point.dynamic_factor[mesh]) for point in curve.other_branch}
     points = []
     for point in curve.points:
         speed = point.speed * ratio
@@ -212,6 +213,8 @@ def factor_points(rig: Rig, mesh: int, curve: ResponseCurve) -> list[DynamicFact
                 simulated_half_peak_to_peak=float(point.dynamic_factor_half_peak_to_peak[mesh]),
                 iso_6336_1_method_b=iso.K_V,
                 method=point.method,
+                motion=point.motion.kind,
+                other_branch=other.get(point.speed),
             )
         )
     return points

@@ -13,6 +13,7 @@ from rigdesign.records.housing import cooling_balance
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
+from rigdesign.results.events import EventRecord
 from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.lateral import LateralVibration
@@ -40,6 +41,8 @@ class SolvedRig:
     cooling: Sequence[CoolingBalance] = ()
     history: HistoryExtremes | None = None
     """None where no thermal history was asked for."""
+    events: Sequence[EventRecord] = ()
+    """Of a rig with a drivetrain."""
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
 

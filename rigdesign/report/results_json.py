@@ -43,6 +43,8 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "flips": result.flips,
         "timings_s": result.timings_s,
     }
+    if result.events:
+        document["events"] = result.events
     if result.rolling_bearings:
         document["rolling_bearings"] = result.rolling_bearings
     if result.lateral is not None:

@@ -19,6 +19,10 @@ class DynamicFactorPoint:
     iso_6336_1_method_b: float
     method: str = ""
     """harmonic_balance or time_integration."""
+    motion: str = "periodic"
+    """periodic; subharmonic, quasi-periodic or chaotic where the motion does not repeat in every mesh."""
+    other_branch: float | None = None
+    """Simulated factor of a second stable response at this speed, to which the motion may jump; None without one."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -87,6 +87,11 @@ class RunResult:
     dynamics: DynamicsResult | None
     losses: list[LossRow]
     oil: list[OilRow]
+    events: list[dict[str, Any]] = field(default_factory=list)
+    """Per event of the case {name, kind, what, speed_rpm, torque_Nm, peaks, contact, time_to_trip_s,
+    time_to_standstill_s, dynamic_factor, resonance, resonance_distance, curves, notes}; peaks: {place, quantity, unit,
+    before, peak, factor, time_s}; contact: {mesh, open_share, other_flank_Nm}; curves: {time_s, torque: {place,
+    quantity, least, greatest}}."""
     rolling_bearings: list[dict[str, Any]] = field(default_factory=list)
     """Per rolling bearing and held stage {bearing, stage, designation, loads, friction torque by source, temperatures,
     heat into the seats, operating_clearance_um, lives, safety, stiffness}; units in the keys."""

@@ -24,6 +24,7 @@ from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, schedule_of
 from rigdesign.records.dynamics import dynamic_loads
 from rigdesign.records.dynamics_section import dynamics_section
+from rigdesign.records.events import solve_events
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, fields_of
 from rigdesign.records.rolling_bearings import rolling_bearings
@@ -31,6 +32,7 @@ from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
+from rigdesign.results.rows.events import event_row
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
 from rigdesign.results.rows.lateral import lateral_row
 from rigdesign.results.rows.oil_circuits import circuit_rows
@@ -123,6 +125,10 @@ def solve_case(
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
     )
+    if run is not None and wanted.case.events:
+        say("events: " + ", ".join(wanted.case.events))
+        solved = replace(solved, events=solve_events(wanted, solved.test))
+        lap("events")
     say("errors of slices and shaft elements")
     solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
     lap("load_errors")
@@ -158,6 +164,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         else dynamics_section(rig, solved.run, solved.loads),
         losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
         oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
+        events=[event_row(found) for found in solved.events],
         rolling_bearings=[rolling_bearing_row(found) for found in rolling_bearings(rig, points)],
         lateral=None if solved.lateral is None else lateral_row(solved.lateral),
         cooler=[cooling_row(balance) for balance in solved.cooling],

@@ -14,6 +14,7 @@ from rigdesign.case.rotation import contradicting_rotations
 from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
+from rigdesign.case.rules.events import event_faults
 from rigdesign.case.rules.gears import gearbox_faults
 from rigdesign.case.rules.losses import loss_faults
 from rigdesign.case.rules.lubrication import lubrication_faults
@@ -50,6 +51,7 @@ def broken_rules(case: "Case") -> list[Fault]:
         oil_circuit_faults,
         rig_heat_faults,
         schedule_faults,
+        event_faults,
         _limits,
         _numerics,
     )

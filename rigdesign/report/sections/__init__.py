@@ -4,6 +4,7 @@ from rigdesign.report.sections.assumptions import ALL_ASSUMPTIONS, ASSUMPTIONS, 
 from rigdesign.report.sections.checks import CHECK_BASIS, CHECKS, DRIVERS
 from rigdesign.report.sections.clearances import CLEARANCE_DETAILS, CLEARANCES
 from rigdesign.report.sections.decision import DECISION
+from rigdesign.report.sections.events import EVENTS
 from rigdesign.report.sections.ground import HAND_CHECKS, NOT_MODELLED, PROVENANCE, WARNINGS
 from rigdesign.report.sections.inputs import DRIVETRAIN_INPUTS, INPUTS
 from rigdesign.report.sections.lateral import LATERAL
@@ -27,6 +28,7 @@ SECTIONS: tuple[ReportSection, ...] = (
     LOADS,
     VIBRATION,
     LATERAL,
+    EVENTS,
     LOSSES,
     OIL_CIRCUITS,
     RIG_HEAT,

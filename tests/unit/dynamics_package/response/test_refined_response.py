@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.response.motion_kind import PERIODIC
 from dynamics.response.speed_sweep import ResponseCurve, point_in_time, refined_response
 
 NARROW = 3.0
@@ -73,6 +74,7 @@ def test_a_period_marched_in_time_keeps_the_rate_of_approach() -> None:
         approach=1e-6 * np.sin(phase)[None], approach_rate=2e-3 * np.pi * np.cos(phase)[None],
         torque=np.full((1, 64), 50.0), force=np.ones((1, 64)), friction_loss=np.zeros(1),
         mesh_damping_loss=np.zeros(1), speed=100.0, residual=0.0, periods=1, twist=0.0, drive_torque=0.0,
+        motion=PERIODIC,
     )  # fmt: skip
     model: Any = SimpleNamespace(base_radii=np.array([[radius_1, radius_2]]))
     wave = point_in_time(model, result, 1).wave

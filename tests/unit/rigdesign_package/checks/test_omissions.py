@@ -16,6 +16,7 @@ from rigdesign import load_case, run_case
 from rigdesign.case.shipped import shipped_cases
 from rigdesign.checks import held_checks
 from rigdesign.checks.component_limits import RESULTS
+from rigdesign.checks.events import FAMILIES as EVENTS
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily
 from rigdesign.checks.rules import Omission, Rule, hold, with_omissions
@@ -121,6 +122,7 @@ def test_every_family_of_rules_means_a_check() -> None:
         | {"transient.soak.test", "oil.supply.warm.lines.mesh", "transient.oil_supply.warm.lines.mesh"}
         | {"oil.room_temperature", "flank.edge_pressure.test"}
         | {f"lateral.{key}" for key in LATERAL}
+        | {f"{family.key}.broken" for family in EVENTS}
     )
     meant = {family_of(identity).key for identity in known}
     assert [family.key for family in REGISTRY.families() if family.key not in meant] == []

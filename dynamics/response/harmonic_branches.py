@@ -1,0 +1,222 @@
+"""Stable periodic responses at many speeds: walk, continuation round turning points, both branches of a jump.
+
+First a walk over the speeds in the order given, each state from the one before. Where a mesh loses contact the
+stability of what is found is tested. Speeds without a stable state are then sought along the branches: by arclength
+from the nearest states on both sides, or, where there are none, from a speed at which the response is plain. Last a
+walk the other way through the speeds with contact loss, which ends on the other branch where there are two.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.errors import DynamicsNotConverged
+from dynamics.response.harmonic_continuation import BranchTrace, SpeedProblem, crossings
+from dynamics.response.harmonic_equations import HarmonicEquations, state_of
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution, resample
+from dynamics.response.harmonic_stability import instability
+from dynamics.response.harmonic_walk import HarmonicWalk
+
+Array = NDArray[np.float64]
+Drags = Callable[[float], Mapping[str, float] | None]
+
+MOST_POINTS = 240
+"""Points of a branch traced at most."""
+PLAIN = (1.2, 1.5, 2.0, 3.0, 0.8, 0.6, 0.4)
+"""Shares of a speed at which a plain response is looked for."""
+OTHER_BRANCH = 0.02
+"""Least difference of the approach, over its mean, of states that are two [-]."""
+
+
+@dataclass
+class HarmonicStates:
+    """States by index of the speed, those of a second stable branch, and the reason for each that is missing.
+
+    not_mesh_periodic : where the branch is there, and left by a motion of another period: no turning point is to be
+        passed
+    """
+
+    found: dict[int, HarmonicSolution] = field(default_factory=dict)
+    other: dict[int, HarmonicSolution] = field(default_factory=dict)
+    reasons: dict[int, str] = field(default_factory=dict)
+    not_mesh_periodic: set[int] = field(default_factory=set)
+
+
+class BranchSearch:
+    """Search for the stable states of a loop at asked speeds."""
+
+    def __init__(
+        self, walk: HarmonicWalk, problem: Callable[[float], BalanceProblem], drags: Drags, speeds: Array
+    ) -> None:
+        """Prepare a search.
+
+        problem, drags : at a speed of the drive freedom [rad/s]; speeds : (n,) of it, in the order of the walk
+        """
+        self._walk, self._problem, self._drags, self._speeds = walk, problem, drags, speeds
+        self._over_speed = SpeedProblem(problem=problem, drags=drags)
+        self._open: dict[int, bool] = {}
+        self._unstable_states: dict[int, list[HarmonicSolution]] = {}
+        self.states = HarmonicStates()
+
+    def run(self) -> HarmonicStates:
+        """All states; a reason stays where no stable one is known."""
+        found = self.states.found
+        self._walk_over(range(len(self._speeds)))
+        if self._walk.cells == 1:
+            if self.states.reasons:
+                self._trace_gaps()
+            if any(self._open.values()):
+                self._walk_back()
+        if found and len(found) + len(self.states.not_mesh_periodic) < len(self._speeds):
+            self._walk_over(range(len(self._speeds) - 1, -1, -1))
+        return self.states
+
+    def _walk_over(self, order: range) -> None:
+        """Each speed that has no state yet from the state before it."""
+        last: HarmonicSolution | None = None
+        for i in order:
+            if i not in self.states.found and i not in self.states.not_mesh_periodic:
+                try:
+                    self._keep(i, self._solved(i, last))
+                except DynamicsNotConverged as reason:
+                    self.states.reasons.setdefault(i, str(reason))
+            last = self.states.found.get(i, last)
+
+    def _solved(self, i: int, last: HarmonicSolution | None) -> HarmonicSolution:
+        speed = float(self._speeds[i])
+        self._walk.take(self._problem(speed))
+        return self._walk.solve(speed, self._drags(speed), last)
+
+    def _keep(self, i: int, state: HarmonicSolution) -> None:
+        """Keep a stable state; DynamicsNotConverged for one that is not."""
+        if self._walk.cells == 1:
+            self._open[i] = False
+            known = self._unstable_states.setdefault(i, [])
+            if any(self._same(state, other) for other in known):
+                return
+            reason = self._unstable(state, i)
+            if reason:
+                known.append(state)
+                if "(fold" not in reason:
+                    self.states.not_mesh_periodic.add(i)
+                raise DynamicsNotConverged(reason)
+        self.states.found[i] = state
+        self.states.reasons.pop(i, None)
+
+    def _unstable(self, state: HarmonicSolution, i: int | None = None) -> str:
+        """Why a state with contact loss does not last; empty for a stable one, and for one that keeps contact."""
+        equations = self._over_speed.equations(state.grid, state.speed)
+        loses = _loses_contact(equations, state)
+        if i is not None:
+            self._open[i] = loses
+        if not loses:
+            return ""
+        count, way = instability(equations, state)
+        if not count:
+            return ""
+        return (
+            f"harmonic balance at {state.speed:.6g} rad/s: the response with contact loss that repeats in every mesh "
+            f"is unstable ({way}, {count} growing exponent{'s' if count > 1 else ''}); integrate in time"
+        )
+
+    def _trace_gaps(self) -> None:
+        """Trace the branches through the speeds that have no state, from what is next to them."""
+        missing = sorted(
+            set(self.states.reasons) - self.states.not_mesh_periodic, key=lambda i: self._speeds[i]
+        )
+        for gap in _runs(missing, self._speeds):
+            for rising in (True, False):
+                if all(i in self.states.found or i in self.states.not_mesh_periodic for i in gap):
+                    break
+                start = self._beside(gap, rising=rising)
+                if start is not None:
+                    self._trace(start, gap, rising=rising)
+
+    def _beside(self, gap: list[int], *, rising: bool) -> HarmonicSolution | None:
+        """Nearest state below (rising) or above the gap; a plain one from outside the speeds if there is none."""
+        edge = self._speeds[gap].min() if rising else self._speeds[gap].max()
+        side = 1.0 if rising else -1.0
+        known = [i for i in self.states.found if side * (edge - self._speeds[i]) > 0.0]
+        if known:
+            return self.states.found[min(known, key=lambda i: abs(float(self._speeds[i] - edge)))]
+        for share in PLAIN:
+            if (share < 1.0) == rising:
+                speed = float(share * edge)
+                self._walk.take(self._problem(speed))
+                try:
+                    state = self._walk.solve(speed, self._drags(speed), None)
+                except DynamicsNotConverged:
+                    continue
+                if not self._unstable(state):
+                    return state
+        return None
+
+    def _trace(self, start: HarmonicSolution, gap: list[int], *, rising: bool) -> None:
+        speeds = self._speeds[gap]
+        reach = 0.1 * (speeds.max() - speeds.min()) + 0.02 * speeds.max()
+        low = min(start.speed, float(speeds.min())) - reach
+        high = max(start.speed, float(speeds.max())) + reach
+        fine = resample(start, replace(start.grid, samples=2 * start.grid.samples))
+        trace = BranchTrace(self._over_speed, fine, rising=rising)
+        for place, state in crossings(trace.points((low, high), MOST_POINTS), start, speeds):
+            i = gap[place]
+            if i in self.states.found and i in self.states.other:
+                continue
+            speed = float(self._speeds[i])
+            self._walk.take(self._problem(speed))
+            try:
+                solved = self._walk.solve_near(speed, self._drags(speed), state)
+                if i not in self.states.found:
+                    self._keep(i, solved)
+                elif not self._same(solved, self.states.found[i]) and not self._unstable(solved):
+                    self.states.other[i] = solved
+            except DynamicsNotConverged as reason:
+                self.states.reasons[i] = str(reason)
+
+    def _walk_back(self) -> None:
+        """The other way through neighbouring speeds with contact loss, from the state after them."""
+        known = self.states.found
+        last: HarmonicSolution | None = None
+        for i in range(len(self._speeds) - 1, -1, -1):
+            if i not in known:
+                continue
+            if last is not None and self._open.get(i, False) and i not in self.states.other:
+                speed = float(self._speeds[i])
+                self._walk.take(self._problem(speed))
+                try:
+                    state = self._walk.solve_near(speed, self._drags(speed), last)
+                    if not self._same(state, known[i]) and not self._unstable(state):
+                        self.states.other[i] = state
+                        last = state
+                        continue
+                except DynamicsNotConverged:
+                    pass
+            last = known[i]
+
+    def _same(self, a: HarmonicSolution, b: HarmonicSolution) -> bool:
+        """Whether two states at one speed are one."""
+        problem = self._problem(a.speed)
+        b = resample(b, a.grid)
+        apart = problem.model.approach[:, :-1] @ (a.ports - b.ports)
+        return bool(np.abs(apart[:, 1:]).sum(axis=1).max() < OTHER_BRANCH * problem.approach_scale)
+
+
+def _loses_contact(equations: HarmonicEquations, state: HarmonicSolution) -> bool:
+    """Whether a mesh is open, or pressed on its other flank, anywhere in the period."""
+    _, reactions = equations.residual(state_of(state))
+    mean = reactions.transmitted.mean(axis=1, keepdims=True)
+    return bool((reactions.transmitted * np.sign(mean) <= 1e-9 * np.abs(mean)).any())
+
+
+def _runs(indices: list[int], speeds: Array) -> list[list[int]]:
+    """Indices, by rising speed, in groups of neighbours among all speeds."""
+    rank = {int(i): place for place, i in enumerate(np.argsort(speeds))}
+    groups: list[list[int]] = []
+    for i in indices:
+        if groups and rank[i] == rank[groups[-1][-1]] + 1:
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    return groups

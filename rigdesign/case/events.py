@@ -1,0 +1,107 @@
+"""Events that a rig has to survive: loss of teeth, emergency stop, overspeed; each kind is a table of its own."""
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, Tag, model_validator
+
+from rigdesign.case.fields import Force, Part, Share, Speed, Text, Time, Torque, Velocity, fault
+from rigdesign.case.kinds import kind_from
+
+
+class LoadedEvent(Part):
+    """What every event under load states."""
+
+    speed: Speed | None = None
+    """Speed at which it happens, counted as that of the test; the test speed when left out."""
+    torque: Torque | None = None
+    """Torque under which it happens, counted as that of the test; the test torque when left out."""
+    coupling_torque_maximum: Torque | None = None
+    """Most torque that the couplings and their flanges may feel."""
+    shaft_torque_maximum: Torque | None = None
+    """Most torque that a section of a shaft may feel."""
+    bearing_force_maximum: Force | None = None
+    """Most radial force that a bearing may feel."""
+
+
+class ToothLoss(LoadedEvent):
+    """One or two adjacent teeth of a gear break off under load."""
+
+    kind: Literal["tooth_loss"]
+    """Selects the loss of teeth."""
+    mesh: Text
+    """``gearbox.mesh`` in which the teeth carry when they break."""
+    gear: Literal["pinion", "wheel"] = "pinion"
+    """Gear of the mesh that loses them."""
+    teeth: Literal[1, 2] = 1
+    """Adjacent teeth that are lost."""
+    monitor: Text | None = None
+    """Path of the part that is watched, a coupling (``trip_torque``) or a bearing (``trip_velocity``)."""
+    trip_torque: Torque | None = None
+    """Amount of the torque in the coupling watched that stops the rig."""
+    trip_velocity: Velocity | None = None
+    """Velocity of the journal in the bearing watched, across the shaft, that stops the rig."""
+    trip_delay: Time = 0.01
+    """From the crossing of that limit until the motor is off and the brake begins."""
+    brake_torque: Torque = 0.0
+    """Torque of motor or brake against the rotation, after the trip."""
+    duration: Time = 0.03
+    """Time that is followed after the loss; teeth meet the gap once in every turn."""
+    trip_time_maximum: Time | None = None
+    """Most time from the loss until the limit is crossed."""
+
+    @model_validator(mode="after")
+    def _one_limit(self) -> "ToothLoss":
+        limits = [self.trip_torque, self.trip_velocity]
+        if self.monitor is not None and sum(limit is not None for limit in limits) != 1:
+            raise fault("monitor is given without one limit", "give trip_torque or trip_velocity")
+        if self.monitor is None and any(limit is not None for limit in (*limits, self.trip_time_maximum)):
+            raise fault(
+                "a limit of a trip is given without a monitor", "name the coupling or bearing watched"
+            )
+        return self
+
+
+class EmergencyStop(LoadedEvent):
+    """The motor brakes the rig to standstill under the torque that is braced in."""
+
+    kind: Literal["emergency_stop"]
+    """Selects the emergency stop."""
+    brake_torque: Torque | None = None
+    """Torque of motor or brake against the rotation; or state ``stop_time``."""
+    stop_time: Time | None = None
+    """Time to standstill, from which the brake torque follows; or state ``brake_torque``."""
+    brake_onset: Time = 0.02
+    """Time in which the brake torque rises."""
+    duration: Time = 0.1
+    """Time that is followed from the stop on."""
+    standstill_time_maximum: Time | None = None
+    """Most time until the rig stands."""
+
+    @model_validator(mode="after")
+    def _one_brake(self) -> "EmergencyStop":
+        if (self.brake_torque is None) == (self.stop_time is None):
+            raise fault("brake_torque and stop_time are both given or both missing", "state one of the two")
+        return self
+
+
+class Overspeed(Part):
+    """The rig runs faster than the schedule asks for, under the torque of the test."""
+
+    kind: Literal["overspeed"]
+    """Selects the overspeed."""
+    speed: Speed
+    """Speed it reaches, counted as that of the test."""
+    torque: Torque | None = None
+    """Torque under which it runs; the test torque when left out."""
+    dynamic_factor_maximum: Annotated[float, Field(gt=1.0)] | None = None
+    """K_V at this speed, max over mean, at most."""
+    resonance_distance_minimum: Share | None = None
+    """Distance from the nearest resonance, as a share of this speed, at least."""
+
+
+Event: TypeAlias = Annotated[
+    Annotated[ToothLoss, Tag("tooth_loss")]
+    | Annotated[EmergencyStop, Tag("emergency_stop")]
+    | Annotated[Overspeed, Tag("overspeed")],
+    kind_from("kind", ""),
+]

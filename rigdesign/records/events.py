@@ -1,0 +1,374 @@
+"""Events of a case on its solved rig: marches from the steady state at the speed and torque of each."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.event_channels import Channel, Watched, elastic_channels, torsional_channels
+from dynamics.response.event_march import (
+    Brake,
+    EventHistory,
+    EventMarch,
+    Trip,
+    steady_start,
+    time_to_standstill,
+)
+from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.response.tooth_loss import without_teeth
+from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.loads import BracingState, mesh_models, shifted_laws, signed_torque
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.loop_system import loop_system, running_state
+from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
+from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.records.loop_modes import held_modes
+from rigdesign.records.resonances import LEAST_GAIN
+from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal
+from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
+
+CONTROLLED = BracingState(mode="torque_controlled")
+SLOTS = 400
+"""Slots of time of a curve."""
+ORDERS = 3
+"""Orders of a mesh frequency whose crossings with a mode count as resonances."""
+QUANTITIES: dict[str, Quantity] = {
+    "coupling": "coupling torque", "shaft": "shaft torque", "bearing": "bearing force"
+}  # fmt: skip
+RPM = math.pi / 30.0
+
+
+def solve_events(rig: Rig, test: PointResult) -> tuple[EventRecord, ...]:
+    """Every event of the case, with the gears and films of the test as warm as they are there.
+
+    Raises DynamicsNotConverged if a march leaves the finite numbers.
+    """
+    return tuple(_solved(rig, test, name, event) for name, event in rig.case.events.items())
+
+
+def _solved(rig: Rig, test: PointResult, name: str, event: Event) -> EventRecord:
+    place = _EventPlace.of(rig, test, name, event)
+    if isinstance(event, Overspeed):
+        return _overspeed(place, test)
+    if isinstance(event, EmergencyStop):
+        return _emergency_stop(place, event)
+    return _tooth_loss(place, event)
+
+
+@dataclass(frozen=True)
+class _EventPlace:
+    """Rig at the operating point of an event."""
+
+    name: str
+    kind: str
+    rig: Rig
+    warm: IterationResult
+    point: OperatingPoint
+    coupling_state: CouplingState
+    system: LinearSystem
+    laws: Sequence[MeshLaw]
+    channels: tuple[Channel, ...]
+    drags: dict[str, float]
+
+    @classmethod
+    def of(cls, rig: Rig, test: PointResult, name: str, event: Event) -> "_EventPlace":
+        schedule = rig.case.schedule
+        speed = schedule.test_speed if event.speed is None else event.speed
+        torque = schedule.test_torque if event.torque is None else event.torque
+        point = OperatingPoint(stage=name, speed=speed, torque=torque)
+        share = torque / test.point.torque
+        state = replace(
+            test.last.coupling_state,
+            mesh_torque={k: share * value for k, value in test.last.coupling_state.mesh_torque.items()},
+        )
+        bearings = solve_bearings(rig, point, state)
+        system = loop_system(rig, point, state, bearings)
+        assert rig.drivetrain is not None
+        channels = (
+            torsional_channels(rig.drivetrain, system)
+            if rig.shaft_model == "torsional"
+            else elastic_channels(rig.elastic.seen, system, running_state(rig, point, state, bearings))
+        )
+        laws = periodic_laws(rig, shifted_laws(rig, mesh_models(rig, point, state), CONTROLLED))
+        drags = drags_at(rig, test.last, state, speed)
+        return cls(name, event.kind, rig, test.last, point, state, system, laws, channels, drags)
+
+    @property
+    def pinion_speed(self) -> float:
+        """[rad/s]"""
+        return self.rig.pinion_speed(self.point.speed)
+
+    @property
+    def drive_speed(self) -> float:
+        """[rad/s]"""
+        return self.rig.drive_speed(self.point.speed)
+
+    def march(self) -> EventMarch:
+        """From the steady state on."""
+        start = steady_start(
+            self.system, self.laws, self.pinion_speed, signed_torque(self.rig, self.point), self.drags,
+            self.rig.highest_mode,
+        )  # fmt: skip
+        return EventMarch(self.system, self.laws, start, Watched(self.channels), self.rig.highest_mode)
+
+    def drag(self, drive_speed: float) -> float:
+        """Torque on the motor of all drags at a speed of it [N m]; of linear bearing drag as well."""
+        shares, torques = self._drags_over_speed
+        ratios = self._ratios
+        linear = float(ratios @ self.system.damping @ ratios) * drive_speed
+        return linear + float(np.interp(drive_speed / self.drive_speed, shares, torques))
+
+    @cached_property
+    def _ratios(self) -> Array:
+        """(n,) speed of each freedom per speed of the drive."""
+        ratios = pinion_ratios(self.system, self.laws)
+        return np.asarray(ratios / ratios[self.system.drive_dof])
+
+    @cached_property
+    def _drags_over_speed(self) -> tuple[Array, Array]:
+        """Shares of the speed and torque of the drags on the motor there [N m]."""
+        torques = []
+        for share in DRAG_SHARES:
+            found = drags_at(self.rig, self.warm, self.coupling_state, share * self.point.speed)
+            torques.append(
+                -sum(float(self.system.drag_loads[k] @ self._ratios) * value for k, value in found.items())
+            )
+        return np.array(DRAG_SHARES), np.array(torques)
+
+    def record(self, what: str, history: EventHistory) -> EventRecord:
+        """Peaks and curves of a march."""
+        couplings = [i for i, channel in enumerate(self.channels) if channel.kind == "coupling"]
+        slots = np.array_split(np.arange(history.time.size), min(SLOTS, history.time.size))
+        return EventRecord(
+            name=self.name,
+            kind=self.kind,
+            speed=self.point.speed,
+            torque=self.point.torque,
+            what=what,
+            peaks=tuple(self._peaks(history)),
+            reversals=tuple(self._reversals(history)),
+            tripped=history.tripped,
+            time=[float(history.time[slot[-1]]) for slot in slots],
+            curves=(
+                *(
+                    _curve(
+                        self.channels[i].place, "coupling torque", history.values[i], history.values[i], slots
+                    )
+                    for i in couplings
+                ),
+                *(
+                    _curve(name, "mesh torque", history.least[m], history.greatest[m], slots)
+                    for m, name in enumerate(self.rig.mesh_names)
+                ),
+            ),
+        )
+
+    def _peaks(self, history: EventHistory) -> Iterator[EventPeak]:
+        for m, name in enumerate(self.rig.mesh_names):
+            amount = np.maximum(np.abs(history.least[m]), np.abs(history.greatest[m]))
+            yield _peak(name, "mesh torque", float(history.before_torque[m]), amount, history.time)
+        found: dict[tuple[str, Quantity], EventPeak] = {}
+        for i, channel in enumerate(self.channels):
+            if channel.kind not in QUANTITIES:
+                continue
+            place = self._section(channel.place) if channel.kind == "shaft" else channel.place
+            quantity = QUANTITIES[channel.kind]
+            peak = _peak(place, quantity, float(history.before[i]), np.abs(history.values[i]), history.time)
+            if (place, quantity) not in found or peak.peak > found[place, quantity].peak:
+                found[place, quantity] = peak
+        yield from sorted(found.values(), key=lambda peak: list(QUANTITIES.values()).index(peak.quantity))
+        if self.rig.shaft_model == "torsional":
+            yield from self._static_bearings(history)
+
+    def _static_bearings(self, history: EventHistory) -> Iterator[EventPeak]:
+        """Forces of shafts that only twist: their static ones times peak over mean of the meshes on the shaft."""
+        loads = bearing_loads(self.rig, self.coupling_state)
+        meshes = list(self._peaks_of_meshes(history))
+        for name, _, entry in self.rig.bearings():
+            own = [
+                peak
+                for m, peak in enumerate(meshes)
+                if entry.shaft in (self.rig.mesh_gear(m, 0).shaft, self.rig.mesh_gear(m, 1).shaft)
+            ]
+            if own:
+                worst = max(own, key=lambda peak: peak.peak / max(abs(peak.before), 1e-9))
+                force = loads[name].radial
+                yield EventPeak(
+                    place=name, quantity="bearing force", before=force,
+                    peak=force * worst.peak / max(abs(worst.before), 1e-9), time=worst.time,
+                )  # fmt: skip
+
+    def _peaks_of_meshes(self, history: EventHistory) -> Iterator[EventPeak]:
+        for m, name in enumerate(self.rig.mesh_names):
+            amount = np.maximum(np.abs(history.least[m]), np.abs(history.greatest[m]))
+            yield _peak(name, "mesh torque", float(history.before_torque[m]), amount, history.time)
+
+    def _section(self, place: str) -> str:
+        """``shaft section n`` of the place of an element."""
+        shaft, position, _ = place.rsplit(" ", 2)
+        assert self.rig.drivetrain is not None
+        ends = np.cumsum([section.length for section in self.rig.drivetrain.shaft(shaft).sections])
+        return f"{shaft} section {min(int(np.searchsorted(ends, 1e-3 * float(position))), len(ends) - 1) + 1}"
+
+    def _reversals(self, history: EventHistory) -> Iterator[Reversal]:
+        for m, name in enumerate(self.rig.mesh_names):
+            other = -history.least[m] if history.before_torque[m] > 0.0 else history.greatest[m]
+            yield Reversal(
+                mesh=name,
+                open_share=float(history.open_share[m]),
+                other_flank=max(float(other.max()), 0.0),
+            )
+
+
+def _peak(place: str, quantity: Quantity, before: float, amount: Array, time: Array) -> EventPeak:
+    at = int(amount.argmax())
+    return EventPeak(
+        place=place, quantity=quantity, before=before, peak=float(amount[at]), time=float(time[at])
+    )
+
+
+def _curve(
+    place: str, quantity: Quantity, least: Array, greatest: Array, slots: Sequence[NDArray[np.int64]]
+) -> EventCurve:
+    return EventCurve(
+        place=place,
+        quantity=quantity,
+        least=[float(least[slot].min()) for slot in slots],
+        greatest=[float(greatest[slot].max()) for slot in slots],
+    )
+
+
+def _tooth_loss(place: _EventPlace, event: ToothLoss) -> EventRecord:
+    march, mesh = place.march(), place.rig.mesh_names.index(event.mesh)
+    teeth = march.carrying_teeth(mesh, event.gear, event.teeth)
+    laws = [without_teeth(own, event.gear, teeth) if m == mesh else own for m, own in enumerate(place.laws)]
+    trip, notes = _trip(place, event)
+    brake = Brake(torque=event.brake_torque)
+    history = march.run(event.duration, laws=laws, trip=trip, brake=brake)
+    record = place.record(
+        f"{event.teeth} {'tooth' if event.teeth == 1 else 'adjacent teeth'} of the {event.gear} of {event.mesh} lost",
+        history,
+    )
+    if trip is not None and history.tripped is None:
+        notes = (*notes, f"the monitor does not trip within {event.duration:g} s")
+        record = replace(record, untripped=event.duration)
+    standstill = None
+    if history.tripped is not None:
+        standstill = event.trip_delay + time_to_standstill(
+            place.system, place.laws, place.drive_speed, brake, place.drag
+        )
+    return replace(record, standstill=standstill, notes=notes)
+
+
+def _trip(place: _EventPlace, event: ToothLoss) -> tuple[Trip | None, tuple[str, ...]]:
+    """The monitor; none where shafts that only twist show no velocity of a journal."""
+    if event.monitor is None:
+        return None, ()
+    watched = Watched(place.channels)
+    if event.trip_torque is not None:
+        channel = watched.index(event.monitor.rpartition(".")[2], "coupling")
+        return Trip(channel=channel, limit=event.trip_torque, delay=event.trip_delay), ()
+    assert event.trip_velocity is not None
+    _, box, _, bearing = event.monitor.split(".")
+    if place.rig.shaft_model == "torsional":
+        return None, ("shafts that only twist show no velocity of a journal: the monitor is left out",)
+    channel = watched.index(f"{box}.{bearing}", "journal velocity")
+    return Trip(channel=channel, limit=event.trip_velocity, delay=event.trip_delay), ()
+
+
+def _emergency_stop(place: _EventPlace, event: EmergencyStop) -> EventRecord:
+    torque = event.brake_torque
+    if torque is None:
+        assert event.stop_time is not None
+        torque = _brake_torque(place, event.stop_time, event.brake_onset)
+    brake = Brake(torque=torque, onset=event.brake_onset)
+    history = place.march().run(event.duration, trip=Trip(channel=None), brake=brake)
+    record = place.record(f"brake torque {torque:.3g} N m on the motor", history)
+    standstill = time_to_standstill(place.system, place.laws, place.drive_speed, brake, place.drag)
+    return replace(record, tripped=None, standstill=standstill)
+
+
+def _brake_torque(place: _EventPlace, stop_time: float, onset: float) -> float:
+    """Brake torque with which the rig stands after a time [N m]; 0 where the drags alone are quicker."""
+
+    def time(torque: float) -> float:
+        brake = Brake(torque=torque, onset=onset)
+        return time_to_standstill(place.system, place.laws, place.drive_speed, brake, place.drag)
+
+    low, high = 0.0, 1.0
+    while time(high) > stop_time:
+        low, high = high, 2.0 * high
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if time(middle) > stop_time else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _overspeed(place: _EventPlace, test: PointResult) -> EventRecord:
+    rig = place.rig
+    speeds = [share * place.pinion_speed for share in (0.97, 1.0)]
+    curve = periodic_response(
+        place.system, place.laws, speeds, LoopLoad(torque=signed_torque(rig, place.point)), place.drags,
+        SweepSettings(cutoff=rig.highest_mode),
+    )  # fmt: skip
+    notes: tuple[str, ...] = tuple(reason for _, reason in curve.failed)
+    factors: dict[str, float] = {}
+    peaks: tuple[EventPeak, ...] = ()
+    at = [point for point in curve.points if point.speed == speeds[-1]]
+    if at:
+        factors = {name: float(at[0].dynamic_factor[m]) for m, name in enumerate(rig.mesh_names)}
+        peaks = tuple(
+            EventPeak(
+                place=name, quantity="mesh torque", before=float(at[0].mean[m]),
+                peak=float(at[0].maximum[m]), time=0.0,
+            )
+            for m, name in enumerate(rig.mesh_names)
+        )  # fmt: skip
+    resonance, distance = _nearest_resonance(place, test)
+    return EventRecord(
+        name=place.name,
+        kind=place.kind,
+        speed=place.point.speed,
+        torque=place.point.torque,
+        what=f"{place.point.speed / RPM:.0f} rpm, {place.point.speed / rig.case.schedule.test_speed:.3f} of the test",
+        peaks=peaks,
+        dynamic_factor=factors,
+        resonance=resonance,
+        resonance_distance=distance,
+        notes=(*notes, "bursting of discs and rotors is not modelled"),
+    )
+
+
+def _nearest_resonance(place: _EventPlace, test: PointResult) -> tuple[str, float | None]:
+    """Mode of the closed loop that an order of a mesh meets nearest to the speed."""
+    rig, found = place.rig, []
+    for m, name in enumerate(rig.mesh_names):
+        box, mesh = rig.mesh(name)
+        pinion = box.gears[box.meshes[mesh].pinion]
+        frequency = rig.shaft_speed(pinion.shaft, place.point.speed) * pinion.teeth / (2.0 * math.pi)
+        for mode in held_modes(rig, test):
+            if mode.frequency > 0.0 and mode.mesh_gain[m] >= LEAST_GAIN:
+                for order in range(1, ORDERS + 1):
+                    share = mode.frequency / (order * frequency)
+                    text = (
+                        f"{mode.name}, {mode.frequency:.0f} Hz, order {order} of mesh {name} at "
+                        f"{share * place.point.speed / RPM:.0f} rpm"
+                    )
+                    found.append((abs(share - 1.0), text))
+    if not found:
+        return "", None
+    distance, text = min(found)
+    return text, distance
