@@ -15,7 +15,7 @@ from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources b9e97a4a
+# compiled from sources 6fc6ce05
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources b9e97a4a
+# compiled from sources 6fc6ce05
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

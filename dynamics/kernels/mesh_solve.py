@@ -67,7 +67,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.shared_body import Flanks, ToothApproach, no_contacts, tooth_approach
 
-# compiled from sources b9e97a4a
+# compiled from sources 6fc6ce05
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

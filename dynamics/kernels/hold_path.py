@@ -1,0 +1,339 @@
+"""A flank held at a place on its path: one row of numbers for each tooth pair that touches, from its contact table.
+
+The splines over the path are contracted to cubics over the approach of the teeth, so that a Newton iteration at a
+known angle needs no table.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.kernels.contact import inlined
+from dynamics.kernels.contact_table import (
+    C_BACK,
+    C_CELL_OF_AT,
+    C_CELLS,
+    C_CELLS_AT,
+    C_CLOSING_AT,
+    C_DEPTHS_AT,
+    C_DEVIATIONS_AT,
+    C_FINEST,
+    C_FRICTION_AT,
+    C_GAPS_AT,
+    C_INDIVIDUAL,
+    C_KNOTS,
+    C_OFFSET_2,
+    C_PAIRS,
+    C_PER_PITCH,
+    C_PER_TOOTH,
+    C_PLANES,
+    C_SCALED_1,
+    C_SCALED_2,
+    C_SCALES_AT,
+    C_TEETH_1,
+    C_TEETH_2,
+    C_WEIGHTS_AT,
+    CELL,
+    LEVELS,
+    N_ROW,
+    N_SCALED,
+    PAIR,
+    R_CLOSING,
+    R_FRICTION,
+    R_GAP_SLOPE,
+    R_SLOPES,
+    R_START,
+    R_TILT,
+    R_WEIGHT,
+    V_CLOSING,
+    V_FRICTION,
+    V_LOWEST,
+    V_ORIGIN,
+    V_PER_FINEST,
+    V_PER_KNOT,
+    V_PER_PITCH,
+    V_PER_TILT,
+    V_R1,
+    V_TILT,
+    ContactTables,
+)
+from dynamics.kernels.knots import add_lines, contract_cell
+from dynamics.kernels.mesh_tables import POSITIVE
+
+# compiled from sources 6fc6ce05
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class FlankState(NamedTuple):
+    """Where a flank is held on its path."""
+
+    side: int
+    """0 in front, 1 on the back."""
+    theta_1: float
+    """Angle of the pinion [rad]."""
+    sharpness: float
+    """Sum of both speeds over the sliding speed at which friction reverses [1/m]."""
+    tilt: float
+    """Gap that closes per face width from mid-face [rad]; of no effect on tables without tilt."""
+
+
+class Held(NamedTuple):
+    """Rows of a flank that is held on its path."""
+
+    n: int
+    """Rows, one for each pair that touches."""
+    low: float
+    """Range of the approach that they are good for [m]."""
+    high: float
+
+
+@inlined
+def _level(levels: Array, m: int, sharpness: float) -> tuple[int, float, float]:
+    """Return the first of two levels of friction and the shares of both at a sharpness, negative ones reversed."""
+    wanted = abs(sharpness)
+    sign = 1.0 if sharpness >= 0.0 else -1.0
+    if wanted <= levels[m, 0]:
+        return 0, sign * wanted / levels[m, 0], 0.0
+    level = 0
+    while level < LEVELS - 2 and wanted > levels[m, level + 1]:
+        level += 1
+    share = (wanted - levels[m, level]) / (levels[m, level + 1] - levels[m, level])
+    share = share if share < 1.0 else 1.0
+    return level, sign * (1.0 - share), sign * share
+
+
+@inlined
+def _tooth(number: float, teeth: int) -> int:
+    """Return the tooth, 0 to ``teeth`` - 1, that a whole number counts."""
+    turned = number - teeth * np.floor(number / teeth)
+    return max(0, min(int(turned), teeth - 1))  # also for a run that left the finite numbers
+
+
+@inlined
+def _next_tooth(tooth: int, step: int, teeth: int) -> int:
+    """Return the tooth before (-1) or after (+1) one."""
+    tooth += step
+    tooth = tooth if tooth >= 0 else tooth + teeth
+    return tooth if tooth < teeth else tooth - teeth
+
+
+@inlined
+def _of_teeth(
+    tables: ContactTables, m: int, first: int, second: int, knot: int, weights: tuple[float, ...]
+) -> tuple[float, float]:
+    """Return gap and its slope over the path of two teeth, whose numbers begin at ``first`` and ``second``."""
+    table = tables.deviations
+    first, second = first & POSITIVE, second & POSITIVE
+    if tables.counts[m, C_PER_TOOTH] == 1:
+        return table[first] + table[second], 0.0
+    gap, slope = 0.0, 0.0
+    for i in range(4):
+        at = knot + i
+        value = table[(first + at) & POSITIVE] + table[(second + at) & POSITIVE]
+        gap += weights[i] * value
+        slope += weights[4 + i] * value
+    return gap, slope
+
+
+class _Plane(NamedTuple):
+    """Place of a tilt between two of those that are tabulated, the weights of a cubic by value and derivative."""
+
+    first: int
+    share: float
+    values: tuple[float, float, float, float]
+    """Of W and moment at both tilts."""
+    slopes: tuple[float, float, float, float]
+    curves: tuple[float, float, float, float]
+
+
+@inlined
+def _plane(values: Array, counts: Integers, m: int, tilt: float) -> _Plane:
+    if counts[m, C_PLANES] == 1:
+        return _Plane(0, 0.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+    per = values[m, V_PER_TILT]
+    place = (tilt - values[m, V_TILT]) * per
+    first = max(0, min(int(place), counts[m, C_PLANES] - 2))
+    f = place - first
+    e, d, curve = 1.0 - f, 1.0 / per, 6.0 * per * per
+    return _Plane(
+        first, f,
+        (e * e * (1.0 + 2.0 * f), d * f * e * e, f * f * (3.0 - 2.0 * f), -d * f * f * e),
+        (-6.0 * per * f * e, e * (1.0 - 3.0 * f), 6.0 * per * f * e, f * (3.0 * f - 2.0)),
+        (curve * (2.0 * f - 1.0), per * (6.0 * f - 4.0), curve * (1.0 - 2.0 * f), per * (6.0 * f - 2.0)),
+    )  # fmt: skip
+
+
+class _CellTables(NamedTuple):
+    """First entries of the tables of a flank at one tilt, numbers of a tilt and of a knot."""
+
+    cells: int
+    weights: int
+    friction: int
+    closing: int
+    plane: int
+    """Cells of all knots."""
+    knot: int
+    """Cells of a knot."""
+    level: tuple[int, float, float]
+
+
+@inlined
+def _cell_tables(
+    tables: ContactTables, m: int, back: int, plane: int, level: tuple[int, float, float]
+) -> _CellTables:
+    counts = tables.counts
+    size = counts[m, C_KNOTS] * counts[m, C_CELLS]
+    before = back * counts[m, C_PLANES] + plane
+    return _CellTables(
+        counts[m, C_CELLS_AT] + before * size * CELL,
+        counts[m, C_WEIGHTS_AT] + before * size * PAIR,
+        counts[m, C_FRICTION_AT] + (before * LEVELS + level[0]) * size * PAIR,
+        counts[m, C_CLOSING_AT] + before * size * PAIR,
+        size,
+        counts[m, C_CELLS],
+        level,
+    )
+
+
+@inlined
+def _share_of(weights: tuple[float, ...], share: float) -> tuple[float, float, float, float]:
+    """Return the weights of four knots times a share."""
+    return share * weights[0], share * weights[1], share * weights[2], share * weights[3]
+
+
+@inlined
+def _fill_lines(
+    tables: ContactTables, m: int, kinds: _CellTables, plane: int, share: float, cell: int,
+    weights: tuple[float, ...], rows: Array, row: int,
+) -> None:  # fmt: skip
+    """Add to a row ``share`` of what is linear over the depth."""
+    values = tables.values
+    step, at = kinds.knot * PAIR, (cell + plane * kinds.plane) * PAIR
+    own = _share_of(weights, share)
+    add_lines(tables.weights, (kinds.weights + at) & POSITIVE, step, own, rows, row + R_WEIGHT)
+    if values[m, V_FRICTION] > 0.0:
+        first = kinds.friction + (cell + LEVELS * plane * kinds.plane) * PAIR
+        lower, upper = _share_of(own, kinds.level[1]), _share_of(own, kinds.level[2])
+        add_lines(tables.friction, first & POSITIVE, step, lower, rows, row + R_FRICTION)
+        add_lines(
+            tables.friction, (first + kinds.plane * PAIR) & POSITIVE, step, upper, rows, row + R_FRICTION
+        )
+    if values[m, V_CLOSING] > 0.0:
+        add_lines(tables.closing, (kinds.closing + at) & POSITIVE, step, own, rows, row + R_CLOSING)
+
+
+@inlined
+def _fill_row(
+    tables: ContactTables, m: int, kinds: _CellTables, plane: _Plane, cell: int, weights: tuple[float, ...],
+    rows: Array, row: int,
+) -> None:  # fmt: skip
+    """Write the numbers of a cell into a row."""
+    step = kinds.knot * CELL
+    first = (kinds.cells + cell * CELL) & POSITIVE
+    contract_cell(tables.cells, first, step, weights, rows, row)
+    for i in range(R_FRICTION, R_TILT):
+        rows[row + i] = 0.0
+    if tables.counts[m, C_PLANES] == 1:
+        _fill_lines(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
+        return
+    _fill_lines(tables, m, kinds, 0, 1.0 - plane.share, cell, weights, rows, row)
+    _fill_lines(tables, m, kinds, 1, plane.share, cell, weights, rows, row)
+    other = rows.shape[0] - 2 * CELL
+    contract_cell(tables.cells, (first + kinds.plane * CELL) & POSITIVE, step, weights, rows, other)
+    half = CELL // 2
+    for i in range(half):
+        a, b, c, d = rows[row + i], rows[row + half + i], rows[other + i], rows[other + half + i]
+        at = row + R_SLOPES + i
+        w_s = plane.values[0] * rows[at] + plane.values[1] * rows[at + half]
+        w_s += plane.values[2] * rows[other + CELL + i] + plane.values[3] * rows[other + CELL + half + i]
+        rows[at] = w_s
+        rows[row + i] = plane.values[0] * a + plane.values[1] * b + plane.values[2] * c + plane.values[3] * d
+        rows[row + half + i] = (
+            plane.slopes[0] * a + plane.slopes[1] * b + plane.slopes[2] * c + plane.slopes[3] * d
+        )
+        rows[row + R_TILT + i] = (
+            plane.curves[0] * a + plane.curves[1] * b + plane.curves[2] * c + plane.curves[3] * d
+        )
+
+
+@inlined
+def hold_path(
+    tables: ContactTables, m: int, state: FlankState, reach: float, rows: Array, first: int
+) -> Held:
+    """Write a row for every pair of a flank that touches at the approach ``reach`` into ``rows`` from ``first`` on."""
+    values, counts = tables.values, tables.counts
+    side = state.side
+    sign = 1.0 - 2.0 * side
+    knots, n_cells, per_pitch = counts[m, C_KNOTS], counts[m, C_CELLS], counts[m, C_PER_PITCH]
+    back = side * counts[m, C_BACK]
+    turned = (values[m, V_ORIGIN + side] + sign * values[m, V_R1] * state.theta_1) * values[m, V_PER_PITCH]
+    turn = np.floor(turned)
+    place = (turned - turn) * per_pitch
+    knot = max(0, min(int(place), per_pitch - 1))  # also for a run that left the finite numbers
+    f = place - knot
+    e = 1.0 - f
+    per = values[m, V_PER_KNOT]
+    weights = (
+        e * e * e / 6.0, (4.0 + f * f * (3.0 * f - 6.0)) / 6.0, (4.0 + e * e * (3.0 * e - 6.0)) / 6.0, f * f * f / 6.0,
+        -0.5 * per * e * e, 0.5 * per * f * (3.0 * f - 4.0), -0.5 * per * e * (3.0 * e - 4.0), 0.5 * per * f * f,
+    )  # fmt: skip
+    gaps_at = counts[m, C_GAPS_AT] + back * knots
+    plane = _plane(values, counts, m, state.tilt)
+    kinds = _cell_tables(tables, m, back, plane.first, _level(tables.levels, m, state.sharpness))
+    lowest, per_finest = values[m, V_LOWEST], values[m, V_PER_FINEST]
+    individual, per_tooth = counts[m, C_INDIVIDUAL] != 0, counts[m, C_PER_TOOTH]
+    teeth_1, teeth_2, tooth_1, tooth_2, step = counts[m, C_TEETH_1], counts[m, C_TEETH_2], 0, 0, 2 * side - 1
+    deviations, scales = (
+        counts[m, C_DEVIATIONS_AT] + side * (teeth_1 + teeth_2) * per_tooth,
+        counts[m, C_SCALES_AT],
+    )
+    if individual:
+        tooth_1 = _tooth(sign * turn, teeth_1)
+        tooth_2 = _tooth(sign * turn + counts[m, C_OFFSET_2] + side, teeth_2)
+    n, low, high = 0, -np.inf, np.inf
+    for _ in range(counts[m, C_PAIRS]):
+        at_knot = gaps_at + knot
+        g_0, g_1, g_2, g_3 = (
+            tables.gaps[at_knot & POSITIVE], tables.gaps[(at_knot + 1) & POSITIVE],
+            tables.gaps[(at_knot + 2) & POSITIVE], tables.gaps[(at_knot + 3) & POSITIVE],
+        )  # fmt: skip
+        gap = weights[0] * g_0 + weights[1] * g_1 + weights[2] * g_2 + weights[3] * g_3
+        slope = weights[4] * g_0 + weights[5] * g_1 + weights[6] * g_2 + weights[7] * g_3
+        scale = 1.0
+        if individual:
+            more, steeper = _of_teeth(
+                tables,
+                m,
+                deviations + tooth_1 * per_tooth,
+                deviations + (teeth_1 + tooth_2) * per_tooth,
+                knot,
+                weights,
+            )
+            gap += more
+            slope += steeper
+            one = tooth_1 if counts[m, C_SCALED_1] > 1 else 0
+            other = tooth_2 if counts[m, C_SCALED_2] > 1 else 0
+            scale = tables.scales[scales + one] * tables.scales[scales + counts[m, C_SCALED_1] + other]
+            tooth_1, tooth_2 = _next_tooth(tooth_1, step, teeth_1), _next_tooth(tooth_2, step, teeth_2)
+        depth = reach - gap - lowest
+        if depth <= 0.0:
+            high = min(high, gap + lowest)
+        else:
+            finest = min(int(depth * per_finest), counts[m, C_FINEST] - 1)
+            cell = tables.cell_of[(counts[m, C_CELL_OF_AT] + finest) & POSITIVE]
+            depths_at = (counts[m, C_DEPTHS_AT] + cell) & POSITIVE
+            start = gap + tables.depths[depths_at]
+            low = max(low, start)
+            if cell < n_cells - 1:
+                high = min(high, gap + tables.depths[depths_at + 1])
+            row = (first + N_ROW * n) & POSITIVE
+            _fill_row(tables, m, kinds, plane, knot * n_cells + cell, weights, rows, row)
+            rows[row + R_START], rows[row + R_GAP_SLOPE] = start, slope
+            if scale != 1.0:
+                for i in range(N_SCALED):
+                    rows[row + i] *= scale
+            n += 1
+        knot += per_pitch
+    return Held(n, low, high)

@@ -1,0 +1,163 @@
+"""Forces of a flank that is held on its path, from the rows of ``kernels.hold_path``."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.kernels.contact import inlined
+from dynamics.kernels.contact_table import (
+    CELL,
+    N_ROW,
+    R_CLOSING,
+    R_FRICTION,
+    R_GAP_SLOPE,
+    R_SLOPES,
+    R_START,
+    R_TILT,
+    R_WEIGHT,
+    V_CLOSING,
+    V_DAMP_TIME,
+    V_DERIVATIVE,
+    V_FRICTION,
+    V_R1,
+    V_R2,
+    V_ROLL_1,
+    V_ROLL_2,
+)
+from dynamics.kernels.mesh_tables import POSITIVE
+
+# compiled from sources 6fc6ce05
+Array = NDArray[np.float64]
+
+
+class Pressing(NamedTuple):
+    """How the gears press a flank, seen from this flank."""
+
+    sign: float
+    """+1 in front, -1 on the back."""
+    reach: float
+    """Approach of the teeth less the play [m]."""
+    rate: float
+    """Rate of the approach of the gears [m/s]."""
+    path_speed: float
+    """Speed of the flank along its path [m/s]; 0 where the damper acts on the relative rotation."""
+
+
+class Sums(NamedTuple):
+    """What the contacts of a flank do together at one path position."""
+
+    force: float
+    """Normal force with damping [N]."""
+    elastic: float
+    """Without [N]."""
+    a_1: float
+    """Torque on the pinion per base radius [N]."""
+    a_2: float
+    force_x: float
+    """Derivatives over the approach of the teeth; that of the elastic force second."""
+    stiffness: float
+    a_1_x: float
+    a_2_x: float
+    force_v: float
+    """Derivatives over the rate."""
+    a_1_v: float
+    a_2_v: float
+    friction_1: float
+    """Part of a_1 by friction [N]; that of a_2 is a_2 less the force."""
+    damped: float
+    """Part of a_1 by dampers on the slope of the gap [N]."""
+    energy: float
+    """Elastic energy [J]."""
+    moment: float
+    """Tilting moment, and its derivatives over approach and tilt: 0 on tables without tilt [N m]."""
+    moment_x: float
+    moment_tilt: float
+
+
+@inlined
+def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing: Pressing) -> Sums:
+    """Sum the held rows of a flank at an approach and a rate.
+
+    Force of a pair ``N = max(0, F + c h v)``, clipped by its damper alone; a_1 = N + dW/ds and friction, a_2 = N and
+    friction.
+    """
+    sign, reach, rate = pressing.sign, pressing.reach, pressing.rate
+    damp_time, derivative = values[m, V_DAMP_TIME], values[m, V_DERIVATIVE]
+    mu_1 = sign * values[m, V_FRICTION] / values[m, V_R1]
+    mu_2 = sign * values[m, V_FRICTION] / values[m, V_R2]
+    roll_1, roll_2 = values[m, V_ROLL_1], values[m, V_ROLL_2]
+    force, elastic, a_1, a_2 = 0.0, 0.0, 0.0, 0.0
+    force_x, stiffness, a_1_x, a_2_x = 0.0, 0.0, 0.0, 0.0
+    force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
+    friction_1, damped, energy = 0.0, 0.0, 0.0
+    tilting, tilting_x, tilting_tilt = 0.0, 0.0, 0.0
+    for p in range(n):
+        r = (first + N_ROW * p) & POSITIVE
+        d = reach - rows[r + R_START]
+        f_1, f_2 = rows[r + 2], rows[r + 3]
+        own = rows[r + 1] + d * (f_1 + d * f_2)
+        k = f_1 + 2.0 * d * f_2
+        s = r + R_SLOPES
+        slope = rows[r + R_GAP_SLOPE]
+        along = rows[s] + d * (rows[s + 1] + d * (0.5 * rows[s + 2] + d * rows[s + 3] / 3.0)) - own * slope
+        along_x = rows[s + 1] + d * (rows[s + 2] + d * rows[s + 3]) - k * slope
+        weight_x = damp_time * rows[r + R_WEIGHT + 1]
+        weight = damp_time * rows[r + R_WEIGHT] + d * weight_x
+        weight = weight if weight > 0.0 else 0.0
+        damping, damping_x, turned, turned_x, turned_v = weight * rate, weight_x * rate, 0.0, 0.0, 0.0
+        if values[m, V_CLOSING] > 0.0:
+            c = r + R_CLOSING
+            h_1, h_2 = damp_time * (rows[c] + d * rows[c + 1]), damp_time * (rows[c + 2] + d * rows[c + 3])
+            damping -= h_1 * pressing.path_speed
+            damping_x -= damp_time * rows[c + 1] * pressing.path_speed
+            turned = h_2 * pressing.path_speed - h_1 * rate
+            turned_x = damp_time * (rows[c + 3] * pressing.path_speed - rows[c + 1] * rate)
+            turned_v = -h_1
+        normal, normal_x, normal_v = own + damping, k + damping_x, weight
+        if normal < 0.0 and damping < 0.0:
+            # the damper takes no more than the elastic force; a trace of pull is the potential's
+            part = own / damping if own > 0.0 else 0.0
+            turned, turned_x, turned_v = -part * turned, 0.0, 0.0
+            normal = own if own < 0.0 else 0.0
+            normal_x, normal_v = k if own < 0.0 else 0.0, 0.0
+        q = r + R_FRICTION
+        moment, moment_x = rows[q] + d * rows[q + 1], rows[q + 1]
+        placed, placed_x = rows[q + 2] + d * rows[q + 3], rows[q + 3]
+        per = 1.0 / own if own > 0.0 else 0.0
+        lever_1, lever_2 = mu_1 * (roll_1 * moment + placed) * per, mu_2 * (roll_2 * moment - placed) * per
+        lever_1_x = mu_1 * (roll_1 * moment_x + placed_x) * per - lever_1 * k * per
+        lever_2_x = mu_2 * (roll_2 * moment_x - placed_x) * per - lever_2 * k * per
+        force += normal
+        elastic += own
+        stiffness += k
+        force_x += normal_x
+        force_v += normal_v
+        a_1 += normal * (1.0 + lever_1) + derivative * along + turned
+        a_2 += normal * (1.0 + lever_2)
+        a_1_x += normal_x * (1.0 + lever_1) + normal * lever_1_x + derivative * along_x + turned_x
+        a_2_x += normal_x * (1.0 + lever_2) + normal * lever_2_x
+        a_1_v += normal_v * (1.0 + lever_1) + turned_v
+        a_2_v += normal_v * (1.0 + lever_2)
+        friction_1 += normal * lever_1
+        damped += turned
+        energy += rows[r] + d * (rows[r + 1] + d * (0.5 * f_1 + d * f_2 / 3.0))
+        t, u = r + CELL // 2, r + R_TILT
+        tilting += rows[t] + d * (rows[t + 1] + d * (0.5 * rows[t + 2] + d * rows[t + 3] / 3.0))
+        tilting_x += rows[t + 1] + d * (rows[t + 2] + d * rows[t + 3])
+        tilting_tilt += rows[u] + d * (rows[u + 1] + d * (0.5 * rows[u + 2] + d * rows[u + 3] / 3.0))
+    return Sums(
+        force, elastic, a_1, a_2, force_x, stiffness, a_1_x, a_2_x, force_v, a_1_v, a_2_v, friction_1, damped, energy,
+        tilting, tilting_x, tilting_tilt,
+    )  # fmt: skip
+
+
+@inlined
+def powers(
+    sums: Sums, values: Array, m: int, pressing: Pressing, omega_1: float, omega_2: float
+) -> tuple[float, float]:
+    """Return friction and damping power of one flank."""
+    lever_2 = values[m, V_R2] * (sums.a_2 - sums.force)
+    friction = pressing.sign * (values[m, V_R1] * sums.friction_1 * omega_1 - lever_2 * omega_2)
+    path_speed = pressing.sign * values[m, V_R1] * omega_1
+    return friction, (sums.force - sums.elastic) * pressing.rate + sums.damped * path_speed

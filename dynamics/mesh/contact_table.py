@@ -1,0 +1,303 @@
+"""Contact tables of mesh laws: smooth potentials that replace the sums over slices.
+
+A mesh whose teeth are all alike has one potential over its phase; with single teeth every pair has one over its path,
+and the deviations of its two teeth move it: by a constant exactly, by what varies over the path in the mean of the
+slices that carry. Layout and use: ``dynamics.kernels.contact_table``.
+
+The tables take the law as it is: cubics of Fritsch and Carlson over the path, slices that touch one by one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+from dynamics.errors import DynamicsInputError
+from dynamics.kernels import contact_table as layout
+from dynamics.kernels.contact_table import LEVELS, ContactTables
+from dynamics.kernels.reactions import MeshStates
+from dynamics.kernels.table_reactions import table_reactions
+from dynamics.mesh.contact_flank import FlankGrid, FlankTable, flank_table, splines
+from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
+from dynamics.mesh.tables import has_individual_teeth
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LEAST_REACH = 20e-6
+"""Least depth of a table [m]."""
+MOST_REACH = 200e-6
+"""Greatest depth of a table; beyond it the last cell goes on [m]."""
+SHARPEST = 1.5
+"""Cells over which friction reverses at the highest speeds."""
+BLUNTER = 2.2
+"""Ratio of the sharpnesses at which friction is tabulated."""
+MOST_TABULATED = 32
+"""Tables that are kept; all are forgotten when one more comes."""
+_tabulated: dict[object, ContactTables] = {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableGrid:
+    """Steps of contact tables.
+
+    per_pitch : cells in a base pitch
+    finest : first step over the depth [m]; growth : of the steps per depth
+    tilts : least and greatest tilt of the faces, gap that closes per face width [rad]; None: they stay as they are
+    planes : tilts that are tabulated between them, at least 2
+    """
+
+    per_pitch: int = 64
+    finest: float = 0.125e-6
+    growth: float = 0.05
+    tilts: tuple[float, float] | None = None
+    planes: int = 5
+
+    def __post_init__(self) -> None:
+        if self.per_pitch < 8 or not self.finest > 0.0 or not self.growth >= 0.0:
+            raise DynamicsInputError(
+                f"contact table: per_pitch = {self.per_pitch} must be at least 8, finest = {self.finest} m above 0, "
+                f"growth = {self.growth} not negative"
+            )
+        if self.tilts is not None and not (self.tilts[0] < self.tilts[1] and self.planes >= 2):
+            raise DynamicsInputError(
+                f"contact table: tilts = {self.tilts} rad must rise and planes = {self.planes} be at least 2"
+            )
+
+
+DEFAULT_GRID = TableGrid()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _MeshTables:
+    """Arrays of one mesh, as in ``ContactTables`` of the same names."""
+
+    gaps: Array
+    cells: Array
+    weights: Array
+    depths: Array
+    cell_of: Integers
+    friction: Array
+    closing: Array
+    deviations: Array
+    scales: Array
+
+
+class TableReaction(NamedTuple):
+    """Reaction of one mesh at n states by its contact table, every field of shape (n,), as in ``MeshReaction``."""
+
+    torque_1: Array
+    torque_2: Array
+    force_front: Array
+    force_back: Array
+    torque_1_per_approach: Array
+    torque_2_per_approach: Array
+    torque_1_per_rate: Array
+    torque_2_per_rate: Array
+    friction_power: Array
+    damping_power: Array
+    energy: Array
+    tooth_approach: Array
+    moment_front: Array
+    """Derivative of the energy over the tilt of the front flanks [N m]; 0 on tables without tilt."""
+    moment_back: Array
+
+
+def evaluate_table(
+    tables: ContactTables,
+    theta_1: ArrayLike,
+    approach: ArrayLike,
+    omega_1: ArrayLike = 0.0,
+    omega_2: ArrayLike = 0.0,
+    tilts: tuple[ArrayLike, ArrayLike] = (0.0, 0.0),
+) -> TableReaction:
+    """Return what the first mesh of ``tables`` answers at n states, as ``dynamics.mesh.force.evaluate_mesh`` does.
+
+    tilts : gap that closes per face width from mid-face in front and on the back, (n,) or scalar [rad]
+    """
+    columns = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(one, float)) for one in (theta_1, approach, omega_1, omega_2, *tilts))
+    )
+    states = MeshStates(*(np.ascontiguousarray(column) for column in columns[:4]))
+    out = np.empty((len(columns[0]), len(TableReaction._fields)))
+    table_reactions(tables, states, np.stack(columns[4:], axis=1), out)
+    return TableReaction(*np.ascontiguousarray(out.T))
+
+
+FIRST_ENTRIES = {
+    "gaps": layout.C_GAPS_AT, "cells": layout.C_CELLS_AT, "weights": layout.C_WEIGHTS_AT, "depths": layout.C_DEPTHS_AT,
+    "cell_of": layout.C_CELL_OF_AT, "friction": layout.C_FRICTION_AT, "closing": layout.C_CLOSING_AT,
+    "deviations": layout.C_DEVIATIONS_AT, "scales": layout.C_SCALES_AT,
+}  # fmt: skip
+
+
+def contact_tables(
+    laws: Sequence[MeshLaw], grid: TableGrid = DEFAULT_GRID, *, derivative_torques: bool = True
+) -> ContactTables:
+    """Return the contact tables of all ``laws``.
+
+    With ``derivative_torques=False`` the torques from the change of the potential over the path are left out: the
+    negative control of the energy test, of no other use. Tables met before are handed out again: nobody may write into
+    them.
+
+    Raises
+    ------
+    ValueError
+        If a law is impossible (see ``check_mesh_law``).
+    """
+    content = tuple(
+        tuple((value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value for value in law)
+        for law in laws
+    )
+    key = (content, grid, derivative_torques)
+    if key not in _tabulated:
+        if len(_tabulated) >= MOST_TABULATED:
+            _tabulated.clear()
+        _tabulated[key] = _tables(laws, grid, derivative_torques)
+    return _tabulated[key]
+
+
+def _tables(laws: Sequence[MeshLaw], grid: TableGrid, derivative_torques: bool) -> ContactTables:
+    counts = np.zeros((len(laws), layout.N_TABLE_COUNTS), np.int64)
+    values = np.zeros((len(laws), layout.N_TABLE_VALUES))
+    levels = np.zeros((len(laws), LEVELS))
+    parts: list[_MeshTables] = []
+    for mesh, law in enumerate(laws):
+        check_mesh_law(law)
+        tilts = np.zeros(1) if grid.tilts is None else np.linspace(*grid.tilts, grid.planes)
+        depths = _depths(law, grid, tilts)
+        levels[mesh] = grid.per_pitch / (SHARPEST * law.base_pitch) / BLUNTER ** np.arange(LEVELS)[::-1]
+        flanks = [
+            flank_table(
+                law,
+                FlankGrid(
+                    sign=sign,
+                    pairs=has_individual_teeth(law),
+                    per_pitch=grid.per_pitch,
+                    depths=depths,
+                    sharpness=levels[mesh],
+                    reversal=_reversal(law),
+                    tilts=tilts,
+                ),
+            )
+            for sign in ((1.0, -1.0) if np.any(law.slice_shift) else (1.0,))
+        ]
+        part = _mesh_tables(law, flanks, depths, grid)
+        for name, column in FIRST_ENTRIES.items():
+            counts[mesh, column] = sum(getattr(before, name).size for before in parts)
+        _fill_counts(counts[mesh], law, flanks, grid, part)
+        _fill_values(values[mesh], law, flanks, grid, depths)
+        values[mesh, layout.V_DERIVATIVE] = derivative_torques
+        parts.append(part)
+    return ContactTables(
+        values=values,
+        counts=counts,
+        levels=levels,
+        offsets=np.array([law.offset for law in laws], float),
+        **{
+            field.name: np.concatenate([getattr(part, field.name) for part in parts])
+            for field in fields(_MeshTables)
+        },
+    )
+
+
+def _reversal(law: MeshLaw) -> float:
+    """Path position where flanks that roll off steadily do not slide [m]: the pitch point of consistent radii."""
+    ratio = law.base_radius_1 / law.base_radius_2
+    return (ratio * law.rolling_radius_2 - law.rolling_radius_1) / (1.0 + ratio)
+
+
+def _depths(law: MeshLaw, grid: TableGrid, tilts: Array) -> Array:
+    """First depth of every cell, and the last depth, in multiples of the finest step [m].
+
+    Tilted faces touch before their least gap is closed.
+    """
+    reach = float(np.minimum(law.gap[:, 0], law.gap[:, -1]).min() - law.gap.min())
+    last = min(max(reach, LEAST_REACH), MOST_REACH)
+    ahead = 0.0
+    if grid.tilts is not None:
+        if law.slice_face is None:
+            raise DynamicsInputError(
+                "contact table: a law without slice_face knows no tilt; give the face positions"
+            )
+        ahead = float(np.abs(np.outer(tilts, law.slice_face)).max())
+    steps = [0]
+    while steps[-1] * grid.finest < last:
+        steps.append(steps[-1] + max(1, round(1.0 + grid.growth * steps[-1])))
+    before = -np.cumsum(np.diff(steps))
+    before = before[: int(np.searchsorted(-before * grid.finest, ahead)) + 1] if ahead > 0.0 else before[:0]
+    return np.concatenate((before[::-1], steps)) * grid.finest
+
+
+def _mesh_tables(law: MeshLaw, flanks: list[FlankTable], depths: Array, grid: TableGrid) -> _MeshTables:
+    finest = depths[0] + np.arange(round((depths[-1] - depths[0]) / grid.finest)) * grid.finest
+    closes = law.damping_acts_on == "contact_closing_rate"
+    none = np.zeros(0)
+    return _MeshTables(
+        gaps=np.concatenate([flank.gaps for flank in flanks]),
+        cells=np.concatenate([flank.cells.ravel() for flank in flanks]),
+        weights=np.concatenate([flank.weights.ravel() for flank in flanks]),
+        depths=depths,
+        cell_of=(np.searchsorted(depths, finest + 0.5 * grid.finest) - 1).astype(np.int64),
+        friction=np.concatenate([flank.friction.ravel() for flank in flanks]) if law.friction > 0.0 else none,
+        closing=np.concatenate([flank.closing.ravel() for flank in flanks]) if closes else none,
+        deviations=_deviations(law, flanks).ravel() if has_individual_teeth(law) else none,
+        scales=np.concatenate((law.scale_1, law.scale_2)).astype(float),
+    )
+
+
+def _deviations(law: MeshLaw, flanks: list[FlankTable]) -> Array:
+    """Gap that every tooth adds (2, teeth_1 + teeth_2, n_knots) [m], front and back; (..., 1) if it never varies."""
+    sides = ((law.deviation_1, law.deviation_2), back_deviations(law))
+    teeth = law.teeth_1, law.teeth_2
+    every = [
+        np.concatenate([np.broadcast_to(table, (z, table.shape[1])) for table, z in zip(side, teeth)])
+        for side in sides
+    ]
+    if all(np.ptp(table, axis=1).max() == 0.0 for table in every):
+        return np.array(every)[..., :1]
+    grid = law.path_start + law.path_step * np.arange(law.stiffness.shape[1])
+    found = []
+    for table, flank in zip(every, (flanks[0], flanks[-1])):
+        at = np.clip(flank.path, grid[0], grid[-1])
+        of_slices = PchipInterpolator(grid, table, axis=1)(at)
+        found.append(splines(np.einsum("tki,ki->kt", of_slices, flank.share), pairs=True).T)
+    return np.array(found)
+
+
+def _fill_counts(
+    counts: Integers, law: MeshLaw, flanks: list[FlankTable], grid: TableGrid, part: _MeshTables
+) -> None:
+    individual = has_individual_teeth(law)
+    teeth = law.teeth_1 + law.teeth_2
+    for column, count in (
+        (layout.C_PER_PITCH, grid.per_pitch), (layout.C_PAIRS, flanks[0].pairs), (layout.C_KNOTS, len(flanks[0].gaps)),
+        (layout.C_CELLS, len(part.depths) - 1), (layout.C_FINEST, len(part.cell_of)), (layout.C_BACK, len(flanks) - 1),
+        (layout.C_INDIVIDUAL, individual), (layout.C_OFFSET_2, law.tooth_offset_2), (layout.C_TEETH_1, law.teeth_1),
+        (layout.C_TEETH_2, law.teeth_2), (layout.C_PER_TOOTH, part.deviations.size // (2 * teeth)),
+        (layout.C_SCALED_1, len(law.scale_1)), (layout.C_SCALED_2, len(law.scale_2)),
+        (layout.C_PLANES, len(flanks[0].cells)),
+    ):  # fmt: skip
+        counts[column] = count
+
+
+def _fill_values(
+    values: Array, law: MeshLaw, flanks: list[FlankTable], grid: TableGrid, depths: Array
+) -> None:
+    of_teeth = law.mean_stiffness / (1.0 - law.body_compliance * law.mean_stiffness)
+    for column, value in (
+        (layout.V_R1, law.base_radius_1), (layout.V_R2, law.base_radius_2), (layout.V_PER_PITCH, 1.0 / law.base_pitch),
+        (layout.V_ORIGIN, law.phase - flanks[0].start), (layout.V_BACK_ORIGIN, law.back_phase - flanks[-1].start),
+        (layout.V_BACKLASH, law.backlash), (layout.V_DAMP_TIME, law.damping / of_teeth),
+        (layout.V_BODY, law.body_compliance), (layout.V_PER_FINEST, 1.0 / grid.finest),
+        (layout.V_PER_KNOT, grid.per_pitch / law.base_pitch), (layout.V_FRICTION, law.friction),
+        (layout.V_ROLL_1, law.rolling_radius_1), (layout.V_ROLL_2, law.rolling_radius_2),
+        (layout.V_PER_REVERSAL, 1.0 / max(law.friction_reversal_speed, 1e-9)),
+        (layout.V_CLOSING, float(law.damping_acts_on == "contact_closing_rate")),
+        (layout.V_LOWEST, depths[0]), (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
+        (layout.V_PER_TILT, 0.0 if grid.tilts is None else (grid.planes - 1) / (grid.tilts[1] - grid.tilts[0])),
+    ):  # fmt: skip
+        values[column] = value
