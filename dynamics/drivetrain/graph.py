@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.drivetrain.parts import (
     BearingPlace,
     Coupling,
@@ -85,7 +85,7 @@ def assemble(drivetrain: Drivetrain) -> LinearSystem:
     """Matrices of the drivetrain without its meshes.
 
     Freedoms: stations of every shaft in the order given, then the gear bodies, then a motor rotor. Inertia is
-    lumped, hence diagonal. Every angle is positive in the running direction of its line.
+    lumped, the matrix diagonal. Every angle is positive in the running direction of its line.
     """
     builder = _Builder(drivetrain)
     gear_dof = {gear.name: builder.stations + i for i, gear in enumerate(drivetrain.gears)}
@@ -106,14 +106,14 @@ def assemble(drivetrain: Drivetrain) -> LinearSystem:
         twist_load[braced.dof_a], twist_load[braced.dof_b] = braced.stiffness, -braced.stiffness
     line = drivetrain.lines()
     return LinearSystem(
-        inertia=np.array(builder.inertia),
+        inertia=np.diag(builder.inertia),
         damping=damping,
         stiffness=stiffness,
         dofs=tuple(builder.names),
         mesh_ports=np.array(
             [(gear_dof[m.pinion], gear_dof[m.wheel]) for m in drivetrain.meshes], dtype=np.int64
         ).reshape(-1, 2),
-        lines=np.array([line[shaft] for shaft in builder.shaft_of], dtype=np.int64),
+        rigid=line_shapes(np.array([line[shaft] for shaft in builder.shaft_of], dtype=np.int64)),
         drive_dof=builder.drive,
         twist_load=twist_load,
         drag_loads={name: -np.eye(1, n, dof)[0] for name, dof in places.items()},

@@ -1,15 +1,15 @@
 """Exact complex-modal form of a linear system with rigid modes and strong dampers.
 
-The undamped real modes come first, with the rigid mode of every free line kept exact (frequency 0, shape 1
-on the line). In that basis rigid displacements leave the state, only their velocity stays, so the state
-matrix has no defective pole; dampers of any strength are real poles of it. Nothing is truncated here.
+The undamped real modes come first, with the rigid mode of every free line kept exact (frequency 0). In that basis
+rigid displacements leave the state, only their velocity stays, so the state matrix has no defective pole; dampers of
+any strength are real poles of it. Nothing is truncated here.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig, eigh
+from scipy.linalg import eig, eigh, solve_triangular
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -31,6 +31,15 @@ class ModalForm:
     loads: Complex
     rigid: Array
 
+    def seen(self, freedoms: Array) -> "ModalForm":
+        """The same in other freedoms (n, n_coordinates) per coordinate."""
+        return ModalForm(
+            poles=self.poles,
+            velocity_shapes=freedoms @ self.velocity_shapes,
+            loads=self.loads @ freedoms.T,
+            rigid=freedoms @ self.rigid,
+        )
+
     def receptance(self, omega: Array, dofs: NDArray[np.int64]) -> Complex:
         """Displacement per torque between some freedoms at frequencies above zero.
 
@@ -44,55 +53,73 @@ class ModalForm:
         return np.asarray(mobility / s[:, None, None])
 
 
-def modal_form(inertia: Array, damping: Array, stiffness: Array, lines: NDArray[np.int64]) -> ModalForm:
-    """Complex modes of a system whose freedoms of one line turn freely together.
+def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -> ModalForm:
+    """Complex modes of a system with rigid shapes.
 
-    inertia : (n,) [kg m2]; damping, stiffness : (n, n) [N m s/rad], [N m/rad]; lines : (n,) index of the
-    line. A line that stiffness ties to ground or to another line has no rigid mode and is found by itself.
+    inertia, damping, stiffness : (n, n) [kg m2], [N m s/rad], [N m/rad]; damping may have a gyroscopic, stiffness a
+    skew part, which does not act on rigid motion
+    rigid : (n, n_shapes) candidates; only the combinations of them that the stiffness does not resist are rigid, so
+    that a line that is tied to ground or to another by a mesh has none
     """
-    root = np.sqrt(inertia)
-    basis, squared, n_rigid = _real_modes(root, stiffness, lines)
-    modal_damping = basis.T @ (damping / np.outer(root, root)) @ basis
-    n = root.size
+    modes = real_modes(inertia, stiffness, rigid)
+    n, n_rigid = modes.shapes.shape[0], modes.n_rigid
     n_elastic = n - n_rigid
-    frequency = np.sqrt(squared[n_rigid:])
     # states: frequency * elastic displacement, elastic velocity, rigid velocity (all of one unit)
-    order = np.concatenate([np.arange(n_rigid, n), np.arange(n_rigid)])
+    shapes = np.roll(modes.shapes, -n_rigid, axis=1)
+    frequency = modes.frequencies[n_rigid:]
     state = np.zeros((n_elastic + n, n_elastic + n))
     state[:n_elastic, n_elastic : 2 * n_elastic] = np.diag(frequency)
     state[n_elastic : 2 * n_elastic, :n_elastic] = -np.diag(frequency)
-    state[n_elastic:, n_elastic:] = -modal_damping[np.ix_(order, order)]
+    state[n_elastic:, n_elastic:] = -shapes.T @ damping @ shapes
+    skew = 0.5 * (stiffness - stiffness.T)
+    if skew.any():
+        state[n_elastic : 2 * n_elastic, :n_elastic] -= (
+            shapes[:, :n_elastic].T @ skew @ (shapes[:, :n_elastic] / frequency)
+        )
     poles, right = eig(state)
     left = np.linalg.inv(right)
-    shape = (basis[:, order] / root[:, None]) @ right[n_elastic:]
-    load = left[:, n_elastic:] @ (basis[:, order] / root[:, None]).T
     return ModalForm(
         poles=poles,
-        velocity_shapes=shape,
-        loads=np.asarray(load, complex),
-        rigid=basis[:, :n_rigid] / root[:, None],
+        velocity_shapes=shapes @ right[n_elastic:],
+        loads=np.asarray(left[:, n_elastic:] @ shapes.T, complex),
+        rigid=modes.shapes[:, :n_rigid],
     )
 
 
-def _real_modes(root: Array, stiffness: Array, lines: NDArray[np.int64]) -> tuple[Array, Array, int]:
-    """Orthonormal real modes in mass-scaled coordinates, exact rigid ones first: basis, omega^2, n_rigid."""
+@dataclass(frozen=True, kw_only=True)
+class RealModes:
+    """Mass-normalised real modes of the symmetric part of the stiffness, undamped.
+
+    shapes : (n, n), the rigid ones first; frequencies : (n,) [rad/s], exactly 0 for these
+    """
+
+    shapes: Array
+    frequencies: Array
+    n_rigid: int
+
+
+def real_modes(inertia: Array, stiffness: Array, rigid: Array) -> RealModes:
+    """Real modes with exact rigid ones; arguments as of ``modal_form``."""
+    root = np.linalg.cholesky(inertia)
+    symmetric = 0.5 * (stiffness + stiffness.T)
+    scaled = solve_triangular(root, solve_triangular(root, symmetric, lower=True).T, lower=True)
+    still = root.T @ _not_resisted(rigid, symmetric)
+    n, n_rigid = still.shape
+    whole = np.linalg.qr(still, mode="complete")[0] if n_rigid else np.eye(n)
+    rest = whole[:, n_rigid:]
+    reduced = rest.T @ scaled @ rest
+    squares, vectors = eigh(0.5 * (reduced + reduced.T))
+    basis = np.hstack([whole[:, :n_rigid], rest @ vectors])
+    return RealModes(
+        shapes=np.asarray(solve_triangular(root, basis, lower=True, trans="T"), float),
+        frequencies=np.concatenate([np.zeros(n_rigid), np.sqrt(np.maximum(squares, 0.0))]),
+        n_rigid=n_rigid,
+    )
+
+
+def _not_resisted(rigid: Array, stiffness: Array) -> Array:
+    """(n, n_rigid) combinations of the candidates that the stiffness does not resist."""
     scale = float(np.max(np.diag(stiffness), initial=1e-300))
-    candidates = _rigid_candidates(lines, stiffness, scale)
-    rigid = root[:, None] * candidates
-    if rigid.shape[1]:
-        rigid = np.linalg.qr(rigid)[0]
-    scaled = stiffness / np.outer(root, root)
-    whole = np.linalg.qr(np.hstack([rigid, np.eye(root.size)]))[0] if rigid.shape[1] else np.eye(root.size)
-    rest = whole[:, rigid.shape[1] :]
-    squared, vectors = eigh(rest.T @ scaled @ rest)
-    basis = np.hstack([rigid, rest @ vectors])
-    return basis, np.concatenate([np.zeros(rigid.shape[1]), np.maximum(squared, 0.0)]), rigid.shape[1]
-
-
-def _rigid_candidates(lines: NDArray[np.int64], stiffness: Array, scale: float) -> Array:
-    """(n, n_rigid) combinations of whole lines that the stiffness does not resist."""
-    names = np.unique(lines)
-    whole = (lines[:, None] == names).astype(float)
-    resisted = whole.T @ stiffness @ whole
-    values, vectors = np.linalg.eigh(resisted)
-    return np.asarray(whole @ vectors[:, np.abs(values) < 1e-9 * scale])
+    rigid = rigid[:, np.any(rigid != 0.0, axis=0)]
+    values, vectors = np.linalg.eigh(rigid.T @ stiffness @ rigid)
+    return np.asarray(rigid @ vectors[:, np.abs(values) < 1e-9 * scale])

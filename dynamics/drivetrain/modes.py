@@ -73,8 +73,8 @@ def loop_modes(
     """
     system = assemble(drivetrain)
     inertia, damping, stiffness = closed_matrices(system, laws)
-    form = modal_form(inertia, damping, stiffness, system.lines)
-    approach = np.zeros((len(laws), inertia.size))
+    form = modal_form(inertia, damping, stiffness, system.rigid)
+    approach = np.zeros((len(laws), len(inertia)))
     parts = joints(drivetrain)
     for m, (law, ports, mesh) in enumerate(zip(laws, system.mesh_ports, drivetrain.meshes)):
         approach[m, ports] = law.base_radius_1, -law.base_radius_2
@@ -114,11 +114,11 @@ def closed_matrices(system: LinearSystem, laws: Sequence[MeshLaw]) -> tuple[Arra
 
     laws : of the meshes, in the order of ``system.mesh_ports``
 
-    Returns inertia (n,) [kg m2], damping (n, n) [N m s/rad] and stiffness (n, n) [N m/rad] of the freedoms.
+    Returns inertia (n, n) [kg m2], damping (n, n) [N m s/rad] and stiffness (n, n) [N m/rad] of the freedoms.
     """
     stiffness, damping = system.stiffness.copy(), system.damping.copy()
     for law, ports in zip(laws, system.mesh_ports):
-        approach = np.zeros(system.inertia.size)
+        approach = np.zeros(len(system.inertia))
         approach[ports] = law.base_radius_1, -law.base_radius_2
         stiffness += law.mean_stiffness * np.outer(approach, approach)
         damping += law.damping * np.outer(approach, approach)

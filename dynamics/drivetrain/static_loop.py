@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
@@ -76,19 +77,22 @@ class PortModel:
 
 
 def line_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
-    """Speed of every freedom relative to the drive freedom (n,) [-], from the base radii of the meshes.
+    """Speed of every freedom relative to the drive freedom (n,) [-]: the rigid motion in which all meshes roll.
 
-    Raises KeyError, with the line, if a line is joined to the drive by no mesh.
+    Raises DynamicsInputError if a line is joined to the drive by no mesh.
     """
-    ratio = {int(system.lines[system.drive_dof]): 1.0}
-    for _ in laws:
-        for law, (pinion, wheel) in zip(laws, system.mesh_ports):
-            a, b = int(system.lines[pinion]), int(system.lines[wheel])
-            if a in ratio:
-                ratio.setdefault(b, ratio[a] * law.base_radius_1 / law.base_radius_2)
-            elif b in ratio:
-                ratio[a] = ratio[b] * law.base_radius_2 / law.base_radius_1
-    return np.array([ratio[int(line)] for line in system.lines])
+    rigid = system.rigid
+    rows = [rigid[system.drive_dof]]
+    for law, (pinion, wheel) in zip(laws, system.mesh_ports):
+        rows.append(rigid[pinion] - law.base_radius_2 / law.base_radius_1 * rigid[wheel])
+    shares, _, rank, _ = np.linalg.lstsq(np.array(rows), np.eye(1, len(rows))[0], rcond=1e-9)
+    if rank < rigid.shape[1]:
+        still = rigid @ scipy.linalg.null_space(np.array(rows), rcond=1e-9)[:, 0]
+        raise DynamicsInputError(
+            f"the line of {system.dofs[int(np.argmax(np.abs(still)))]} is joined to the drive by no mesh; every line "
+            "must turn with it"
+        )
+    return np.asarray(rigid @ shares)
 
 
 def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
@@ -110,7 +114,7 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         raise DynamicsInputError(
             "the motor acts on a gear body that also meshes: place it on a shaft station"
         )
-    inner = np.setdiff1d(np.arange(system.inertia.size), kept)
+    inner = np.setdiff1d(np.arange(len(system.inertia)), kept)
     coupling = system.stiffness[np.ix_(kept, inner)]
     carry = np.linalg.solve(system.stiffness[np.ix_(inner, inner)], coupling.T).T
     ratios = line_ratios(system, laws)

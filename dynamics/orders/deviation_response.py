@@ -173,7 +173,7 @@ def mean_windup(
     system: LinearSystem, torque: Mapping[int, float], *, twist: float, drive: float, speed: Array,
     drags: Mapping[str, float],
 ) -> Array:  # fmt: skip
-    """Mean windup of all freedoms (n,) [rad] under mean torques; each line against its own first freedom.
+    """Mean windup of all freedoms (n,) [rad] under mean torques; no branch turned as a whole.
 
     torque : mean of mesh torque by freedom [N m]; twist : bracing [rad]; drive : motor torque [N m]; speed : (n,)
     mean speed of every freedom [rad/s]; drags : torque by name of ``drag_loads`` [N m]
@@ -184,8 +184,8 @@ def mean_windup(
     load[system.drive_dof] += drive
     for name, value in drags.items():
         load = load + system.drag_loads[name] * value
-    windup = np.zeros(system.inertia.size)
-    for line in np.unique(system.lines):
-        own = np.flatnonzero(system.lines == line)[1:]
-        windup[own] = np.linalg.solve(system.stiffness[np.ix_(own, own)], load[own])
-    return windup
+    rigid, n_rigid = system.rigid, system.rigid.shape[1]
+    scale = float(np.abs(system.stiffness).max())
+    matrix = np.block([[system.stiffness / scale, rigid], [rigid.T, np.zeros((n_rigid, n_rigid))]])
+    windup = np.linalg.solve(matrix, np.concatenate((load / scale, np.zeros(n_rigid))))
+    return np.asarray(windup[: len(load)])

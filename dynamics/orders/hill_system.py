@@ -186,7 +186,7 @@ class HillSystem:
         """The class of the mean: with the mean windup of all freedoms, drive torque and twist as further unknowns."""
         loop, size, still = self.loop, self.n_meshes * self.n, self.still
         system = loop.system
-        ports, dofs = system.mesh_ports, system.inertia.size
+        ports, dofs = system.mesh_ports, len(system.inertia)
         at = np.arange(self.n_meshes) * self.n + still
         matrix = np.zeros((size + dofs + 2, size + dofs + 2), complex)
         matrix[:size, :size] = block
@@ -210,7 +210,7 @@ class HillSystem:
         return matrix
 
     def _load(self, known: Complex, torque: Complex, acting: Complex) -> Complex:
-        loop, size, dofs = self.loop, self.n_meshes * self.n, self.loop.system.inertia.size
+        loop, size, dofs = self.loop, self.n_meshes * self.n, len(self.loop.system.inertia)
         load = np.zeros(size + dofs + 2, complex)
         load[:size] = known
         load[np.arange(self.n_meshes) * self.n + self.still] = 0.0

@@ -94,7 +94,7 @@ def default_speed_control(
     Source: second-order loop J s^2 + k_p s + k_i with both roots at -2 pi bandwidth.
     """
     ratios = pinion_ratios(system, laws)
-    inertia = float(system.inertia @ ratios**2) / float(ratios[system.drive_dof]) ** 2
+    inertia = float(ratios @ system.inertia @ ratios) / float(ratios[system.drive_dof]) ** 2
     rate = 2.0 * pi * bandwidth
     return SpeedControl(
         proportional=2.0 * inertia * rate,

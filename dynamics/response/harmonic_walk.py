@@ -32,9 +32,14 @@ class HarmonicWalk:
 
     def __init__(self, problem: BalanceProblem, period: Period, cutoff: float, tolerance: float) -> None:
         """Choose the cell and the highest mode that the harmonics must reach, see ``periodic_response``."""
-        self.problem, self.tolerance = problem, tolerance
+        self.tolerance, self.cutoff = tolerance, cutoff
         self.cells, self.cell_angle = mesh_cells(problem.model, period, problem.load.control_mesh)
-        self.highest = highest_mode(problem.form, cutoff)
+        self.take(problem)
+
+    def take(self, problem: BalanceProblem) -> None:
+        """Go on with the matrices of another speed band."""
+        self.problem = problem
+        self.highest = highest_mode(problem.form, self.cutoff)
 
     def grid(self, speed: float) -> HarmonicGrid:
         """Grid whose harmonics reach 1.5 times the highest mode; DynamicsNotConverged if that takes too many."""

@@ -1,7 +1,7 @@
 """Complex modes of the linear drivetrain between its gear meshes, with its inputs and velocity outputs.
 
-The torsional system is brought to a real-mode basis, one exact rigid mode per shaft line and the elastic
-modes of each line, in scaled coordinates ``s = (v, Omega eta)`` with modal velocities ``v``: half its
+The system is brought to a real-mode basis, the exact rigid modes of the shaft lines and the elastic modes of each
+branch, in scaled coordinates ``s = (v, Omega eta)`` with modal velocities ``v``: half its
 square is the energy. The rigid angles stand outside (no double zero is left), the complex eigenproblem of
 ``s' = A s + B u`` is solved once, and only then are fast modes dropped; what they do statically stays as
 feedthrough. Real modes come before the complex ones because unscaled complex eigenvectors of free-free shafts
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import real_modes
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.kernels import FOUR
 from dynamics.mesh.law import MeshLaw
@@ -26,6 +27,10 @@ ComplexArray = NDArray[np.complex128]
 
 DEFAULT_CUTOFF = 50e3
 """Modes above this frequency [Hz] keep their static effect only."""
+
+
+PARTING = 1e-9
+"""Share by which the damping is raised where two modes coincide [-]."""
 
 
 class DefectiveModes(DynamicsNotConverged):
@@ -95,8 +100,8 @@ def modal_model(
     Raises
     ------
     ValueError
-        If shapes disagree; as DynamicsInputError if the damping is not symmetric, a line is not free to rotate, or a
-        drag torque acts on lines that nothing but a mesh ties together.
+        If shapes disagree; as DynamicsInputError if a line is not free to rotate or torn, or a drag torque acts on
+        lines that nothing but a mesh ties together.
     DefectiveModes
         If two complex modes coincide.
     """
@@ -104,21 +109,30 @@ def modal_model(
     drags = np.zeros((n, 0)) if drags is None else drags
     slow_and_drags = np.column_stack((loads, drags))
     _check(system, laws, slow_and_drags)
-    shapes, frequencies, n_lines = _line_modes(system)
-    damping = shapes.T @ system.damping @ shapes
+    inner = system.coordinates
+    own, frequencies, n_lines = _branch_shapes(system)
+    damping = own.T @ inner.damping @ own
     damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
     m = n - n_lines
     matrix = np.zeros((n + m, n + m))
     matrix[:n, :n] = -damping
     matrix[n_lines:n, n:] = -np.diag(frequencies[n_lines:])
     matrix[n:, n_lines:n] = np.diag(frequencies[n_lines:])
-    branch_of = _branches(system, shapes, damping)
+    skew = 0.5 * (inner.stiffness - inner.stiffness.T)
+    if skew.any():
+        elastic = own[:, n_lines:]
+        matrix[n_lines:n, n:] -= elastic.T @ skew @ (elastic / frequencies[n_lines:])
+    branch_of = inner.branches[np.argmax(np.abs(own), axis=0)]
+    shapes = inner.freedoms @ own
     of_state = np.concatenate((branch_of, branch_of[n_lines:]))
-    solved = [_branch_modes(matrix, np.flatnonzero(of_state == branch)) for branch in np.unique(branch_of)]
+    groups = _groups(shapes.T @ np.column_stack((_port_columns(system), drags)), branch_of)
+    in_order = np.argsort(groups, kind="stable")
+    solved = [_branch_modes(matrix, np.flatnonzero(of_state == branch), n) for branch in in_order]
     values = np.concatenate([own for own, _, _ in solved])
     vectors = np.hstack([right for _, right, _ in solved])
     inverse = np.vstack([left for _, _, left in solved])
-    branches = np.repeat(np.arange(len(solved)), [len(own) for own, _, _ in solved])
+    branches = np.repeat(groups[in_order], [len(own) for own, _, _ in solved])
+    branch_of = groups[branch_of]
     weights = np.where(values.imag > 0.0, 2.0, 1.0)
 
     forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
@@ -163,77 +177,83 @@ def _check(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> None:
         )
     if loads.ndim != 2 or loads.shape[0] != n:
         raise ValueError(f"loads has shape {loads.shape}, expected ({n}, number of slow inputs)")
-    if not np.all(system.inertia > 0.0):
-        worst = int(np.argmin(system.inertia))
+    diagonal = np.diag(system.inertia)
+    if not np.all(diagonal > 0.0):
+        worst = int(np.argmin(diagonal))
         raise DynamicsInputError(
-            f"inertia of {system.dofs[worst]} is {system.inertia[worst]} kg m2, must be positive"
+            f"inertia of {system.dofs[worst]} is {diagonal[worst]} kg m2, must be positive"
         )
-    scale = max(float(np.abs(system.damping).max()), 1e-300)
-    if np.abs(system.damping - system.damping.T).max() > 1e-9 * scale:
-        raise DynamicsInputError(
-            "damping matrix is not symmetric; joints and bearings act equally on both sides"
-        )
+    scale = max(float(np.abs(system.stiffness).max()), 1e-300)
+    for shape in system.rigid.T:
+        if np.abs(system.stiffness @ shape).max() > 1e-8 * scale:
+            named = system.dofs[int(np.argmax(np.abs(shape)))]
+            raise DynamicsInputError(
+                f"the line of {named} is not free to rotate: its stiffness rows sum to more than 1e-8 of the largest; "
+                "only meshes and dampers may hold a line"
+            )
 
 
-def _line_modes(system: LinearSystem) -> tuple[Array, Array, int]:
-    """Return mass-normalised modes of every line, exact rigid ones first, and their circular frequencies."""
-    n = len(system.inertia)
-    lines = np.unique(system.lines)
-    rigid = np.zeros((n, len(lines)))
+def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, int]:
+    """Return mass-normalised modes of every branch in the coordinates of the system, exact rigid ones first, and their
+    circular frequencies."""
+    inner = system.coordinates
+    n = len(inner.inertia)
+    rigid: list[Array] = []
     elastic: list[Array] = []
     frequencies: list[Array] = []
-    for column, line in enumerate(lines):
-        members = np.flatnonzero(system.lines == line)
-        others = np.flatnonzero(system.lines != line)
-        stiffness = system.stiffness[np.ix_(members, members)]
-        largest = max(float(np.abs(stiffness).max()), 1e-300)
-        if others.size and np.abs(system.stiffness[np.ix_(members, others)]).max() > 0.0:
+    for branch in np.unique(inner.branches):
+        members = np.flatnonzero(inner.branches == branch)
+        own = np.ix_(members, members)
+        modes = real_modes(inner.inertia[own], inner.stiffness[own], inner.rigid[members])
+        if np.any(modes.frequencies[modes.n_rigid :] <= 0.0):
             raise DynamicsInputError(
-                f"stiffness couples line {line} to another line; only meshes may do that"
+                f"the line of {_named(system, members[0])} is torn: a part of it is held by no stiffness; join it or "
+                "make it a line"
             )
-        if np.abs(stiffness.sum(axis=1)).max() > 1e-8 * largest:
-            raise DynamicsInputError(
-                f"line {line} is not free to rotate: its stiffness rows sum to more than 1e-8"
-            )
-        root = np.sqrt(system.inertia[members])
-        uniform = root / np.linalg.norm(root)
-        rigid[members, column] = uniform / root
-        if len(members) == 1:
-            continue
-        # an orthonormal basis of everything but the rigid motion keeps the rigid mode exact
-        basis = scipy.linalg.null_space(uniform[None, :])
-        reduced = basis.T @ (stiffness / np.outer(root, root)) @ basis
-        squares, vectors = scipy.linalg.eigh(0.5 * (reduced + reduced.T))
-        if squares[0] <= 0.0:
-            raise DynamicsInputError(
-                f"line {line} is torn: a part of it is held by no stiffness; join it or make it a line"
-            )
-        block = np.zeros((n, len(members) - 1))
-        block[members] = (basis @ vectors) / root[:, None]
-        elastic.append(block)
-        frequencies.append(np.sqrt(squares))
-    shapes = np.hstack((rigid, *elastic))
-    return shapes, np.concatenate((np.zeros(len(lines)), *frequencies)), len(lines)
+        block = np.zeros((n, len(members)))
+        block[members] = modes.shapes
+        rigid.append(block[:, : modes.n_rigid])
+        elastic.append(block[:, modes.n_rigid :])
+        frequencies.append(modes.frequencies[modes.n_rigid :])
+    n_rigid = sum(block.shape[1] for block in rigid)
+    return np.hstack((*rigid, *elastic)), np.concatenate((np.zeros(n_rigid), *frequencies)), n_rigid
 
 
-def _branches(system: LinearSystem, shapes: Array, damping: Array) -> NDArray[np.int64]:
-    """Return (n,) the branch of every real mode: lines between which nothing but a mesh acts are apart."""
-    lines, line_of = np.unique(system.lines, return_inverse=True)
-    line_of_mode = line_of[np.argmax(np.abs(shapes), axis=0)]
-    tied = np.zeros((len(lines), len(lines)), bool)
-    first, second = np.nonzero(damping)
-    tied[line_of_mode[first], line_of_mode[second]] = True
-    _, branch_of_line = connected_components(tied, directed=False)
-    return np.asarray(branch_of_line[line_of_mode], np.int64)
+def _groups(moved: Array, branch_of: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the group of every branch: those that one port or drag torque moves together are marched as one.
+
+    moved : (n, k) modes per unit of each; branch_of : (n,) branch of each mode
+    """
+    count = int(branch_of.max()) + 1
+    tied = np.eye(count, dtype=bool)
+    for column in np.abs(moved).T:
+        together = np.unique(branch_of[column > 1e-9 * max(column.max(), 1e-300)])
+        tied[together[0], together] = True
+    return np.asarray(connected_components(tied, directed=False)[1], np.int64)
+
+
+def _named(system: LinearSystem, coordinate: int) -> str:
+    """Name of the freedom that moves most with a coordinate."""
+    return system.dofs[int(np.argmax(np.abs(system.coordinates.freedoms[:, coordinate])))]
 
 
 def _branch_modes(
-    matrix: Array, members: NDArray[np.int64]
+    matrix: Array, members: NDArray[np.int64], n: int
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return eigenvalues (one of each pair, slow ones first), right and left vectors of some states alone."""
-    values, vectors = scipy.linalg.eig(matrix[np.ix_(members, members)])
-    condition = float(np.linalg.cond(vectors))
-    if not condition < 1e12:
+    """Return eigenvalues (one of each pair, slow ones first), right and left vectors of some states alone.
+
+    The first ``n`` states are velocities. Two modes that coincide, as those of a critical damper do, are parted by a
+    little more damping.
+    """
+    own, moving = matrix[np.ix_(members, members)], np.ix_(members < n, members < n)
+    for more in (0.0, PARTING, 100.0 * PARTING):
+        parted = own.copy()
+        parted[moving] *= 1.0 + more
+        values, vectors = scipy.linalg.eig(parted)
+        condition = float(np.linalg.cond(vectors))
+        if condition < 1e12:
+            break
+    else:
         raise DefectiveModes(
             f"complex modes: condition number {condition:.1e} of the eigenvectors, limit 1e12; two modes coincide, "
             "change a joint damping by a part in 1e4"
@@ -275,6 +295,6 @@ def _drag_branches(shapes: Array, branch_of: NDArray[np.int64], drags: Array) ->
 def _velocity_rows(system: LinearSystem, loads: Array) -> Array:
     """Rows of velocity outputs: two per mesh port, one per load, then square roots of the joint loss."""
     ports = np.repeat(_port_columns(system).T, 2, axis=0)
-    squares, vectors = scipy.linalg.eigh(system.damping)
+    squares, vectors = scipy.linalg.eigh(0.5 * (system.damping + system.damping.T))
     lossy = squares > 1e-13 * max(float(squares.max()), 1e-300)
     return np.vstack((ports, loads.T, (vectors[:, lossy] * np.sqrt(squares[lossy])).T))

@@ -149,9 +149,9 @@ def modal_state(
 
     ``inputs`` (n_inputs,): mesh torques, slow inputs and drag torques that act at this instant.
     """
-    moved = model.shapes.T @ (model.inertia * angles)
+    moved = model.shapes.T @ (model.inertia @ angles)
     scaled = np.concatenate(
-        (model.shapes.T @ (model.inertia * speeds), (model.frequencies * moved)[model.n_lines :])
+        (model.shapes.T @ (model.inertia @ speeds), (model.frequencies * moved)[model.n_lines :])
     )
     return propagator.layout.lay(model.to_modes @ scaled - propagator.hold @ inputs)
 

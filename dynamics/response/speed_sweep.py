@@ -13,13 +13,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed
 from dynamics.drivetrain.static_loop import PortModel, port_model
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution
-from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
+from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk, mesh_cells
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.periodic_response import Period, PeriodicResponse, TimeIntegration, TimeSettings
@@ -119,7 +119,7 @@ DEFAULT_SWEEP = SweepSettings()
 
 
 def periodic_response(
-    system: LinearSystem,
+    drivetrain: DrivetrainOverSpeed,
     laws: Sequence[MeshLaw],
     speeds: Sequence[float] | Array,
     load: LoopLoad,
@@ -130,7 +130,8 @@ def periodic_response(
 
     Parameters
     ----------
-    laws : of the meshes, in the order of ``system.mesh_ports``
+    drivetrain : without its meshes, the same matrices at all speeds (a ``LinearSystem``) or by ``SpeedBands``
+    laws : of the meshes, in the order of ``mesh_ports``
     speeds : mean speeds of the pinion of the first mesh [rad/s], > 0, in the order in which they are walked
     load : mean torque at the pinion of a mesh, along which the bracing twist is solved, or the twist that is held
     drag_torques : torque by name of ``system.drag_loads`` [N m], or a function of the speed that gives it
@@ -155,26 +156,17 @@ def periodic_response(
         raise DynamicsInputError(
             f"control_mesh = {load.control_mesh}: time integration controls mesh 0; use harmonic balance alone"
         )
-    ratios = pinion_ratios(system, laws)
-    problem = BalanceProblem(
-        model=port_model(system, laws),
-        form=system.form,
-        load=load,
-        shaft_torques=system.shaft_torques,
-        ratios=ratios / ratios[system.drive_dof] if system.shaft_torques else None,
-    )
-    walk = HarmonicWalk(problem, settings.period, settings.cutoff, settings.tolerance)
     given = [float(speed) for speed in speeds]
+    loops = _Loops(drivetrain, laws, load, settings)
     drags = [drag_torques(speed) if callable(drag_torques) else drag_torques for speed in given]
     found: dict[int, CurvePoint] = {}
     reasons: dict[int, str] = dict.fromkeys(range(len(given)), "")
     if "harmonic_balance" in settings.methods:
-        found, reasons = _by_harmonics(walk, given, drags)
+        found, reasons = _by_harmonics(loops, given, drags)
     if "time_integration" in settings.methods and reasons:
-        in_time = TimeIntegration(system, laws, TimeSettings(period=settings.period, cutoff=settings.cutoff))
         for i, reason in reasons.items():
             try:
-                found[i] = _in_time(walk, in_time, given[i], drags[i])
+                found[i] = _in_time(loops, given[i], drags[i])
             except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
@@ -230,37 +222,77 @@ def _between(points: Sequence[CurvePoint], bend: float) -> set[float]:
     return {float(0.5 * (speed[i] + speed[i + 1])) for b in bends for i in (b - 1, b)}
 
 
+class _Loops:
+    """The loop at each speed band: what harmonic balance and time integration solve, made once each."""
+
+    def __init__(
+        self,
+        drivetrain: DrivetrainOverSpeed,
+        laws: Sequence[MeshLaw],
+        load: LoopLoad,
+        settings: SweepSettings,
+    ) -> None:
+        self.drivetrain, self.laws, self.load, self.settings = drivetrain, laws, load, settings
+        self._problems: dict[int, BalanceProblem] = {}
+        self._solvers: dict[int, TimeIntegration] = {}
+
+    def problem(self, speed: float) -> BalanceProblem:
+        """Harmonic balance at a speed of the first pinion [rad/s]."""
+        system = self.drivetrain.at(speed)
+        if id(system) not in self._problems:
+            ratios = pinion_ratios(system, self.laws)
+            self._problems[id(system)] = BalanceProblem(
+                model=port_model(system, self.laws),
+                form=system.form,
+                load=self.load,
+                shaft_torques=system.shaft_torques,
+                ratios=ratios / ratios[system.drive_dof] if system.shaft_torques else None,
+            )
+        return self._problems[id(system)]
+
+    def solver(self, speed: float) -> TimeIntegration:
+        """Time integration at a speed of the first pinion [rad/s]."""
+        system = self.drivetrain.at(speed)
+        if id(system) not in self._solvers:
+            settings = TimeSettings(period=self.settings.period, cutoff=self.settings.cutoff)
+            self._solvers[id(system)] = TimeIntegration(system, self.laws, settings)
+        return self._solvers[id(system)]
+
+
 def _by_harmonics(
-    walk: HarmonicWalk, speeds: Sequence[float], drags: Sequence[Mapping[str, float] | None]
+    loops: _Loops, speeds: Sequence[float], drags: Sequence[Mapping[str, float] | None]
 ) -> tuple[dict[int, CurvePoint], dict[int, str]]:
     """Points by index, and the reason for each that is missing.
 
     First in the given order; then backwards through the gaps from their far side, where another branch lives.
     """
-    ratio = float(walk.problem.model.ratios[0])
+    settings = loops.settings
     states: dict[int, HarmonicSolution] = {}
     reasons: dict[int, str] = {}
     last: HarmonicSolution | None = None
+    if not speeds:
+        return {}, {}
+    walk = HarmonicWalk(loops.problem(speeds[0]), settings.period, settings.cutoff, settings.tolerance)
+    ratio = float(walk.problem.model.ratios[0])
     for order in (range(len(speeds)), range(len(speeds) - 1, -1, -1)):
         for i in order:
             if i not in states and (i in reasons or order.step > 0):
+                walk.take(loops.problem(speeds[i]))
                 try:
                     states[i] = walk.solve(speeds[i] / ratio, drags[i], last)
                     reasons.pop(i, None)
                 except DynamicsNotConverged as reason:
                     reasons[i] = str(reason)
             last = states.get(i, last)
-    model = walk.problem.model
-    return {i: point_of(model, state) for i, state in states.items()}, reasons
+    return {i: point_of(loops.problem(speeds[i]).model, state) for i, state in states.items()}, reasons
 
 
-def _in_time(
-    walk: HarmonicWalk, solver: TimeIntegration, speed: float, drags: Mapping[str, float] | None
-) -> CurvePoint:
-    result = solver.periodic(speed, walk.problem.load, drags)
+def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None) -> CurvePoint:
+    result = loops.solver(speed).periodic(speed, loops.load, drags)
     if not result.steady:
         raise DynamicsNotConverged("; ".join(result.warnings))
-    return point_in_time(walk.problem.model, result, walk.cells)
+    model = loops.problem(speed).model
+    return point_in_time(model, result, mesh_cells(model, loops.settings.period, loops.load.control_mesh)[0])
 
 
 def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:

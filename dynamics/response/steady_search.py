@@ -50,7 +50,7 @@ class SteadySearch:
             for own in system.shaft_torques
         ]
         self._ratios = ratios
-        self._inertia = float(system.inertia @ ratios**2) / ratios[system.drive_dof]
+        self._inertia = float(ratios @ system.inertia @ ratios) / ratios[system.drive_dof]
         self._last: Array | None = None
         self._speed_before: float | None = None
         self._change = float("inf")

@@ -324,8 +324,8 @@ class TimeMarch:
             for port, angle in zip(model.mesh_ports[mesh], (pinion, wheel)):
                 line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
                 if line not in placed:
-                    members = model.shapes[:, line] != 0.0
-                    angles[members] += angle - angles[port]
+                    turned = (angle - angles[port]) / model.shapes[port, line]
+                    angles += turned * model.shapes[:, line]
                     placed.add(line)
         return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._carried.slow[1]))
 

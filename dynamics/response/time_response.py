@@ -176,7 +176,7 @@ def run_schedule(
         (np.zeros(1), np.zeros(1)) if command.torque is None else _twists(system, laws, command.torque)
     )
     tables = drag_tables(curves)
-    inertia = float(system.inertia @ ratios**2) / drive_ratio**2
+    inertia = float(ratios @ system.inertia @ ratios) / drive_ratio**2
 
     n_samples = max(1, round(float(command.time[-1] - command.time[0]) * sample_rate))
     per_window = max(1, round(sampling.window * sample_rate))

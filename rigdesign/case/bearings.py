@@ -69,9 +69,15 @@ class JournalBearingInput(Part):
     torsional_damping: TorsionalDamping | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None
-    """For the record: the drivetrain is torsional."""
+    """Used where ``drivetrain.bearing_coefficients`` is stated."""
     radial_damping: LinearDamping | None = None
-    """For the record: the drivetrain is torsional."""
+    """Used with it; none when left out."""
+    axial_stiffness: LinearStiffness | None = None
+    """Of its thrust face, where the bearing locates its shaft; 1e8 N/m when left out."""
+    support_stiffness: LinearStiffness | None = None
+    """Of the housing under the bearing, radially and in series with it; rigid when left out."""
+    support_damping: LinearDamping = 0.0
+    """Damper beside the stiffness of the support."""
 
     @property
     def label(self) -> str:

@@ -1,4 +1,4 @@
-"""Shafts, joints and drive of the power circuit (torsional)."""
+"""Shafts, joints and drive of the power circuit."""
 
 from collections.abc import Mapping
 from typing import Literal
@@ -11,6 +11,8 @@ from rigdesign.case.fields import (
     Gap,
     Inertia,
     Length,
+    LinearStiffness,
+    Mass,
     Name,
     Part,
     Size,
@@ -22,6 +24,7 @@ from rigdesign.case.fields import (
 )
 
 End = Literal["start", "end"]
+ShaftModel = Literal["elastic", "torsional"]
 MeshStiffness = Literal["influence_numbers", "iso_6336_scaled", "weber_banaschek_0.8"]
 
 
@@ -43,6 +46,10 @@ class DiscInput(Part):
     """Distance from the start of the shaft."""
     inertia: Inertia
     """Polar mass moment of inertia about the axis of the shaft."""
+    mass: Mass | None = None
+    """For bending; that of a steel disc a third as thick as its radius when left out."""
+    diametral_inertia: Inertia | None = None
+    """Mass moment of inertia about a diameter, for bending; half the polar one when left out."""
 
 
 class ShaftInput(Part):
@@ -81,7 +88,7 @@ class HarmonicTorqueInput(Part):
 
 
 class CouplingInput(Part):
-    """Torsion spring and damper between the ends of two shafts."""
+    """Springs and dampers between the ends of two shafts."""
 
     shafts: tuple[Name, Name]
     """First and second shaft that it joins."""
@@ -91,6 +98,14 @@ class CouplingInput(Part):
     """Torque per angle of twist between its two halves."""
     torsional_damping: TorsionalDamping
     """Massless; its flanges and a torque flange are discs of the shafts."""
+    radial_stiffness: LinearStiffness | None = None
+    """Force per offset of the two ends; none when left out: bending does not pass it."""
+    axial_stiffness: LinearStiffness | None = None
+    """Force per axial travel of the two ends; none when left out."""
+    angular_stiffness: TorsionalStiffness | None = None
+    """Moment per angle between the two ends, about a diameter; none when left out."""
+    lateral_damping_time: float = Field(default=0.0, ge=0.0, le=1e-3)
+    """Damping over stiffness of these three [s]."""
     excitation: tuple[HarmonicTorqueInput, ...] = ()
     """Torques between its two ends, drawing the first ahead: what it makes of axes out of line turns up at order 2."""
     radial_offset_maximum: Length | None = None
@@ -154,6 +169,12 @@ class DrivetrainInput(Part):
     """How the test torque is locked into the loop."""
     torque_at: Text
     """Gear at which test torque and speed are counted, ``gearbox.gear``."""
+    shaft_model: ShaftModel = "elastic"
+    """elastic: shafts that bend in bearings that give, gears in six degrees of freedom; torsional: shafts that only
+    twist, as always at fidelity quick."""
+    bearing_coefficients: Literal["computed", "stated"] = "computed"
+    """Lateral stiffness and damping of the bearings: computed for load, speed and temperature of each stage, or
+    ``radial_stiffness`` and ``radial_damping`` as each bearing states them."""
     mesh_stiffness: MeshStiffness = "influence_numbers"
     """Tooth model: finite-element influence numbers of the teeth as drawn on the gear bodies that all pairs share
     (``iso_6336_scaled`` at fidelity quick), the analytic shape scaled to the mean of ISO 6336-1, or unscaled times

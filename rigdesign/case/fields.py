@@ -146,6 +146,7 @@ TorsionalStiffness = Annotated[float, Quantity("torsional_stiffness", above="0 N
 TorsionalDamping = Annotated[float, Quantity("torsional_damping", at_least="0 N m s/rad")]
 LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]
 LinearDamping = Annotated[float, Quantity("linear_damping", at_least="0 N s/m")]
+Mass = Annotated[float, Quantity("mass", above="0 kg", at_most="1000000 kg")]
 Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="100000 kg m2")]
 Voltage = Annotated[float, Quantity("voltage", above="0 V", at_most="100 V")]
 Resistance = Annotated[float, Quantity("resistance", at_least="0 ohm", at_most="100 kohm")]

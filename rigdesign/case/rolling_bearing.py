@@ -154,9 +154,15 @@ class RollingBearingInput(Part):
     torsional_damping: TorsionalDamping | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None
-    """For the record: the drivetrain is torsional."""
+    """Used where ``drivetrain.bearing_coefficients`` is stated."""
     radial_damping: LinearDamping | None = None
-    """For the record: the drivetrain is torsional."""
+    """Used with it; 1.25e-5 s of the stiffness (Kraemer 1993) when left out."""
+    axial_stiffness: LinearStiffness | None = None
+    """Of its rings, where the bearing locates its shaft; 1e8 N/m when left out."""
+    support_stiffness: LinearStiffness | None = None
+    """Of the housing under the bearing, radially and in series with it; rigid when left out."""
+    support_damping: LinearDamping = 0.0
+    """Damper beside the stiffness of the support."""
 
     @field_validator("designation")
     @classmethod

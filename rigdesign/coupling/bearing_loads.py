@@ -4,46 +4,51 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from dynamics.bearing.rolling_pair import pair_axial_loads
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.gears import GearMesh
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
 
 GRAVITY = 9.81
 
 
 @dataclass(frozen=True, kw_only=True)
 class BearingLoad:
-    """Radial force and axial force inside the bearing [N], not negative."""
+    """Radial force and axial force inside the bearing [N], not negative.
+
+    direction : unit vector of the radial force of the shaft on the bearing in the plane (y, z), its two components
+    """
 
     radial: float
     axial: float = 0.0
+    direction: tuple[float, float] = (0.0, -1.0)
 
 
 def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, BearingLoad]:
     """Load of every bearing: tooth forces and weight by the lever rule on its shaft, axial forces to what locates it.
 
-    Tooth forces add as vectors where the housing says where the axes stand: at an idler between two wheels the
-    tangential forces add and the separating ones cancel. Without a housing they add as if all pointed one way.
-    Weight is counted with the tangential force, which is on the safe side. Axial forces of a double-helical gear
-    cancel. Those of the single-helical gears of a shaft go to its locating bearing, the first where none is; their
-    tilting moment F_a r is carried by both bearings of the shaft as a couple over their distance, with the separating
-    force on either of them, which is on the safe side; it is left out where the case does not state both positions
-    (`tilt_counted`).
+    Forces add as vectors where the axes stand (`rigdesign.rig.shaft_axes`): at an idler between two wheels the
+    tangential forces add and the separating ones cancel. Axial forces of a double-helical gear cancel. Those of the
+    single-helical gears of a shaft go to its locating bearing, the first where none is; their tilting moment F_a r is
+    carried by both bearings of the shaft as a couple over their distance, with the separating force on either of
+    them, which is on the safe side; it is left out where the case does not state both positions (`tilt_counted`).
 
     Where the radial load of a bearing induces an axial force, its partner takes that up as well (`pair_axial_loads`);
     the locating bearing is the one that the gears press, whether the pair stands face to face or back to back.
     """
-    loads = {
-        name: BearingLoad(
-            radial=_radial_load(rig, name, box, entry, coupling_state)
-            if entry.radial_load is None
-            else entry.radial_load
-        )
-        for name, box, entry in rig.bearings()
-    }
+    loads: dict[str, BearingLoad] = {}
+    for full, box, entry in rig.bearings():
+        force = _radial_force(rig, full.split(".")[0], box, entry, coupling_state)
+        size = float(np.hypot(*force))
+        direction = (float(force[0]) / size, float(force[1]) / size) if size > 0.0 else (0.0, -1.0)
+        radial = size if entry.radial_load is None else entry.radial_load
+        loads[full] = BearingLoad(radial=radial, direction=direction)
     for name, box in rig.case.gearboxes.items():
         for shaft in dict.fromkeys(entry.shaft for entry in box.bearings.values()):
             loads |= _axial_loads(rig, name, shaft, loads, coupling_state)
@@ -127,44 +132,43 @@ def _span(box: Gearbox, shaft: str) -> float:
     return abs(stations[0] - stations[1])
 
 
-def _radial_load(
+def _radial_force(
     rig: Rig, name: str, box: Gearbox, entry: BearingInput, coupling_state: CouplingState
-) -> float:
-    box_name = name.split(".")[0]
-    tangential, separating, weight = 0.0, 0.0, 0.5 * GRAVITY * rig.shaft_mass(entry.shaft)
+) -> Array:
+    """Force of the shaft on one of its bearings in the plane (y, z) (2,) [N]."""
+    force = np.array([0.0, -0.5 * GRAVITY * rig.shaft_mass(entry.shaft)])
+    tilting = _tilting(rig, name, entry.shaft, coupling_state)
     first = box.first_meshes()
     for gear_name, gear in box.gears.items():
         if gear.shaft != entry.shaft:
             continue
-        share = _lever(box, entry.shaft, entry.position, gear.position)
-        mesh_name, side = first[gear_name]
-        weight += share * GRAVITY * box.halves(gear_name) * rig.pairs[f"{box_name}.{mesh_name}"].masses[side]
+        own, side = first[gear_name]
+        mass = box.halves(gear_name) * rig.pairs[f"{name}.{own}"].masses[side]
+        acting = np.array([0.0, -GRAVITY * mass])
         for mesh_name, mesh in box.meshes.items():
             if gear_name in (mesh.pinion, mesh.wheel):
-                full = f"{box_name}.{mesh_name}"
-                towards, drives = _direction(box, mesh, gear_name, coupling_state.mesh_torque[full])
-                pair = rig.pairs[full]
-                force = share * abs(coupling_state.mesh_torque[full]) / pair.base_radii[0]
-                tangential += towards * drives * force * math.cos(pair.working_pressure_angle)
-                separating += towards * force * math.sin(pair.working_pressure_angle)
-    tilting = _tilting(rig, box_name, entry.shaft, coupling_state)
-    return math.hypot(abs(tangential) + weight, abs(separating) + tilting)
+                acting += tooth_force(rig, f"{name}.{mesh_name}", gear_name, coupling_state)
+        force += _lever(box, entry.shaft, entry.position, gear.position) * acting
+        if tilting:
+            centres = rig.line_of_action(f"{name}.{own}").centres
+            force += math.copysign(tilting, float(force @ centres)) * centres
+            tilting = 0.0
+    return force
 
 
-def _direction(box: Gearbox, mesh: GearMesh, gear: str, torque: float) -> tuple[float, float]:
-    """Side on which the partner stands, +1 towards y, and +1 if the gear drives it; 1, 1 without a housing."""
-    if box.housing is None:
-        return 1.0, 1.0
-    here, there = (mesh.pinion, mesh.wheel) if gear == mesh.pinion else (mesh.wheel, mesh.pinion)
-    y = [box.housing.shafts[box.gears[name].shaft].lateral_position for name in (here, there)]
-    return math.copysign(1.0, y[1] - y[0]), math.copysign(1.0, torque if here == mesh.pinion else -torque)
+def tooth_force(rig: Rig, mesh: str, gear: str, coupling_state: CouplingState) -> Array:
+    """Mean force of the teeth of a mesh ``gearbox.mesh`` on one of its gears, in the plane (y, z) (2,) [N]."""
+    pair, torque = rig.pairs[mesh], coupling_state.mesh_torque[mesh]
+    direction = rig.line_of_action(mesh).normal(pair.working_pressure_angle, math.copysign(1.0, torque))
+    pushed = 1.0 if gear == rig.mesh_gears(mesh)[1].split(".")[1] else -1.0
+    return np.asarray(pushed * abs(torque) / pair.base_radii[0] * direction)
 
 
 def _lever(box: Gearbox, shaft: str, position: float | None, gear_position: float | None) -> float:
-    """Share of a gear force that one of the two bearings of a shaft carries."""
+    """Share of a gear force that one of the two bearings of a shaft carries; negative beyond the other one."""
     stations = [bearing.position for bearing in box.bearings.values() if bearing.shaft == shaft]
     if position is None or gear_position is None or None in stations or len(stations) != 2:
         return 1.0 / len(stations)
     first, second = (station for station in stations if station is not None)
     other = second if position == first else first
-    return abs(other - gear_position) / abs(other - position)
+    return (other - gear_position) / (other - position)

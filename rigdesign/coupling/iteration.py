@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from dynamics.bearing.protocol import BearingState
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.finite import finite
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -18,6 +19,7 @@ from rigdesign.coupling.loads import (
     mesh_models,
     respond,
 )
+from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.oil import OilStream, oil_streams
 from rigdesign.coupling.point_losses import PointLosses
@@ -47,6 +49,7 @@ class IterationParts:
 
     models: Callable[..., tuple[MeshModel, ...]] = mesh_models
     bearings: Callable[..., dict[str, BearingState]] = solve_bearings
+    system: Callable[..., LinearSystem] = loop_system
     response: Callable[..., CurvePoint] = respond
     field: Callable[..., HousingField] = solve_housing
     expansion: Callable[..., HousingExpansion] = expand_housing
@@ -81,7 +84,10 @@ class PointProblem:
     ) -> "PointProblem":
         """The problem of a rig that is braced in its initial state."""
         initial = initial_state(rig, point)
-        bracing = None if rig.case.drivetrain is None else brace_initial(rig, point, initial)
+        bracing = None
+        if rig.case.drivetrain is not None:
+            system = parts.system(rig, point, initial, parts.bearings(rig, point, initial))
+            bracing = brace_initial(rig, point, initial, parts.models(rig, point, initial), system)
         return cls(rig=rig, point=point, initial=initial, bracing=bracing, parts=parts, freeze=freeze)
 
 
@@ -92,13 +98,15 @@ class LoadResult(PointLosses):
     bracing: BracingState | None
     models: tuple[MeshModel, ...]
     drags: Mapping[str, float]
+    system: LinearSystem | None
+    """Of the drivetrain without its meshes; None without a drivetrain."""
     response: CurvePoint | None
 
     @property
     def loop(self) -> LoadedCircuit:
         """The braced loop; of a rig with a drivetrain only."""
-        assert self.bracing is not None
-        return LoadedCircuit(self.point, self.models, self.drags, self.bracing)
+        assert self.bracing is not None and self.system is not None
+        return LoadedCircuit(self.point, self.models, self.drags, self.bracing, self.system)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,18 +173,21 @@ def solve_loads(problem: PointProblem, coupling_state: CouplingState) -> LoadRes
     bearings = parts.bearings(rig, point, coupling_state)
     rotating = rotating_losses(rig, point, coupling_state, models, bearings)
     drags = drag_torques(rotating, rig, point.speed)
-    bracing = problem.bracing
-    response = None if bracing is None else parts.response(rig, point, models, drags, bracing)
+    system, response = None, None
+    if problem.bracing is not None:
+        system = parts.system(rig, point, coupling_state, bearings)
+        response = parts.response(rig, LoadedCircuit(point, models, drags, problem.bracing, system))
     losses = (*rotating, *mesh_losses(rig, point, models, response, coupling_state))
     for placed in losses:
         finite(f"stage {point.stage}: {placed.loss.kind} loss of {placed.name}", placed.loss.power)
     return LoadResult(
         point=point,
         coupling_state=coupling_state,
-        bracing=bracing,
+        bracing=problem.bracing,
         models=models,
         bearings=bearings,
         drags=drags,
+        system=system,
         response=response,
         losses=losses,
     )

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.flank.axes import AxisMisalignment
@@ -359,21 +360,26 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
 
 
 def brace_initial(
-    rig: Rig, point: OperatingPoint, initial: CouplingState, models: Sequence[MeshModel] | None = None
+    rig: Rig,
+    point: OperatingPoint,
+    initial: CouplingState,
+    models: Sequence[MeshModel] | None = None,
+    system: LinearSystem | None = None,
 ) -> BracingState:
     """Bracing that makes the demanded torque in the initial state; kept from then on in the held modes.
 
     The torque is the mean over all places where teeth that are not alike may come to rest.
 
-    models : the meshes in that state, where they are known
+    models : the meshes in that state, where they are known; system : of the drivetrain, the torsional one when left out
     """
-    assert rig.case.drivetrain is not None and rig.system is not None
+    system = rig.system if system is None else system
+    assert rig.case.drivetrain is not None and system is not None
     mode = rig.case.drivetrain.bracing.mode
     if mode == "torque_controlled":
         return BracingState(mode=mode)
     met = mesh_models(rig, point, initial) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
-    state = brace(rig.system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
+    state = brace(system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
     return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 
 
@@ -386,15 +392,11 @@ class LoadedCircuit:
     drags: Mapping[str, float]
     """By place of the drivetrain [N m]."""
     bracing: BracingState
+    system: LinearSystem
+    """Of the drivetrain without its meshes."""
 
 
-def respond(
-    rig: Rig,
-    point: OperatingPoint,
-    models: Sequence[MeshModel],
-    drags: Mapping[str, float],
-    setting: BracingState,
-) -> CurvePoint:
+def respond(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
     """Periodic response at one operating point.
 
     Raises
@@ -402,17 +404,17 @@ def respond(
     DynamicsNotConverged
         Neither harmonic balance nor time integration converges.
     """
-    assert rig.system is not None
+    point, setting = circuit.point, circuit.bracing
     controlled = setting.mode == "torque_controlled"
     curve = periodic_response(
-        rig.system,
-        periodic_laws(rig, shifted_laws(rig, models, setting)),
+        circuit.system,
+        periodic_laws(rig, shifted_laws(rig, circuit.models, setting)),
         [rig.pinion_speed(point.speed)],
         LoopLoad(
             torque=signed_torque(rig, point) if controlled else None,
             twist=None if controlled else setting.twist,
         ),
-        drag_torques=drags,
+        drag_torques=circuit.drags,
         settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )
     if curve.failed:

@@ -1,14 +1,14 @@
 """Losses at any operating point with the warm rig of a held stage: no coupling."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
-from rigdesign.coupling.loads import BracingState, MeshModel, mesh_models, respond
+from rigdesign.coupling.loads import BracingState, LoadedCircuit, mesh_models, respond
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.losses import mesh_losses, oil_jets, rotating_losses
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
@@ -37,7 +37,13 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
         return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=jets)
     models = mesh_models(rig, point, coupling_state)
     rotating = rotating_losses(rig, point, coupling_state, models, bearings)
-    response = _response(rig, point, models, rotating) if dynamic and rig.system is not None else None
+    response = None
+    if dynamic and rig.system is not None:
+        system = loop_system(rig, point, coupling_state, bearings)
+        drags = drag_torques(rotating, rig, point.speed)
+        response = _response(
+            rig, LoadedCircuit(point, models, drags, BracingState(mode="torque_controlled"), system)
+        )
     meshes = mesh_losses(rig, point, models, response, coupling_state)
     if dynamic and rig.system is not None and response is None:
         meshes = [_without_response(placed) for placed in meshes]
@@ -45,13 +51,10 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=losses)
 
 
-def _response(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], rotating: Sequence[PlacedLoss]
-) -> CurvePoint | None:
+def _response(rig: Rig, circuit: LoadedCircuit) -> CurvePoint | None:
     """Periodic response with the bracing that makes the torque of this point; None where none is found."""
-    drags = drag_torques(rotating, rig, point.speed)
     try:
-        return respond(rig, point, models, drags, BracingState(mode="torque_controlled"))
+        return respond(rig, circuit)
     except DynamicsNotConverged:
         return None
 

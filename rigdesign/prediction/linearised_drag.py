@@ -4,7 +4,7 @@ Those move torques by a per cent or less, so that the changes of the periodic re
 add up. What leaves loop, bracing and flanks alone (losses, oil, flows, films) then needs no response of its own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 
@@ -13,8 +13,7 @@ import numpy as np
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.iteration import IterationResult, PointProblem
-from rigdesign.coupling.loads import BracingState, MeshModel, signed_torque
-from rigdesign.coupling.state import OperatingPoint
+from rigdesign.coupling.loads import BracingState, LoadedCircuit, MeshModel, signed_torque
 from rigdesign.prediction.model import ORDER_QUANTITIES
 from rigdesign.prediction.readings import Readings
 from rigdesign.rig.model import Rig
@@ -51,19 +50,13 @@ class LinearisedDrag:
         self._orders = [reading for channel, reading in reads if channel.quantity in ORDER_QUANTITIES]
         self.sensitivities = dict(sensitivities or {})
 
-    def causes(
-        self,
-        rig: Rig,
-        point: OperatingPoint,
-        models: Sequence[MeshModel],
-        drags: Mapping[str, float],
-        setting: BracingState,
-    ) -> dict[Cause, float] | None:
+    def causes(self, rig: Rig, circuit: LoadedCircuit) -> dict[Cause, float] | None:
         """By how much drags [N m] and frictions differ; None where more than they do."""
         own_rig, last = self.problem.rig, self.last
+        point, models, drags = circuit.point, circuit.models, circuit.drags
         if (
-            rig.system is not own_rig.system
-            or not _same_bracing(setting, self.problem.bracing)
+            circuit.system is not last.system
+            or not _same_bracing(circuit.bracing, self.problem.bracing)
             or rig.pinion_speed(point.speed) != own_rig.pinion_speed(last.point.speed)
             or signed_torque(rig, point) != signed_torque(own_rig, last.point)
             or not all(_alike(model.law, own.law) for model, own in zip(models, last.models))
@@ -133,7 +126,9 @@ class LinearisedDrag:
 
     def _solved(self, models: tuple[MeshModel, ...], drags: Mapping[str, float]) -> FloatArray:
         problem, last = self.problem, self.last
-        response = problem.parts.response(problem.rig, last.point, models, drags, problem.bracing)
+        assert problem.bracing is not None and last.system is not None
+        circuit = LoadedCircuit(last.point, models, drags, problem.bracing, last.system)
+        response = problem.parts.response(problem.rig, circuit)
         return self._numbers(replace(last, models=models, drags=drags, response=response))
 
     def _numbers(self, done: IterationResult) -> FloatArray:

@@ -5,7 +5,6 @@ nothing else of the case, so that a change finds again whatever it leaves alone.
 within a tenth of a picometre: the mean over teeth that deviate is zero only to rounding.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +21,7 @@ from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.loads import (
     BracingState,
+    LoadedCircuit,
     MeshModel,
     brace_initial,
     laws_of,
@@ -110,28 +110,22 @@ class Memoisation:
         found: BracingState = known[key]
         return found
 
-    def response(
-        self,
-        rig: Rig,
-        point: OperatingPoint,
-        models: Sequence[MeshModel],
-        drags: Mapping[str, float],
-        setting: BracingState,
-    ) -> CurvePoint:
+    def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
         """As `respond`."""
-        laws = periodic_laws(rig, shifted_laws(rig, models, setting))
+        point, setting = circuit.point, circuit.bracing
+        laws = periodic_laws(rig, shifted_laws(rig, circuit.models, setting))
         asked = signed_torque(rig, point) if setting.mode == "torque_controlled" else setting.twist
         key = (
-            id(rig.system),
+            id(circuit.system),
             tuple(map(law_key, laws)),
             rig.pinion_speed(point.speed),
             (setting.mode, asked),
             rig.case.numerics.response_period,
-            tuple(drags.items()),
+            tuple(circuit.drags.items()),
         )
         known = self._room("responses")
         if key not in known:
-            known[key] = rig.system, respond(rig, point, models, drags, setting)
+            known[key] = circuit.system, respond(rig, circuit)
         found: tuple[LinearSystem, CurvePoint] = known[key]
         return found[1]
 

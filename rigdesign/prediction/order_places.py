@@ -72,7 +72,7 @@ def motions(system: LinearSystem, loads: Sequence[OrderLoads]) -> Complex:
 
     As `dynamics.orders.deviation_response.motion_orders`, of all orders at once.
     """
-    acting = np.zeros((system.inertia.size, len(loads)), complex)
+    acting = np.zeros((len(system.inertia), len(loads)), complex)
     for column, one in zip(acting.T, loads):
         np.add.at(column, one.dofs, one.torque)
     form = system.form

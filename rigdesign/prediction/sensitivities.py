@@ -14,8 +14,8 @@ import numpy as np
 
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
-from rigdesign.coupling.loads import BracingState, MeshModel
-from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.loads import LoadedCircuit
+from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.state_vector import SCALES, numbering, scaled, unscaled
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
 from rigdesign.prediction.linearised_drag import Cause, LinearisedDrag
@@ -176,16 +176,9 @@ class _LinearisedResponse:
         self.causes: dict[Cause, float] | None = None
         """By how much they differ; None where the response was solved."""
 
-    def response(
-        self,
-        rig: Rig,
-        point: OperatingPoint,
-        models: tuple[MeshModel, ...],
-        drags: Mapping[str, float],
-        bracing: BracingState,
-    ) -> CurvePoint:
+    def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
         """As `rigdesign.coupling.loads.respond`."""
-        self.causes = self._drag.causes(rig, point, models, drags, bracing)
+        self.causes = self._drag.causes(rig, circuit)
         if self.causes is None:
-            return self._problem.parts.response(rig, point, models, drags, bracing)
+            return self._problem.parts.response(rig, circuit)
         return self._drag.response(self.causes)

@@ -29,6 +29,7 @@ from rigdesign.rig.influence_store import Progress
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
 from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
+from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, shaft_axes
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
@@ -89,6 +90,17 @@ class Rig:
         if self.drivetrain is None:
             return gearbox_forces(self.case, self.pairs)
         return loop_forces(self.case, self.pairs, self.drivetrain.lines())
+
+    @cached_property
+    def axes(self) -> Mapping[str, ShaftAxis]:
+        """Axis of every shaft."""
+        return shaft_axes(self.case, self.pairs)
+
+    def line_of_action(self, mesh: str) -> LineOfAction:
+        """Directions of the mesh ``gearbox.mesh``."""
+        box, own = self.mesh(mesh)
+        pinion, wheel = (box.gears[gear].shaft for gear in (box.meshes[own].pinion, box.meshes[own].wheel))
+        return line_of_action(self.axes[pinion], self.axes[wheel])
 
     @cached_property
     def system(self) -> LinearSystem | None:

@@ -15,7 +15,9 @@ from dataclasses import dataclass, field, replace
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.checks.dynamics import loaded_stages
-from rigdesign.coupling.loads import BracingState, mesh_models, respond
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.loads import BracingState, LoadedCircuit, mesh_models, respond
+from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import DiscretisationRow
@@ -39,19 +41,20 @@ class _Loaded:
     drags: Mapping[str, float]
     setting: BracingState
 
+    def _circuit(self, rig: Rig) -> LoadedCircuit:
+        bearings = solve_bearings(rig, self.point, self.coupling_state)
+        return LoadedCircuit(
+            self.point,
+            mesh_models(rig, self.point, self.coupling_state),
+            self.drags,
+            self.setting,
+            loop_system(rig, self.point, self.coupling_state, bearings),
+        )
+
     def responses(self, rigs: Rigs) -> tuple[CurvePoint, ...]:
         """Of each rig; nothing where one of them finds none."""
         try:
-            return tuple(
-                respond(
-                    rig,
-                    self.point,
-                    mesh_models(rig, self.point, self.coupling_state),
-                    self.drags,
-                    self.setting,
-                )
-                for rig in rigs
-            )
+            return tuple(respond(rig, self._circuit(rig)) for rig in rigs)
         except DynamicsNotConverged:
             return ()
 

@@ -10,7 +10,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.static_loop import port_model
@@ -66,7 +66,7 @@ def sweep(frequencies: Sequence[float]) -> dict[float, float]:
     """Half peak-to-peak amplitude by frequency over a continued sweep; where a branch ends, from beyond the gap."""
     system, law = _oscillator()
     model = port_model(system, [law])
-    form = modal_form(system.inertia, system.damping, system.stiffness, system.lines)
+    form = modal_form(system.inertia, system.damping, system.stiffness, system.rigid)
     problem = BalanceProblem(model=model, form=form, load=LoopLoad(twist=0.0))
     grid = HarmonicGrid(cells=1, harmonics=24, samples=512, cell_angle=2.0 * np.pi / TEETH)
     rest = np.zeros((2, grid.top + 1), complex)
@@ -106,12 +106,12 @@ def _oscillator() -> tuple[LinearSystem, MeshLaw]:
     spring[0, 0] = spring[2, 2] = SOFT
     spring[0, 2] = spring[2, 0] = -SOFT
     system = LinearSystem(
-        inertia=np.array([1.0, HEAVY, HEAVY]),
+        inertia=np.diag([1.0, HEAVY, HEAVY]),
         damping=np.diag([2.0 * ZETA, 0.0, 0.0]),
         stiffness=spring,
         dofs=("pinion", "wheel", "drive"),
         mesh_ports=np.array([[0, 1]], dtype=np.int64),
-        lines=np.array([0, 1, 0], dtype=np.int64),
+        rigid=line_shapes(np.array([0, 1, 0])),
         drive_dof=2,
         twist_load=np.zeros(3),
         drag_loads={"load": np.array([0.0, -1.0, 0.0])},

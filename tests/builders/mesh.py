@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.mesh.law import MeshLaw
 
 BASE_RADIUS_1 = 46.5e-3
@@ -71,12 +71,12 @@ def two_bodies(
 ) -> LinearSystem:
     """Two free discs in mesh; the twist is a brake on the wheel: load torque per radian of twist 1 N m."""
     return LinearSystem(
-        inertia=np.array(inertia),
+        inertia=np.diag(inertia),
         damping=np.diag(damping),
         stiffness=np.zeros((2, 2)),
         dofs=("pinion", "wheel"),
         mesh_ports=np.array([[0, 1]]),
-        lines=np.array([0, 1]),
+        rigid=line_shapes(np.array([0, 1])),
         drive_dof=0,
         twist_load=np.array([0.0, -1.0]),
         drag_loads={"pinion bearing": np.array([-1.0, 0.0])},
@@ -101,12 +101,12 @@ def chain(
     load = np.zeros(2 * n)
     load[n + 1] = -1.0
     return LinearSystem(
-        inertia=np.full(2 * n, inertia),
+        inertia=np.diag(np.full(2 * n, inertia)),
         damping=damping,
         stiffness=stiffness,
         dofs=tuple(f"line {i // n}/{i % n}" for i in range(2 * n)),
         mesh_ports=np.array([[n - 1, 2 * n - 1]]),
-        lines=np.repeat([0, 1], n),
+        rigid=line_shapes(np.repeat([0, 1], n)),
         drive_dof=0,
         twist_load=load,
         drag_loads={},

@@ -37,7 +37,7 @@ class BracedCase:
 
     @property
     def arguments(self):
-        return self.rig, LoadedCircuit(self.point, self.models, DRAGS, self.setting)
+        return self.rig, LoadedCircuit(self.point, self.models, DRAGS, self.setting, self.rig.system)
 
 
 def settled(case: Case, rpm: float, torque: float) -> BracedCase:

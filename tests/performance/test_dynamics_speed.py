@@ -183,7 +183,7 @@ def forces_of_exudyn(
     body.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=[node],
-            massMatrix=np.diag(system.inertia),
+            massMatrix=system.inertia,
             stiffnessMatrix=system.stiffness,
             dampingMatrix=system.damping,
             forceVector=list(load),

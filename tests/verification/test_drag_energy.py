@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import spur_law
@@ -28,12 +28,12 @@ STEPS = 100_000
 def system(damper: float = 0.0) -> LinearSystem:
     spring = REDUCED * OMEGA**2 * np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
     return LinearSystem(
-        inertia=INERTIA,
+        inertia=np.diag(INERTIA),
         damping=np.diag([damper, 0.0, 0.0]),
         stiffness=spring,
         dofs=("shaft/gear", "shaft/disc", "wheel"),
         mesh_ports=np.array([[0, 2]]),
-        lines=np.array([0, 0, 1]),
+        rigid=line_shapes(np.array([0, 0, 1])),
         drive_dof=1,
         twist_load=np.array([0.0, 0.0, -1.0]),
         drag_loads={"bearing": np.array([-1.0, 0.0, 0.0])},

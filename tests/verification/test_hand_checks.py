@@ -11,7 +11,7 @@ from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import brace_initial, mesh_models, respond
+from rigdesign.coupling.loads import LoadedCircuit, brace_initial, mesh_models, respond
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.time_run import held_points
@@ -30,7 +30,7 @@ def test_crowning_belongs_to_the_mean_deflection() -> None:
     point = held_points(rig)[0]
     cold = initial_state(rig, point)
     models = mesh_models(rig, point, cold)
-    response = respond(rig, point, models, {}, brace_initial(rig, point, cold))
+    response = respond(rig, LoadedCircuit(point, models, {}, brace_initial(rig, point, cold), rig.system))
     for index, model in enumerate(models):
         approach = abs(float(response.wave.approach[index].mean()))
         if response.flank[index] < 0:

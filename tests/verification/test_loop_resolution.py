@@ -13,7 +13,7 @@ from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case import load_case
 from rigdesign.checks import all_checks
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import laws_of, mesh_models, respond, signed_torque
+from rigdesign.coupling.loads import LoadedCircuit, laws_of, mesh_models, respond, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.resolution import MOST_SHAFT_ELEMENTS, counted_frequency, highest_mode, with_elements
@@ -160,7 +160,9 @@ def test_checks_of_the_loads_carry_the_error_of_too_few_slices(coarse_loop) -> N
     fine_rig = build_rig(case, "quick")
     last = coarse_loop.points[-1]
     models = mesh_models(fine_rig, last.point, last.last.coupling_state)
-    fine = respond(fine_rig, last.point, models, last.last.drags, last.setting).dynamic_factor
+    fine = respond(
+        fine_rig, LoadedCircuit(last.point, models, last.last.drags, last.setting, fine_rig.system)
+    ).dynamic_factor
     for mesh, label in enumerate(("test", "reference")):
         assert checks[f"dynamics.ramp_peak.{label}"].discretisation_error is not None
         error = checks[f"dynamics.dynamic_factor.{label}"].discretisation_error

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.tables import pack_meshes
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
@@ -23,12 +23,12 @@ def star(ports: list[tuple[int, int]], shaft: int) -> LinearSystem:
     brake = np.zeros(n)
     brake[-1] = -1.0
     return LinearSystem(
-        inertia=np.linspace(5e-4, 9e-4, n),
+        inertia=np.diag(np.linspace(5e-4, 9e-4, n)),
         damping=2e-6 * stiffness,
         stiffness=stiffness,
         dofs=tuple(f"disc {i}" for i in range(n)),
         mesh_ports=np.array(ports),
-        lines=np.array([max(0, i - shaft + 1) for i in range(n)]),
+        rigid=line_shapes(np.array([max(0, i - shaft + 1) for i in range(n)])),
         drive_dof=0,
         twist_load=brake,
         drag_loads={},
@@ -56,7 +56,7 @@ def test_march_with_shared_bodies(ports: list[tuple[int, int]], shaft: int) -> N
             reaction = evaluate_mesh(law, angles[a], x, speeds[a], speeds[b])
             load[a] += reaction.torque_1[0]
             load[b] += reaction.torque_2[0]
-        return np.concatenate((speeds, load / system.inertia))
+        return np.concatenate((speeds, load / np.diag(system.inertia)))
 
     angles = np.zeros(n)
     angles[shaft:] = -4e-6 / BASE_RADIUS_2  # all flanks pressed by 4 um

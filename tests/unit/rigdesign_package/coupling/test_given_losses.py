@@ -11,7 +11,7 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import brace_initial, mesh_models, respond
+from rigdesign.coupling.loads import LoadedCircuit, brace_initial, mesh_models, respond
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.time_run import held_points
@@ -95,7 +95,7 @@ def test_the_motor_pays_for_all_heat_where_the_drag_is_constant(tmp_path: Path) 
     point = held_points(rig)[-1]
     cold = initial_state(rig, point)
     models = mesh_models(rig, point, cold)
-    response = respond(rig, point, models, {}, brace_initial(rig, point, cold))
+    response = respond(rig, LoadedCircuit(point, models, {}, brace_initial(rig, point, cold), rig.system))
     lost = sum(p.loss.power for p in (*turning, *mesh_losses(rig, point, models, response)))
     paid = response.drive_torque * rig.drive_speed(point.speed)
     assert lost == pytest.approx(paid, rel=1e-4)

@@ -58,17 +58,19 @@ def test_tangential_forces_of_an_idler_add_and_separating_ones_cancel(
     weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
     loads = bearing_loads(built, coupling_state)
     both = loads["test.pinion_front"].radial + loads["test.pinion_rear"].radial
-    assert both == pytest.approx(2.0 * tangential + weight, rel=1e-9)
+    # clockwise, the wheel it drives to the right: the teeth press the pinion upwards against its weight
+    assert both == pytest.approx(2.0 * tangential - weight, rel=1e-9)
     # a wheel feels one mesh, its separating force stays
     wheel = loads["test.left_front"].radial + loads["test.left_rear"].radial
     alone = GRAVITY * (pair.masses[1] + built.shaft_mass("test_left"))
     separating = tangential * math.tan(pair.working_pressure_angle)
     assert wheel == pytest.approx(math.hypot(tangential + alone, separating), rel=2e-3)
-    # nobody says where the axes of a gearbox without a housing stand: forces add, the gear still weighs once
+    # without a housing the first wheel stands to the left, the second where room is: pressed downwards
     loads = bearing_loads(bare[0], bare[2])
     weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
     both = loads["test.pinion_front"].radial + loads["test.pinion_rear"].radial
-    assert both == pytest.approx(math.hypot(2.0 * tangential + weight, 2.0 * separating), rel=2e-3)
+    assert both == pytest.approx(2.0 * tangential + weight, rel=1e-9)
+    assert loads["test.pinion_front"].direction == pytest.approx((0.0, -1.0), abs=1e-9)
 
 
 def test_wheels_that_both_drive_the_pinion_cancel_on_its_bearings(

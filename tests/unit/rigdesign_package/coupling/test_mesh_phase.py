@@ -8,7 +8,7 @@ import pytest
 from dynamics.mesh.flank import reach_beyond
 from rigdesign import load_case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import brace_initial, mesh_models, mesh_phase, respond
+from rigdesign.coupling.loads import LoadedCircuit, brace_initial, mesh_models, mesh_phase, respond
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.builders.idler_case import idler_case
@@ -36,7 +36,11 @@ def test_the_stated_phase_moves_k_v_at_a_resonance_and_not_the_torque() -> None:
         point = type(point)(stage=point.stage, speed=2380.0 * np.pi / 30.0, torque=point.torque)
         cold = initial_state(rig, point)
         models = mesh_models(rig, point, cold)
-        factors.append(respond(rig, point, models, {}, brace_initial(rig, point, cold)).dynamic_factor[1])
+        factors.append(
+            respond(
+                rig, LoadedCircuit(point, models, {}, brace_initial(rig, point, cold), rig.system)
+            ).dynamic_factor[1]
+        )
     assert factors[2] == pytest.approx(factors[0], rel=1e-4)
     # fifty times what a whole pitch may move it
     assert abs(factors[1] - factors[0]) > 50.0 * 1e-4 * factors[0]
