@@ -6,15 +6,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-# compiled from sources 6fc6ce05
 Array = NDArray[np.float64]
 
 SUMS = 7
 """Sums at a node before those of friction."""
+MOST_SETS = 64
+"""Sets of closed contacts that are tried behind a shared body; four are many."""
 
 
 class SliceSprings(NamedTuple):
-    """All slices that can touch at each place on the path, every array (n_knots, n_slices)."""
+    """All slices that can touch at each place on the path, every array (n_places, n_slices)."""
 
     stiffness: Array
     """0 where a slice is off the path [N/m]."""
@@ -28,49 +29,80 @@ class SliceSprings(NamedTuple):
     """(n_slices,) face position [m]."""
 
 
-class Sliding(NamedTuple):
-    """Where sliding reverses."""
+class NodeLaw(NamedTuple):
+    """What else the sums need of a mesh law."""
 
+    damping_depth: float
+    """[m]"""
+    body: float
+    """Compliance that all slices share [m/N]."""
     reversal: float
-    """Path position [m]."""
+    """Path position where sliding reverses [m]."""
     sharpness: Array
     """(n_sharpness,) of the reversals to sum for [1/m]."""
 
 
 @njit(cache=True)
-def slice_sums(
-    springs: SliceSprings, approach: Array, damping_depth: float, sliding: Sliding, sums: Array
-) -> None:
-    """Fill ``sums`` (n_knots, n_depths, SUMS + 2 n_sharpness) at ``approach`` (n_knots, n_depths) [m].
+def _behind_body(
+    stiffness: Array, gap: Array, body: float, approach: float, start: float
+) -> tuple[float, float]:
+    """Return the approach behind the body, and the share of a change that the teeth take; see ``shared_body``."""
+    y, before = start, -1.0
+    share = 1.0
+    for _ in range(MOST_SETS):
+        total, force = 0.0, 0.0
+        for i in range(stiffness.shape[0]):
+            if y > gap[i]:
+                total += stiffness[i]
+                force += stiffness[i] * (y - gap[i])
+        share = 1.0 / (1.0 + body * total)
+        if total == before:
+            break
+        before = total
+        y -= (y + body * force - approach) * share
+    return y, share
 
-    Elastic energy, force, damper weight; force and stiffness times face position; damper weight times slope of the
-    gap, times its square; then for each sharpness the force times direction of sliding, and that times path position.
+
+@njit(cache=True)
+def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array) -> None:
+    """Fill ``sums`` (n_places, n_depths, SUMS + 2 n_sharpness) at ``approach`` (n_places, n_depths), rising [m].
+
+    Elastic energy, force, damper weight; tilting moment and its derivative over the approach; damper weight times
+    slope of the gap, times its square; then for each sharpness the force times direction of sliding, and that times
+    path position.
     """
     stiffness, gap, slope, path = springs.stiffness, springs.gap, springs.slope, springs.path
-    face, sharpness = springs.face, sliding.sharpness
-    direction = np.empty(sharpness.shape[0])
+    face, sharpness = springs.face, law.sharpness
+    n_slices, n_depths = stiffness.shape[1], approach.shape[1]
+    direction = np.empty((n_slices, sharpness.shape[0]))
     sums[:] = 0.0
     for a in range(stiffness.shape[0]):
-        for i in range(stiffness.shape[1]):
-            k, g, e, s, z = stiffness[a, i], gap[a, i], slope[a, i], path[a, i], face[i]
-            if k == 0.0:
-                continue
+        for i in range(n_slices):
             for q in range(sharpness.shape[0]):
-                ratio = min(1.0, max(-1.0, sharpness[q] * (s - sliding.reversal)))
-                direction[q] = ratio * (1.5 - 0.5 * ratio * ratio)
-            for j in range(approach.shape[1]):
-                depth = approach[a, j] - g
-                if depth <= 0.0:
+                ratio = min(1.0, max(-1.0, sharpness[q] * (path[a, i] - law.reversal)))
+                direction[i, q] = ratio * (1.5 - 0.5 * ratio * ratio)
+        y = approach[a, 0]
+        for j in range(n_depths):
+            share = 1.0
+            if law.body > 0.0:
+                y, share = _behind_body(stiffness[a], gap[a], law.body, approach[a, j], y)
+            else:
+                y = approach[a, j]
+            at = sums[a, j]
+            for i in range(n_slices):
+                k, depth = stiffness[a, i], y - gap[a, i]
+                if depth <= 0.0 or k == 0.0:
                     continue
                 force = k * depth
-                weight = k * min(1.0, depth / damping_depth)
-                sums[a, j, 0] += 0.5 * force * depth
-                sums[a, j, 1] += force
-                sums[a, j, 2] += weight
-                sums[a, j, 3] += force * z
-                sums[a, j, 4] += k * z
-                sums[a, j, 5] += weight * e
-                sums[a, j, 6] += weight * e * e
+                weight = k * min(1.0, depth / law.damping_depth)
+                at[0] += 0.5 * force * depth
+                at[1] += force
+                at[2] += weight
+                at[3] += force * face[i]
+                at[4] += share * k * face[i]
+                at[5] += weight * slope[a, i]
+                at[6] += weight * slope[a, i] * slope[a, i]
                 for q in range(sharpness.shape[0]):
-                    sums[a, j, SUMS + 2 * q] += force * direction[q]
-                    sums[a, j, SUMS + 1 + 2 * q] += force * direction[q] * s
+                    at[SUMS + 2 * q] += force * direction[i, q]
+                    at[SUMS + 1 + 2 * q] += force * direction[i, q] * path[a, i]
+            at[0] += 0.5 * law.body * at[1] * at[1]

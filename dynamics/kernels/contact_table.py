@@ -22,29 +22,30 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 CELL = 8
-"""Numbers of a cell: W at its start, then F = dW/du there, slope and square term of F, then the same of the tilting
-moment dW/dtilt."""
-PAIR = 4
-"""Value and slope over the depth in a cell of two quantities."""
-LEVELS = 7
-"""Sharpnesses of the reversal of sliding at which friction is tabulated."""
+"""Numbers of a cell: W at its start, then F = dW/du there, slope and square term of F; damper weight and its slope;
+what the recorded force has beyond F, and its slope."""
+LINES = 4
+"""Value and slope over the depth in a cell of two quantities; or four numbers of a moment, as of W."""
 # columns of ContactTables.values
 (
     V_R1, V_R2, V_PER_PITCH, V_ORIGIN, V_BACK_ORIGIN, V_BACKLASH, V_DAMP_TIME, V_BODY, V_PER_FINEST, V_LOWEST,
-    V_PER_KNOT, V_FRICTION, V_ROLL_1, V_ROLL_2, V_PER_REVERSAL, V_CLOSING, V_DERIVATIVE, V_TILT, V_PER_TILT,
-) = range(19)  # fmt: skip
-N_TABLE_VALUES = 19
+    V_LEAST_GAP, V_PER_KNOT, V_FRICTION, V_ROLL_1, V_ROLL_2, V_PER_REVERSAL, V_CLOSING, V_DERIVATIVE, V_FLOOR, V_TILT,
+    V_PER_TILT, V_TABULATED_BODY,
+) = range(22)  # fmt: skip
+N_TABLE_VALUES = 22
 # columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1
 (
-    C_PER_PITCH, C_PAIRS, C_KNOTS, C_CELLS, C_FINEST, C_BACK, C_GAPS_AT, C_CELLS_AT, C_DEPTHS_AT, C_CELL_OF_AT,
-    C_FRICTION_AT, C_CLOSING_AT, C_INDIVIDUAL, C_OFFSET_2, C_DEVIATIONS_AT, C_TEETH_1, C_TEETH_2, C_PER_TOOTH,
-    C_SCALES_AT, C_SCALED_1, C_SCALED_2, C_WEIGHTS_AT, C_PLANES,
-) = range(23)  # fmt: skip
-N_TABLE_COUNTS = 23
-# places in a row: cubics (CELL), their slopes over the path (CELL), friction, damper weights, closing weights; the
-# derivative of the moment over the tilt, the approach at the start of the cell, the slope of the gap
-R_SLOPES, R_FRICTION, R_WEIGHT, R_CLOSING, R_TILT, R_START, R_GAP_SLOPE = 8, 16, 20, 24, 28, 32, 33
+    C_PER_PITCH, C_PAIRS, C_KNOTS, C_CELLS, C_FINEST, C_BACK, C_GAPS_AT, C_CELLS_AT, C_MOMENTS_AT, C_DEPTHS_AT,
+    C_CELL_OF_AT, C_FRICTION_AT, C_CLOSING_AT, C_INDIVIDUAL, C_OFFSET_2, C_DEVIATIONS_AT, C_TEETH_1, C_TEETH_2,
+    C_PER_TOOTH, C_SCALES_AT, C_SCALED_1, C_SCALED_2, C_PLANES, C_LEVELS, C_LEVELS_AT,
+) = range(25)  # fmt: skip
+N_TABLE_COUNTS = 25
+# places in a row: a cell (CELL), its slopes over the path (CELL), friction, closing weights, tilting moment and its
+# derivative over the tilt; the approach at the start of the cell, the slope of the gap
+R_SLOPES, R_FRICTION, R_CLOSING, R_MOMENT, R_TILT, R_START, R_GAP_SLOPE = 8, 16, 20, 24, 28, 32, 33
 N_SCALED, N_ROW = 32, 36
+SCRATCH = 2 * CELL + 4 * LINES
+"""Numbers behind the rows that tilt needs."""
 
 
 class ContactTables(NamedTuple):
@@ -58,19 +59,19 @@ class ContactTables(NamedTuple):
     """Per flank (n_knots,) spline coefficients of the least gap [m]."""
     cells: Array
     """Flat, per flank (n_planes, n_knots, n_cells, CELL): those of the cubics over the depth at every tilt."""
-    weights: Array
-    """Flat, per flank (n_planes, n_knots, n_cells, PAIR): damper weight, half of it unused."""
+    moments: Array
+    """Flat, per flank (n_planes, n_knots, n_cells, LINES): those of the tilting moment, as of W; empty without tilt."""
     depths: Array
     """Per mesh (n_cells + 1,) first depth of each cell [m]."""
     cell_of: Integers
     """Per mesh (n_finest,) cell at each multiple of the finest depth step."""
     friction: Array
-    """Flat, per flank (n_planes, LEVELS, n_knots, n_cells, PAIR): sums of force times direction of sliding, and
+    """Flat, per flank (n_planes, n_levels, n_knots, n_cells, LINES): sums of force times direction of sliding, and
     times path position."""
     levels: Array
-    """(n_meshes, LEVELS) sharpness of the reversal over the path at which they hold [1/m]."""
+    """Flat, per mesh (n_levels,) sharpness of the reversal over the path at which they hold [1/m]."""
     closing: Array
-    """Flat, per flank (n_planes, n_knots, n_cells, PAIR): damper weights times slope of the gap and times its square;
+    """Flat, per flank (n_planes, n_knots, n_cells, LINES): damper weights times slope of the gap and times its square;
     empty for dampers on the relative rotation."""
     deviations: Array
     """Per flank, gear and tooth: spline coefficients over the path of the gap it adds, or one number [m]."""

@@ -20,7 +20,7 @@ from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT
 from dynamics.kernels.mesh_tables import POSITIVE, R1, R2
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

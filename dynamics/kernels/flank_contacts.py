@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -23,6 +23,9 @@ from dynamics.kernels.contact_table import (
     C_GAPS_AT,
     C_INDIVIDUAL,
     C_KNOTS,
+    C_LEVELS,
+    C_LEVELS_AT,
+    C_MOMENTS_AT,
     C_OFFSET_2,
     C_PAIRS,
     C_PER_PITCH,
@@ -33,19 +36,18 @@ from dynamics.kernels.contact_table import (
     C_SCALES_AT,
     C_TEETH_1,
     C_TEETH_2,
-    C_WEIGHTS_AT,
     CELL,
-    LEVELS,
+    LINES,
     N_ROW,
     N_SCALED,
-    PAIR,
     R_CLOSING,
     R_FRICTION,
     R_GAP_SLOPE,
+    R_MOMENT,
     R_SLOPES,
     R_START,
     R_TILT,
-    R_WEIGHT,
+    SCRATCH,
     V_CLOSING,
     V_FRICTION,
     V_LOWEST,
@@ -58,10 +60,10 @@ from dynamics.kernels.contact_table import (
     V_TILT,
     ContactTables,
 )
-from dynamics.kernels.knots import add_lines, contract_cell
+from dynamics.kernels.knots import add_lines, contract_cell, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -90,16 +92,20 @@ class Held(NamedTuple):
 
 
 @inlined
-def _level(levels: Array, m: int, sharpness: float) -> tuple[int, float, float]:
+def _level(tables: ContactTables, m: int, sharpness: float) -> tuple[int, float, float]:
     """Return the first of two levels of friction and the shares of both at a sharpness, negative ones reversed."""
+    first, count = tables.counts[m, C_LEVELS_AT], tables.counts[m, C_LEVELS]
     wanted = abs(sharpness)
     sign = 1.0 if sharpness >= 0.0 else -1.0
-    if wanted <= levels[m, 0]:
-        return 0, sign * wanted / levels[m, 0], 0.0
+    if count == 1:
+        return 0, sign, 0.0
+    if wanted <= tables.levels[first]:
+        return 0, sign * wanted / tables.levels[first], 0.0
     level = 0
-    while level < LEVELS - 2 and wanted > levels[m, level + 1]:
+    while level < count - 2 and wanted > tables.levels[first + level + 1]:
         level += 1
-    share = (wanted - levels[m, level]) / (levels[m, level + 1] - levels[m, level])
+    lower, upper = tables.levels[first + level], tables.levels[first + level + 1]
+    share = (wanted - lower) / (upper - lower)
     share = share if share < 1.0 else 1.0
     return level, sign * (1.0 - share), sign * share
 
@@ -166,16 +172,17 @@ def _plane(values: Array, counts: Integers, m: int, tilt: float) -> _Plane:
 
 
 class _CellTables(NamedTuple):
-    """First entries of the tables of a flank at one tilt, numbers of a tilt and of a knot."""
+    """First entries of the tables of a flank at one tilt."""
 
     cells: int
-    weights: int
+    moments: int
     friction: int
     closing: int
     plane: int
     """Cells of all knots."""
     knot: int
     """Cells of a knot."""
+    levels: int
     level: tuple[int, float, float]
 
 
@@ -184,15 +191,16 @@ def _cell_tables(
     tables: ContactTables, m: int, back: int, plane: int, level: tuple[int, float, float]
 ) -> _CellTables:
     counts = tables.counts
-    size = counts[m, C_KNOTS] * counts[m, C_CELLS]
+    size, levels = counts[m, C_KNOTS] * counts[m, C_CELLS], counts[m, C_LEVELS]
     before = back * counts[m, C_PLANES] + plane
     return _CellTables(
         counts[m, C_CELLS_AT] + before * size * CELL,
-        counts[m, C_WEIGHTS_AT] + before * size * PAIR,
-        counts[m, C_FRICTION_AT] + (before * LEVELS + level[0]) * size * PAIR,
-        counts[m, C_CLOSING_AT] + before * size * PAIR,
+        counts[m, C_MOMENTS_AT] + before * size * LINES,
+        counts[m, C_FRICTION_AT] + (before * levels + level[0]) * size * LINES,
+        counts[m, C_CLOSING_AT] + before * size * LINES,
         size,
         counts[m, C_CELLS],
+        levels,
         level,
     )
 
@@ -204,24 +212,24 @@ def _share_of(weights: tuple[float, ...], share: float) -> tuple[float, float, f
 
 
 @inlined
-def _fill_lines(
+def _add_lines(
     tables: ContactTables, m: int, kinds: _CellTables, plane: int, share: float, cell: int,
     weights: tuple[float, ...], rows: Array, row: int,
 ) -> None:  # fmt: skip
-    """Add to a row ``share`` of what is linear over the depth."""
+    """Add to a row ``share`` of friction and closing weights."""
     values = tables.values
-    step, at = kinds.knot * PAIR, (cell + plane * kinds.plane) * PAIR
+    step = kinds.knot * LINES
     own = _share_of(weights, share)
-    add_lines(tables.weights, (kinds.weights + at) & POSITIVE, step, own, rows, row + R_WEIGHT)
     if values[m, V_FRICTION] > 0.0:
-        first = kinds.friction + (cell + LEVELS * plane * kinds.plane) * PAIR
+        first = kinds.friction + (cell + kinds.levels * plane * kinds.plane) * LINES
         lower, upper = _share_of(own, kinds.level[1]), _share_of(own, kinds.level[2])
         add_lines(tables.friction, first & POSITIVE, step, lower, rows, row + R_FRICTION)
-        add_lines(
-            tables.friction, (first + kinds.plane * PAIR) & POSITIVE, step, upper, rows, row + R_FRICTION
-        )
+        if kinds.levels > 1:
+            first += kinds.plane * LINES
+            add_lines(tables.friction, first & POSITIVE, step, upper, rows, row + R_FRICTION)
     if values[m, V_CLOSING] > 0.0:
-        add_lines(tables.closing, (kinds.closing + at) & POSITIVE, step, own, rows, row + R_CLOSING)
+        first = kinds.closing + (cell + plane * kinds.plane) * LINES
+        add_lines(tables.closing, first & POSITIVE, step, own, rows, row + R_CLOSING)
 
 
 @inlined
@@ -230,32 +238,49 @@ def _fill_row(
     rows: Array, row: int,
 ) -> None:  # fmt: skip
     """Write the numbers of a cell into a row."""
-    step = kinds.knot * CELL
-    first = (kinds.cells + cell * CELL) & POSITIVE
-    contract_cell(tables.cells, first, step, weights, rows, row)
-    for i in range(R_FRICTION, R_TILT):
+    contract_cell(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, kinds.knot * CELL, weights, rows, row)
+    for i in range(R_FRICTION, N_SCALED):
         rows[row + i] = 0.0
     if tables.counts[m, C_PLANES] == 1:
-        _fill_lines(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
+        _add_lines(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
         return
-    _fill_lines(tables, m, kinds, 0, 1.0 - plane.share, cell, weights, rows, row)
-    _fill_lines(tables, m, kinds, 1, plane.share, cell, weights, rows, row)
-    other = rows.shape[0] - 2 * CELL
-    contract_cell(tables.cells, (first + kinds.plane * CELL) & POSITIVE, step, weights, rows, other)
-    half = CELL // 2
-    for i in range(half):
-        a, b, c, d = rows[row + i], rows[row + half + i], rows[other + i], rows[other + half + i]
-        at = row + R_SLOPES + i
-        w_s = plane.values[0] * rows[at] + plane.values[1] * rows[at + half]
-        w_s += plane.values[2] * rows[other + CELL + i] + plane.values[3] * rows[other + CELL + half + i]
-        rows[at] = w_s
+    _add_lines(tables, m, kinds, 0, 1.0 - plane.share, cell, weights, rows, row)
+    _add_lines(tables, m, kinds, 1, plane.share, cell, weights, rows, row)
+    _tilt_row(tables, kinds, plane, cell, weights, rows, row)
+
+
+@inlined
+def _tilt_row(
+    tables: ContactTables, kinds: _CellTables, plane: _Plane, cell: int, weights: tuple[float, ...], rows: Array,
+    row: int,
+) -> None:  # fmt: skip
+    """Take a row with the first of two tilts to the place between them."""
+    other = rows.shape[0] - SCRATCH
+    moments = other + 2 * CELL
+    first = (kinds.cells + (cell + kinds.plane) * CELL) & POSITIVE
+    contract_cell(tables.cells, first, kinds.knot * CELL, weights, rows, other)
+    for side in range(2):
+        first = (kinds.moments + (cell + side * kinds.plane) * LINES) & POSITIVE
+        at = moments + 2 * LINES * side
+        contract_lines(tables.moments, first, kinds.knot * LINES, weights, rows, at)
+    for i in range(LINES):
+        a, b, c, d = rows[row + i], rows[moments + i], rows[other + i], rows[moments + 2 * LINES + i]
+        at, to = row + R_SLOPES + i, moments + LINES + i
+        rows[at] = (
+            plane.values[0] * rows[at]
+            + plane.values[1] * rows[to]
+            + plane.values[2] * rows[other + CELL + i]
+            + plane.values[3] * rows[to + 2 * LINES]
+        )
         rows[row + i] = plane.values[0] * a + plane.values[1] * b + plane.values[2] * c + plane.values[3] * d
-        rows[row + half + i] = (
+        rows[row + R_MOMENT + i] = (
             plane.slopes[0] * a + plane.slopes[1] * b + plane.slopes[2] * c + plane.slopes[3] * d
         )
         rows[row + R_TILT + i] = (
             plane.curves[0] * a + plane.curves[1] * b + plane.curves[2] * c + plane.curves[3] * d
         )
+        at = row + LINES + i
+        rows[at] = (1.0 - plane.share) * rows[at] + plane.share * rows[other + LINES + i]
 
 
 @inlined
@@ -281,7 +306,7 @@ def hold_path(
     )  # fmt: skip
     gaps_at = counts[m, C_GAPS_AT] + back * knots
     plane = _plane(values, counts, m, state.tilt)
-    kinds = _cell_tables(tables, m, back, plane.first, _level(tables.levels, m, state.sharpness))
+    kinds = _cell_tables(tables, m, back, plane.first, _level(tables, m, state.sharpness))
     lowest, per_finest = values[m, V_LOWEST], values[m, V_PER_FINEST]
     individual, per_tooth = counts[m, C_INDIVIDUAL] != 0, counts[m, C_PER_TOOTH]
     teeth_1, teeth_2, tooth_1, tooth_2, step = counts[m, C_TEETH_1], counts[m, C_TEETH_2], 0, 0, 2 * side - 1

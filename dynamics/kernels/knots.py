@@ -9,8 +9,6 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.extending import intrinsic
 
-VALUES, SLOPES = 0, 1
-
 
 def _vector_at(context: Any, builder: Any, kind: Any, array: Any, place: Any, width: int) -> Any:
     """Pointer to ``width`` numbers of a contiguous array from a place on."""
@@ -64,5 +62,7 @@ def _contraction(width: int, sums: int, add: bool) -> Any:
 
 contract_cell: Any = _contraction(8, 2, add=False)
 """contract_cell(data, first, stride, weights, out, at): write 8 values and behind them 8 slopes of a cell."""
+contract_lines: Any = _contraction(4, 2, add=False)
+"""The same of 4 values and 4 slopes."""
 add_lines: Any = _contraction(4, 1, add=True)
 """add_lines(data, first, stride, weights, out, at): add 4 values."""

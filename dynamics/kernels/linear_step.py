@@ -15,7 +15,7 @@ from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

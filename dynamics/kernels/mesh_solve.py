@@ -67,7 +67,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.shared_body import Flanks, ToothApproach, no_contacts, tooth_approach
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

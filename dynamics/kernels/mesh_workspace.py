@@ -6,7 +6,7 @@ that were just written in registers. A last row belongs to the place holder for 
 
 from dynamics.kernels.mesh_tables import N_VALUES
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]

@@ -7,15 +7,14 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import inlined
 from dynamics.kernels.contact_table import (
-    CELL,
     N_ROW,
     R_CLOSING,
     R_FRICTION,
     R_GAP_SLOPE,
+    R_MOMENT,
     R_SLOPES,
     R_START,
     R_TILT,
-    R_WEIGHT,
     V_CLOSING,
     V_DAMP_TIME,
     V_DERIVATIVE,
@@ -27,7 +26,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 
 
@@ -69,6 +68,10 @@ class Sums(NamedTuple):
     """Part of a_1 by dampers on the slope of the gap [N]."""
     energy: float
     """Elastic energy [J]."""
+    recorded: float
+    """Force of the law at full resolution, with damping [N]."""
+    curvature: float
+    """Half the second derivative of the elastic force over the approach [N/m^2]."""
     moment: float
     """Tilting moment, and its derivatives over approach and tilt: 0 on tables without tilt [N m]."""
     moment_x: float
@@ -90,7 +93,7 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
     force, elastic, a_1, a_2 = 0.0, 0.0, 0.0, 0.0
     force_x, stiffness, a_1_x, a_2_x = 0.0, 0.0, 0.0, 0.0
     force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
-    friction_1, damped, energy = 0.0, 0.0, 0.0
+    friction_1, damped, energy, recorded, curvature = 0.0, 0.0, 0.0, 0.0, 0.0
     tilting, tilting_x, tilting_tilt = 0.0, 0.0, 0.0
     for p in range(n):
         r = (first + N_ROW * p) & POSITIVE
@@ -102,8 +105,8 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         slope = rows[r + R_GAP_SLOPE]
         along = rows[s] + d * (rows[s + 1] + d * (0.5 * rows[s + 2] + d * rows[s + 3] / 3.0)) - own * slope
         along_x = rows[s + 1] + d * (rows[s + 2] + d * rows[s + 3]) - k * slope
-        weight_x = damp_time * rows[r + R_WEIGHT + 1]
-        weight = damp_time * rows[r + R_WEIGHT] + d * weight_x
+        weight_x = damp_time * rows[r + 5]
+        weight = damp_time * rows[r + 4] + d * weight_x
         weight = weight if weight > 0.0 else 0.0
         damping, damping_x, turned, turned_x, turned_v = weight * rate, weight_x * rate, 0.0, 0.0, 0.0
         if values[m, V_CLOSING] > 0.0:
@@ -141,14 +144,17 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         a_2_v += normal_v * (1.0 + lever_2)
         friction_1 += normal * lever_1
         damped += turned
+        full = normal + rows[r + 6] + d * rows[r + 7]
+        recorded += full if full > 0.0 else 0.0
+        curvature += f_2
         energy += rows[r] + d * (rows[r + 1] + d * (0.5 * f_1 + d * f_2 / 3.0))
-        t, u = r + CELL // 2, r + R_TILT
+        t, u = r + R_MOMENT, r + R_TILT
         tilting += rows[t] + d * (rows[t + 1] + d * (0.5 * rows[t + 2] + d * rows[t + 3] / 3.0))
         tilting_x += rows[t + 1] + d * (rows[t + 2] + d * rows[t + 3])
         tilting_tilt += rows[u] + d * (rows[u + 1] + d * (0.5 * rows[u + 2] + d * rows[u + 3] / 3.0))
     return Sums(
         force, elastic, a_1, a_2, force_x, stiffness, a_1_x, a_2_x, force_v, a_1_v, a_2_v, friction_1, damped, energy,
-        tilting, tilting_x, tilting_tilt,
+        recorded, curvature, tilting, tilting_x, tilting_tilt,
     )  # fmt: skip
 
 

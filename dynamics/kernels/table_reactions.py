@@ -7,21 +7,22 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.contact_table import (
     C_PAIRS,
-    CELL,
     N_ROW,
+    SCRATCH,
     V_BACKLASH,
     V_BODY,
     V_CLOSING,
     V_PER_REVERSAL,
     V_R1,
     V_R2,
+    V_TABULATED_BODY,
     ContactTables,
 )
 from dynamics.kernels.hold_path import FlankState, Held, hold_path
 from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 6fc6ce05
+# compiled from sources f66db97d
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -38,39 +39,40 @@ def _press_side(
     return held, press_rows(rows, 0, held.n, tables.values, m, pressing)
 
 
-def table_reactions(tables: ContactTables, states: MeshStates, tilts: Array, out: Array) -> None:
-    """Evaluate the first mesh at many states.
+def table_reactions(tables: ContactTables, m: int, states: MeshStates, tilts: Array, out: Array) -> None:
+    """Evaluate mesh ``m`` at many states.
 
     ``tilts`` (n, 2) of the front and the back flanks [rad]; ``out`` (n, 14) in the order of ``TableReaction``.
     """
-    _table_reactions(tables, states, tilts, np.zeros(N_ROW * int(tables.counts[0, C_PAIRS]) + 2 * CELL), out)
+    rows = np.zeros(N_ROW * int(tables.counts[m, C_PAIRS]) + SCRATCH)
+    _table_reactions(tables, m, states, tilts, rows, out)
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _table_reactions(
-    tables: ContactTables, states: MeshStates, tilts: Array, rows: Array, out: Array
+    tables: ContactTables, m: int, states: MeshStates, tilts: Array, rows: Array, out: Array
 ) -> None:
     """Do what ``table_reactions`` says, ``rows`` being room for the pairs of a flank."""
     values = tables.values
-    r_1, r_2 = values[0, V_R1], values[0, V_R2]
+    r_1, r_2 = values[m, V_R1], values[m, V_R2]
     for n in range(out.shape[0]):
         omega_1, omega_2 = states.omega_1[n], states.omega_2[n]
         rate = r_1 * omega_1 - r_2 * omega_2
         x = states.reach[n]
         y, low, high = x, -np.inf, np.inf
         share = 1.0
-        if values[0, V_BODY] > 0.0:
+        if values[m, V_BODY] > 0.0:
             for _ in range(MOST_STEPS):
                 net, stiffness = 0.0, 0.0
                 for side in range(2):
                     sign = 1.0 - 2.0 * side
-                    reach = sign * y - side * values[0, V_BACKLASH]
+                    reach = sign * y - side * values[m, V_BACKLASH]
                     state = FlankState(side, states.theta_1[n], 0.0, tilts[n, side])
-                    _, sums = _press_side(tables, 0, state, Pressing(sign, reach, 0.0, 0.0), rows)
+                    _, sums = _press_side(tables, m, state, Pressing(sign, reach, 0.0, 0.0), rows)
                     net += sign * sums.elastic
                     stiffness += sums.stiffness
-                off = y + values[0, V_BODY] * net - x
-                share = 1.0 / (1.0 + values[0, V_BODY] * stiffness)
+                off = y + values[m, V_BODY] * net - x
+                share = 1.0 / (1.0 + values[m, V_BODY] * stiffness)
                 if off > 0.0:
                     high = y
                 else:
@@ -85,13 +87,13 @@ def _table_reactions(
         out[n] = 0.0
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            path_speed = sign * r_1 * omega_1 if values[0, V_CLOSING] > 0.0 else 0.0
-            pressing = Pressing(sign, sign * y - side * values[0, V_BACKLASH], sign * rate, path_speed)
+            path_speed = sign * r_1 * omega_1 if values[m, V_CLOSING] > 0.0 else 0.0
+            pressing = Pressing(sign, sign * y - side * values[m, V_BACKLASH], sign * rate, path_speed)
             state = FlankState(
-                side, states.theta_1[n], (omega_1 + omega_2) * values[0, V_PER_REVERSAL], tilts[n, side]
+                side, states.theta_1[n], (omega_1 + omega_2) * values[m, V_PER_REVERSAL], tilts[n, side]
             )
-            _, sums = _press_side(tables, 0, state, pressing, rows)
-            friction, damping = powers(sums, values, 0, pressing, omega_1, omega_2)
+            _, sums = _press_side(tables, m, state, pressing, rows)
+            friction, damping = powers(sums, values, m, pressing, omega_1, omega_2)
             out[n, 0] -= sign * r_1 * sums.a_1
             out[n, 1] += sign * r_2 * sums.a_2
             out[n, 2 + side] += sums.force
@@ -103,6 +105,7 @@ def _table_reactions(
             out[n, 9] += damping
             out[n, 10] += sums.energy
             out[n, 12 + side] = sums.moment
-        if values[0, V_BODY] > 0.0:
-            out[n, 10] += 0.5 * (x - y) ** 2 / values[0, V_BODY]
-        out[n, 11] = y
+            out[n, 11] -= sign * values[m, V_TABULATED_BODY] * sums.elastic
+        if values[m, V_BODY] > 0.0:
+            out[n, 10] += 0.5 * (x - y) ** 2 / values[m, V_BODY]
+        out[n, 11] += y

@@ -5,20 +5,23 @@ same place within their cells. Layout: ``dynamics.kernels.contact_table``.
 """
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import spline_filter1d
 
-from dynamics.kernels.contact_nodes import SUMS, SliceSprings, Sliding, slice_sums
+from dynamics.kernels.contact_nodes import SUMS, NodeLaw, SliceSprings, slice_sums
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.path_filter import TAIL, PathFilter
+from dynamics.mesh.slice_springs import slice_springs
 
 Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 PADDING = 8
 """Cells beyond the ends of the path of a pair, which keep its splines free of them."""
+FINER = 4
+"""Samples of a cell before a filter."""
 USUAL_DEPTH = 10e-6
 """Depth at which the share of a slice in the force weighs the deviations of its teeth [m]."""
 
@@ -29,17 +32,15 @@ class FlankGrid:
 
     sign : +1 in front, -1 on the back; pairs : True for the potential of single pairs, False for that of the mesh
     per_pitch : cells in a base pitch; depths : (n_cells + 1,) first depth of each cell, and the last [m]
-    sharpness : (n_levels,) of the reversal of sliding [1/m]; reversal : path position where it stands [m]
-    tilts : (n_planes,) [rad]
+    tilts : (n_planes,) [rad]; path_filter : None where the march resolves all of the path
     """
 
     sign: float
     pairs: bool
     per_pitch: int
     depths: Array
-    sharpness: Array
-    reversal: float
     tilts: Array
+    path_filter: PathFilter | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,7 +49,7 @@ class FlankTable:
 
     start : path position of the first cell [m]; pairs : base pitches that the path takes
     gaps : (n_knots,) of the least gap [m]; cells : (n_planes, n_knots, n_cells, CELL)
-    weights, closing : (n_planes, n_knots, n_cells, PAIR); friction : (n_planes, n_levels, n_knots, n_cells, PAIR)
+    moments, closing : (n_planes, n_knots, n_cells, LINES); friction : (n_planes, n_levels, n_knots, n_cells, LINES)
     path, share : (n_places, n_slices) path position of each slice at the knots [m], and its share in the force
     """
 
@@ -56,92 +57,51 @@ class FlankTable:
     pairs: int
     gaps: Array
     cells: Array
-    weights: Array
+    moments: Array
     friction: Array
     closing: Array
     path: Array
     share: Array
 
 
-def flank_table(law: MeshLaw, grid: FlankGrid) -> FlankTable:
+def flank_table(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankTable:
     """Tabulate one flank of a law."""
+    filtered = grid.path_filter is not None
+    beyond = _beyond(law, grid) if grid.pairs else 0
     lag = grid.sign * law.slice_shift
-    length = law.path_step * (law.stiffness.shape[1] - 1)
-    start = law.path_start + float(lag.min())
-    pairs = int(np.ceil((length + float(np.ptp(lag))) / law.base_pitch - 1e-9))
+    length = law.path_step * (law.stiffness.shape[1] - 1) + float(np.ptp(lag))
     width = law.base_pitch / grid.per_pitch
-    slices = np.arange(len(lag))
+    start = law.path_start + float(lag.min()) - beyond * width
+    pitches = ceil((length + 2.0 * beyond * width) / law.base_pitch - 1e-9)
+    finer = FINER if filtered else 1
     if grid.pairs:
-        path = start + width * np.arange(-PADDING, pairs * grid.per_pitch + PADDING + 1)
-        springs = slice_springs(law, path[:, None] - lag, slices, beyond=not np.any(lag))
+        cells = np.arange(-PADDING * finer, (pitches * grid.per_pitch + PADDING) * finer + 1) / finer
     else:
-        path = start + width * np.arange(grid.per_pitch)
-        behind = law.base_pitch * np.repeat(np.arange(pairs), len(lag))
-        springs = slice_springs(
-            law, path[:, None] - np.tile(lag, pairs) + behind, np.tile(slices, pairs), beyond=False
-        )
+        cells = np.arange(grid.per_pitch * finer) / finer
+    # the splines of a pair that touches at the ends of its path go on there
+    goes_on = grid.pairs and not filtered and not np.any(lag)
+    springs = slice_springs(
+        law, start + width * cells, grid.sign, 1 if grid.pairs else pitches, beyond=goes_on
+    )
     gap = _least_gap(springs)
-    planes = [
-        _plane(springs._replace(gap=springs.gap - tilt * springs.face), law, gap, grid) for tilt in grid.tilts
+    if filtered:
+        gap = np.full(len(gap), gap.min())
+    kinds = [
+        _plane(springs._replace(gap=springs.gap - tilt * springs.face), node_law, gap, grid, width)
+        for tilt in grid.tilts
     ]
-    cells, weights, closing, friction = (np.array(kind) for kind in zip(*planes))
+    cells, moments, closing, friction = (np.array(kind) for kind in zip(*kinds))
     return FlankTable(
         start=start,
-        pairs=pairs if grid.pairs else 1,
-        gaps=splines(gap, grid.pairs),
+        pairs=pitches if grid.pairs else 1,
+        gaps=splines(gap[::finer], grid.pairs),
         cells=cells,
-        weights=weights,
+        moments=moments,
         friction=friction,
         closing=closing,
-        path=springs.path,
-        share=_shares(springs, gap),
+        path=springs.path[::finer],
+        share=_shares(springs, gap)[::finer],
     )
-
-
-def _plane(
-    springs: SliceSprings, law: MeshLaw, gap: Array, grid: FlankGrid
-) -> tuple[Array, Array, Array, Array]:
-    """Cells, damper weights, closing weights and friction of slices at one tilt, as in ``FlankTable``."""
-    sums = np.empty((len(gap), len(grid.depths), SUMS + 2 * len(grid.sharpness)))
-    sliding = Sliding(grid.reversal, grid.sharpness)
-    slice_sums(springs, gap[:, None] + grid.depths, law.damping_depth, sliding, sums)
-    energy, force, weight, moment, moment_x = (sums[..., i] for i in range(5))
-    cells = np.concatenate(
-        (_cubics(energy, force, grid.depths), _cubics(moment, moment_x, grid.depths)), axis=-1
-    )
-    lines = [
-        np.concatenate([_lines(one, grid.depths) for one in pair], axis=-1)
-        for pair in (
-            (weight, 0.0 * weight),
-            *((sums[..., i], sums[..., i + 1]) for i in range(5, sums.shape[2], 2)),
-        )
-    ]
-    weights, closing, *friction = (splines(one, grid.pairs) for one in lines)
-    return splines(cells, grid.pairs), weights, closing, np.array(friction)
-
-
-def slice_springs(law: MeshLaw, path: Array, slices: Integers, *, beyond: bool) -> SliceSprings:
-    """Slices of a law at path positions (n_places, n_slices) [m], ``slices`` (n_slices,) naming their rows.
-
-    beyond : whether they go on beyond the ends of the path, opening as there, or carry nothing
-    """
-    n_slices, n_path = law.stiffness.shape
-    grid = law.path_start + law.path_step * np.arange(n_path)
-    inside = np.clip(path, grid[0], grid[-1])
-    out = path - inside
-    shape = path.shape
-    stiffness, gap, slope = np.empty(shape), np.empty(shape), np.empty(shape)
-    for row in np.unique(slices):
-        own = slices == row
-        opening = PchipInterpolator(grid, law.gap[row])
-        at = inside[:, own]
-        stiffness[:, own] = PchipInterpolator(grid, law.stiffness[row])(at)
-        slope[:, own] = opening(at, 1)
-        gap[:, own] = opening(at) + np.abs(out[:, own] * slope[:, own])
-    if not beyond:
-        stiffness[np.abs(out) > 1e-9 * law.path_step] = 0.0
-    face = (np.zeros(n_slices) if law.slice_face is None else np.asarray(law.slice_face, float))[slices]
-    return SliceSprings(stiffness=stiffness, gap=gap, slope=slope, path=path, face=face)
 
 
 def splines(samples: Array, pairs: bool) -> Array:
@@ -154,6 +114,43 @@ def splines(samples: Array, pairs: bool) -> Array:
         return np.asarray(found[PADDING - 1 : len(found) - PADDING + 1])
     found = spline_filter1d(samples, 3, axis=0, mode="grid-wrap") if len(samples) > 1 else samples
     return np.asarray(found[np.arange(-1, len(found) + 2) % len(found)])
+
+
+def _beyond(law: MeshLaw, grid: FlankGrid) -> int:
+    """Cells that a filtered pair reaches beyond the ends of its path."""
+    if grid.path_filter is None:
+        return 0
+    return ceil(TAIL * abs(grid.path_filter.step) * grid.per_pitch / law.base_pitch)
+
+
+def _plane(
+    springs: SliceSprings, law: NodeLaw, gap: Array, grid: FlankGrid, cell: float
+) -> tuple[Array, Array, Array, Array]:
+    """Cells, moments, closing weights and friction of slices at one tilt, as in ``FlankTable``; ``cell`` in metres."""
+    sums = np.empty((len(gap), len(grid.depths), SUMS + 2 * len(law.sharpness)))
+    slice_sums(springs, law, gap[:, None] + grid.depths, sums)
+    recorded = sums[..., 1]
+    if grid.path_filter is not None:
+        recorded = recorded[::FINER]
+        sums = _low_pass(sums, grid, cell)
+    energy, force, weight, moment, moment_x = (sums[..., i] for i in range(5))
+    depths = grid.depths
+    cells = (_cubics(energy, force, depths), _lines(weight, depths), _lines(recorded - force, depths))
+    closing, *friction = (
+        splines(np.concatenate([_lines(sums[..., i + k], depths) for k in (0, 1)], axis=-1), grid.pairs)
+        for i in range(5, sums.shape[2], 2)
+    )
+    moments = splines(_cubics(moment, moment_x, depths), grid.pairs) if len(grid.tilts) > 1 else np.zeros(0)
+    return splines(np.concatenate(cells, axis=-1), grid.pairs), moments, closing, np.array(friction)
+
+
+def _low_pass(samples: Array, grid: FlankGrid, cell: float) -> Array:
+    """Filter samples (n_places, ...), FINER in a ``cell`` [m], over the path and keep those at the starts of cells."""
+    assert grid.path_filter is not None
+    n = len(samples)
+    cycles = np.fft.rfftfreq(n, cell / FINER)
+    kept = grid.path_filter.response(cycles).reshape(-1, *(1,) * (samples.ndim - 1))
+    return np.fft.irfft(np.fft.rfft(samples, axis=0) * kept, n, axis=0)[::FINER]
 
 
 def _least_gap(springs: SliceSprings) -> Array:

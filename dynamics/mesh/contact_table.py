@@ -1,27 +1,27 @@
 """Contact tables of mesh laws: smooth potentials that replace the sums over slices.
 
-A mesh whose teeth are all alike has one potential over its phase; with single teeth every pair has one over its path,
-and the deviations of its two teeth move it: by a constant exactly, by what varies over the path in the mean of the
-slices that carry. Layout and use: ``dynamics.kernels.contact_table``.
+A mesh whose teeth are all alike has one potential over its phase, shared bodies included; with single teeth every pair
+has one over its path, and the deviations of its two teeth move it: by a constant exactly, by what varies over the path
+in the mean of the slices that carry. Layout and use: ``dynamics.kernels.contact_table``.
 
-The tables take the law as it is: cubics of Fritsch and Carlson over the path, slices that touch one by one.
+The tables take the law as it is: cubics of Fritsch and Carlson over the path, slices that touch one by one. For a march
+whose steps do not resolve all of the path they are filtered (``dynamics.mesh.path_filter``).
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels import contact_table as layout
-from dynamics.kernels.contact_table import LEVELS, ContactTables
-from dynamics.kernels.reactions import MeshStates
-from dynamics.kernels.table_reactions import table_reactions
+from dynamics.kernels.contact_nodes import NodeLaw
+from dynamics.kernels.contact_table import ContactTables
 from dynamics.mesh.contact_flank import FlankGrid, FlankTable, flank_table, splines
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
+from dynamics.mesh.path_filter import PathFilter
 from dynamics.mesh.tables import has_individual_teeth
 
 Array = NDArray[np.float64]
@@ -31,12 +31,12 @@ LEAST_REACH = 20e-6
 """Least depth of a table [m]."""
 MOST_REACH = 200e-6
 """Greatest depth of a table; beyond it the last cell goes on [m]."""
-SHARPEST = 1.5
-"""Cells over which friction reverses at the highest speeds."""
-BLUNTER = 2.2
-"""Ratio of the sharpnesses at which friction is tabulated."""
-MOST_TABULATED = 32
-"""Tables that are kept; all are forgotten when one more comes."""
+LEVELS = 7
+"""Sharpnesses of the reversal of sliding at which friction is tabulated."""
+SHARPEST, BLUNTER = 1.5, 2.2
+"""Cells over which friction reverses at the highest of them, and their ratio."""
+MOST_TABULATED = 24
+"""Tables that are kept; the oldest is forgotten when one more comes."""
 _tabulated: dict[object, ContactTables] = {}
 
 
@@ -67,6 +67,19 @@ class TableGrid:
                 f"contact table: tilts = {self.tilts} rad must rise and planes = {self.planes} be at least 2"
             )
 
+    @property
+    def planes_at(self) -> Array:
+        """Tilts that are tabulated (n_planes,) [rad]."""
+        return np.zeros(1) if self.tilts is None else np.linspace(*self.tilts, self.planes)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MarchStep:
+    """Step of a march that tables are filtered for: step [s], speed of each pinion [rad/s]."""
+
+    step: float
+    speeds: tuple[float, ...]
+
 
 DEFAULT_GRID = TableGrid()
 
@@ -77,125 +90,97 @@ class _MeshTables:
 
     gaps: Array
     cells: Array
-    weights: Array
+    moments: Array
     depths: Array
     cell_of: Integers
     friction: Array
+    levels: Array
     closing: Array
     deviations: Array
     scales: Array
 
 
-class TableReaction(NamedTuple):
-    """Reaction of one mesh at n states by its contact table, every field of shape (n,), as in ``MeshReaction``."""
-
-    torque_1: Array
-    torque_2: Array
-    force_front: Array
-    force_back: Array
-    torque_1_per_approach: Array
-    torque_2_per_approach: Array
-    torque_1_per_rate: Array
-    torque_2_per_rate: Array
-    friction_power: Array
-    damping_power: Array
-    energy: Array
-    tooth_approach: Array
-    moment_front: Array
-    """Derivative of the energy over the tilt of the front flanks [N m]; 0 on tables without tilt."""
-    moment_back: Array
-
-
-def evaluate_table(
-    tables: ContactTables,
-    theta_1: ArrayLike,
-    approach: ArrayLike,
-    omega_1: ArrayLike = 0.0,
-    omega_2: ArrayLike = 0.0,
-    tilts: tuple[ArrayLike, ArrayLike] = (0.0, 0.0),
-) -> TableReaction:
-    """Return what the first mesh of ``tables`` answers at n states, as ``dynamics.mesh.force.evaluate_mesh`` does.
-
-    tilts : gap that closes per face width from mid-face in front and on the back, (n,) or scalar [rad]
-    """
-    columns = np.broadcast_arrays(
-        *(np.atleast_1d(np.asarray(one, float)) for one in (theta_1, approach, omega_1, omega_2, *tilts))
-    )
-    states = MeshStates(*(np.ascontiguousarray(column) for column in columns[:4]))
-    out = np.empty((len(columns[0]), len(TableReaction._fields)))
-    table_reactions(tables, states, np.stack(columns[4:], axis=1), out)
-    return TableReaction(*np.ascontiguousarray(out.T))
-
-
 FIRST_ENTRIES = {
-    "gaps": layout.C_GAPS_AT, "cells": layout.C_CELLS_AT, "weights": layout.C_WEIGHTS_AT, "depths": layout.C_DEPTHS_AT,
-    "cell_of": layout.C_CELL_OF_AT, "friction": layout.C_FRICTION_AT, "closing": layout.C_CLOSING_AT,
-    "deviations": layout.C_DEVIATIONS_AT, "scales": layout.C_SCALES_AT,
+    "gaps": layout.C_GAPS_AT, "cells": layout.C_CELLS_AT, "moments": layout.C_MOMENTS_AT,
+    "depths": layout.C_DEPTHS_AT, "cell_of": layout.C_CELL_OF_AT, "friction": layout.C_FRICTION_AT,
+    "levels": layout.C_LEVELS_AT, "closing": layout.C_CLOSING_AT, "deviations": layout.C_DEVIATIONS_AT,
+    "scales": layout.C_SCALES_AT,
 }  # fmt: skip
 
 
 def contact_tables(
-    laws: Sequence[MeshLaw], grid: TableGrid = DEFAULT_GRID, *, derivative_torques: bool = True
+    laws: Sequence[MeshLaw],
+    grid: TableGrid = DEFAULT_GRID,
+    march: MarchStep | None = None,
+    *,
+    derivative_torques: bool = True,
 ) -> ContactTables:
     """Return the contact tables of all ``laws``.
 
-    With ``derivative_torques=False`` the torques from the change of the potential over the path are left out: the
-    negative control of the energy test, of no other use. Tables met before are handed out again: nobody may write into
-    them.
+    march : filters what its steps do not resolve; None keeps all
+    derivative_torques : False leaves out the torques from the change of the potential over the path: the negative
+        control of the energy test, of no other use
+
+    Tables met before are handed out again: nobody may write into them.
 
     Raises
     ------
     ValueError
-        If a law is impossible (see ``check_mesh_law``).
+        If a law is impossible (see ``check_mesh_law``), as DynamicsInputError if it knows no face positions for tilt.
     """
     content = tuple(
         tuple((value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value for value in law)
         for law in laws
     )
-    key = (content, grid, derivative_torques)
+    key = (content, grid, march, derivative_torques)
     if key not in _tabulated:
         if len(_tabulated) >= MOST_TABULATED:
-            _tabulated.clear()
-        _tabulated[key] = _tables(laws, grid, derivative_torques)
+            del _tabulated[next(iter(_tabulated))]
+        tables = _tables(laws, grid, march)
+        tables.values[:, layout.V_DERIVATIVE] = derivative_torques
+        _tabulated[key] = tables
     return _tabulated[key]
 
 
-def _tables(laws: Sequence[MeshLaw], grid: TableGrid, derivative_torques: bool) -> ContactTables:
+def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -> ContactTables:
     counts = np.zeros((len(laws), layout.N_TABLE_COUNTS), np.int64)
     values = np.zeros((len(laws), layout.N_TABLE_VALUES))
-    levels = np.zeros((len(laws), LEVELS))
     parts: list[_MeshTables] = []
     for mesh, law in enumerate(laws):
         check_mesh_law(law)
-        tilts = np.zeros(1) if grid.tilts is None else np.linspace(*grid.tilts, grid.planes)
-        depths = _depths(law, grid, tilts)
-        levels[mesh] = grid.per_pitch / (SHARPEST * law.base_pitch) / BLUNTER ** np.arange(LEVELS)[::-1]
+        depths = _depths(law, grid)
+        levels: Array = grid.per_pitch / (SHARPEST * law.base_pitch) / BLUNTER ** np.arange(LEVELS)[::-1]
+        path_step, cell = 0.0, law.base_pitch / grid.per_pitch
+        if march is not None:
+            path_step = law.base_radius_1 * march.speeds[mesh] * march.step
+        if PathFilter(step=path_step).acts_on(cell):
+            levels = np.array([_sharpness(law, path_step / march.step)]) if march else levels
         flanks = [
             flank_table(
                 law,
+                NodeLaw(law.damping_depth, _tabulated_body(law), _reversal(law), np.asarray(levels)),
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),
                     per_pitch=grid.per_pitch,
                     depths=depths,
-                    sharpness=levels[mesh],
-                    reversal=_reversal(law),
-                    tilts=tilts,
+                    tilts=grid.planes_at,
+                    path_filter=PathFilter(step=sign * path_step)
+                    if PathFilter(step=path_step).acts_on(cell)
+                    else None,
                 ),
             )
-            for sign in ((1.0, -1.0) if np.any(law.slice_shift) else (1.0,))
+            for sign in ((1.0, -1.0) if np.any(law.slice_shift) or path_step else (1.0,))
         ]
-        part = _mesh_tables(law, flanks, depths, grid)
+        part = _mesh_tables(law, flanks, depths, levels, grid)
         for name, column in FIRST_ENTRIES.items():
             counts[mesh, column] = sum(getattr(before, name).size for before in parts)
         _fill_counts(counts[mesh], law, flanks, grid, part)
         _fill_values(values[mesh], law, flanks, grid, depths)
-        values[mesh, layout.V_DERIVATIVE] = derivative_torques
         parts.append(part)
     return ContactTables(
         values=values,
         counts=counts,
-        levels=levels,
         offsets=np.array([law.offset for law in laws], float),
         **{
             field.name: np.concatenate([getattr(part, field.name) for part in parts])
@@ -204,13 +189,30 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, derivative_torques: bool) 
     )
 
 
+def _sharpness(law: MeshLaw, path_speed: float) -> float:
+    """Slope of the direction of sliding over the path at a speed of the flanks along it [1/m]."""
+    both = abs(path_speed) * (1.0 / law.base_radius_1 + 1.0 / law.base_radius_2)
+    return both / max(law.friction_reversal_speed, 1e-9)
+
+
+def _tabulated_body(law: MeshLaw) -> float:
+    """Compliance of the shared bodies that the tables take in [m/N].
+
+    Not that of single teeth, whose pairs have tables each, nor where the body may press both flanks at once.
+    """
+    front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
+    least = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
+    jammed = law.backlash + 2.0 * least < 0.0
+    return 0.0 if has_individual_teeth(law) or jammed else law.body_compliance
+
+
 def _reversal(law: MeshLaw) -> float:
     """Path position where flanks that roll off steadily do not slide [m]: the pitch point of consistent radii."""
     ratio = law.base_radius_1 / law.base_radius_2
     return (ratio * law.rolling_radius_2 - law.rolling_radius_1) / (1.0 + ratio)
 
 
-def _depths(law: MeshLaw, grid: TableGrid, tilts: Array) -> Array:
+def _depths(law: MeshLaw, grid: TableGrid) -> Array:
     """First depth of every cell, and the last depth, in multiples of the finest step [m].
 
     Tilted faces touch before their least gap is closed.
@@ -223,7 +225,7 @@ def _depths(law: MeshLaw, grid: TableGrid, tilts: Array) -> Array:
             raise DynamicsInputError(
                 "contact table: a law without slice_face knows no tilt; give the face positions"
             )
-        ahead = float(np.abs(np.outer(tilts, law.slice_face)).max())
+        ahead = float(np.abs(np.outer(grid.planes_at, law.slice_face)).max())
     steps = [0]
     while steps[-1] * grid.finest < last:
         steps.append(steps[-1] + max(1, round(1.0 + grid.growth * steps[-1])))
@@ -232,17 +234,20 @@ def _depths(law: MeshLaw, grid: TableGrid, tilts: Array) -> Array:
     return np.concatenate((before[::-1], steps)) * grid.finest
 
 
-def _mesh_tables(law: MeshLaw, flanks: list[FlankTable], depths: Array, grid: TableGrid) -> _MeshTables:
+def _mesh_tables(
+    law: MeshLaw, flanks: list[FlankTable], depths: Array, levels: Array, grid: TableGrid
+) -> _MeshTables:
     finest = depths[0] + np.arange(round((depths[-1] - depths[0]) / grid.finest)) * grid.finest
     closes = law.damping_acts_on == "contact_closing_rate"
     none = np.zeros(0)
     return _MeshTables(
         gaps=np.concatenate([flank.gaps for flank in flanks]),
         cells=np.concatenate([flank.cells.ravel() for flank in flanks]),
-        weights=np.concatenate([flank.weights.ravel() for flank in flanks]),
+        moments=np.concatenate([flank.moments.ravel() for flank in flanks]),
         depths=depths,
         cell_of=(np.searchsorted(depths, finest + 0.5 * grid.finest) - 1).astype(np.int64),
         friction=np.concatenate([flank.friction.ravel() for flank in flanks]) if law.friction > 0.0 else none,
+        levels=levels,
         closing=np.concatenate([flank.closing.ravel() for flank in flanks]) if closes else none,
         deviations=_deviations(law, flanks).ravel() if has_individual_teeth(law) else none,
         scales=np.concatenate((law.scale_1, law.scale_2)).astype(float),
@@ -274,12 +279,13 @@ def _fill_counts(
     individual = has_individual_teeth(law)
     teeth = law.teeth_1 + law.teeth_2
     for column, count in (
-        (layout.C_PER_PITCH, grid.per_pitch), (layout.C_PAIRS, flanks[0].pairs), (layout.C_KNOTS, len(flanks[0].gaps)),
-        (layout.C_CELLS, len(part.depths) - 1), (layout.C_FINEST, len(part.cell_of)), (layout.C_BACK, len(flanks) - 1),
-        (layout.C_INDIVIDUAL, individual), (layout.C_OFFSET_2, law.tooth_offset_2), (layout.C_TEETH_1, law.teeth_1),
-        (layout.C_TEETH_2, law.teeth_2), (layout.C_PER_TOOTH, part.deviations.size // (2 * teeth)),
-        (layout.C_SCALED_1, len(law.scale_1)), (layout.C_SCALED_2, len(law.scale_2)),
-        (layout.C_PLANES, len(flanks[0].cells)),
+        (layout.C_PER_PITCH, grid.per_pitch), (layout.C_PAIRS, flanks[0].pairs),
+        (layout.C_KNOTS, flanks[0].cells.shape[1]), (layout.C_CELLS, len(part.depths) - 1),
+        (layout.C_FINEST, len(part.cell_of)), (layout.C_BACK, len(flanks) - 1), (layout.C_INDIVIDUAL, individual),
+        (layout.C_OFFSET_2, law.tooth_offset_2), (layout.C_TEETH_1, law.teeth_1), (layout.C_TEETH_2, law.teeth_2),
+        (layout.C_PER_TOOTH, part.deviations.size // (2 * teeth)), (layout.C_SCALED_1, len(law.scale_1)),
+        (layout.C_SCALED_2, len(law.scale_2)), (layout.C_PLANES, len(flanks[0].cells)),
+        (layout.C_LEVELS, len(part.levels)),
     ):  # fmt: skip
         counts[column] = count
 
@@ -288,16 +294,23 @@ def _fill_values(
     values: Array, law: MeshLaw, flanks: list[FlankTable], grid: TableGrid, depths: Array
 ) -> None:
     of_teeth = law.mean_stiffness / (1.0 - law.body_compliance * law.mean_stiffness)
+    front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
+    least = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
+    body = law.body_compliance - _tabulated_body(law)
     for column, value in (
         (layout.V_R1, law.base_radius_1), (layout.V_R2, law.base_radius_2), (layout.V_PER_PITCH, 1.0 / law.base_pitch),
         (layout.V_ORIGIN, law.phase - flanks[0].start), (layout.V_BACK_ORIGIN, law.back_phase - flanks[-1].start),
-        (layout.V_BACKLASH, law.backlash), (layout.V_DAMP_TIME, law.damping / of_teeth),
-        (layout.V_BODY, law.body_compliance), (layout.V_PER_FINEST, 1.0 / grid.finest),
+        (layout.V_BACKLASH, law.backlash), (layout.V_DAMP_TIME, law.damping / of_teeth), (layout.V_BODY, body),
+        (layout.V_PER_FINEST, 1.0 / grid.finest), (layout.V_LOWEST, depths[0]),
+        # a body can bring both flanks into contact at once
+        (layout.V_LEAST_GAP, -np.inf if body > 0.0 else least + depths[0]),
         (layout.V_PER_KNOT, grid.per_pitch / law.base_pitch), (layout.V_FRICTION, law.friction),
         (layout.V_ROLL_1, law.rolling_radius_1), (layout.V_ROLL_2, law.rolling_radius_2),
         (layout.V_PER_REVERSAL, 1.0 / max(law.friction_reversal_speed, 1e-9)),
         (layout.V_CLOSING, float(law.damping_acts_on == "contact_closing_rate")),
-        (layout.V_LOWEST, depths[0]), (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
+        (layout.V_FLOOR, 1e-12 * law.mean_stiffness * law.base_radius_1),
+        (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
+        (layout.V_TABULATED_BODY, law.body_compliance - body),
         (layout.V_PER_TILT, 0.0 if grid.tilts is None else (grid.planes - 1) / (grid.tilts[1] - grid.tilts[0])),
     ):  # fmt: skip
         values[column] = value

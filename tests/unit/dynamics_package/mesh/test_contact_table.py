@@ -5,9 +5,10 @@ import pytest
 
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels.contact_table import ContactTables
-from dynamics.mesh.contact_table import TableGrid, contact_tables, evaluate_table
+from dynamics.mesh.contact_table import TableGrid, contact_tables
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.table_force import evaluate_table
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, spur_law, wavy_law
 from tests.performance.test_dynamics_speed import TORQUE, shipped_laws
 
