@@ -24,7 +24,7 @@ class CampbellDiagram:
 
     speeds : (s,) of the reference shaft [rad/s]; frequency : (s, m) damped [Hz]
     logarithmic_decrement : (s, m) [-]; whirl : (s, m) of the shaft that moves most, from -1 to 1
-    names : (m,) at the first speed at which the mode is there
+    names : (m,) at the speed at which the mode whirls most clearly
     """
 
     speeds: Array
@@ -58,7 +58,7 @@ def campbell_diagram(
     if speeds.size < 1 or (np.diff(speeds) <= 0.0).any():
         raise DrivetrainError("Campbell diagram: speeds must ascend; sort them and remove equal ones")
     tracks: list[dict[int, tuple[complex, float]]] = []
-    names: list[str] = []
+    names: list[tuple[float, str]] = []
     before: DampedModes | None = None
     members: list[int] = []
     for i, speed in enumerate(speeds):
@@ -73,10 +73,12 @@ def campbell_diagram(
             else:
                 now.append(len(tracks))
                 tracks.append({})
-                names.append(character.names[k])
-            tracks[now[-1]][i] = (complex(modes.poles[k]), float(character.whirl[k, lead[k]]))
+                names.append((-1.0, ""))
+            whirl = float(character.whirl[k, lead[k]])
+            tracks[now[-1]][i] = (complex(modes.poles[k]), whirl)
+            names[now[-1]] = max(names[now[-1]], (round(abs(whirl), 3), character.names[k]))
         before, members = modes, now
-    return _diagram(speeds, tracks, names, highest)
+    return _diagram(speeds, tracks, [name for _, name in names], highest)
 
 
 def _matches(rig: ReducedElasticRig, before: DampedModes, after: DampedModes) -> dict[int, int]:

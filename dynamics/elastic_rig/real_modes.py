@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class RealModes:
-    """Complete mass-orthonormal basis, rigid motions first, then by frequency.
+    """Complete mass-orthonormal basis, rigid motions first in the order of the model, then by frequency.
 
     shapes : (n, n), one mode a column; squared : (n,) omega^2, exactly 0 for the rigid ones [1/s2]
     block : (n,) index of the block of freedoms of each mode; reference : bearing -> symmetric stiffness (5, 5) in it
@@ -57,20 +57,19 @@ def real_modes(model: ElasticModel, bearings: Mapping[str, BearingCoefficients])
         np.zeros(model.size),
         np.zeros(model.size, int),
     )
-    filled = 0
-    order = []
+    filled, first = 0, np.zeros(rigid.shape[1], int)
     for i in range(count):
         index = np.flatnonzero(block_of == i)
-        own = rigid[:, np.abs(rigid[index]).sum(axis=0) > 0.0][index]
+        touching = np.flatnonzero(np.abs(rigid[index]).sum(axis=0) > 0.0)
+        own = rigid[np.ix_(index, touching)]
         values, vectors = _block_modes(
             model.mass[index][:, index].toarray(), stiffness[index][:, index].toarray(), own
         )
         columns = np.arange(filled, filled + index.size)
         shapes[np.ix_(index, columns)] = vectors
         squared[columns], block[columns] = values, i
-        order.append(columns[: own.shape[1]])
+        first[touching] = columns[: touching.size]
         filled += index.size
-    first = np.concatenate([*order, np.zeros(0, int)])
     elastic = np.setdiff1d(np.arange(model.size), first)
     if elastic.size and not squared[elastic].min() > 0.0:
         raise DrivetrainError(

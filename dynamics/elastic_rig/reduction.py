@@ -164,7 +164,7 @@ def _attachments(
         squared, vectors = modes.squared[index], modes.shapes[:, index]
         flexibility = (rows @ vectors).T / squared[:, None]
         size = np.linalg.norm(flexibility, axis=0)
-        used = size > DEPENDENT * size.max(initial=0.0) * 1e-6
+        used = size > 0.0
         if not used.any():
             continue
         left, weight, _ = np.linalg.svd(flexibility[:, used] / size[used], full_matrices=False)

@@ -3,9 +3,12 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from dynamics.drivetrain.graph import Drivetrain
 from dynamics.drivetrain.parts import BearingPlace, GearBody, JointStiffness, Motor
 from dynamics.drivetrain.shaft import STEEL_DENSITY, Disc, Section, Shaft
+from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState, isotropic_bearing
 from tests.builders.rig import CENTRE_DISTANCE, SHAFTS, prototype
@@ -127,6 +130,21 @@ def single_shaft(
         placements=(ShaftPlacement(shaft="rotor", y=0.0, z=0.0, sense=1),),
         axial_locations=(AxialLocation(bearing="b0", stiffness=1e9),),
     )
+
+
+def motion_of_all(model: ElasticModel, shift: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    """Displacement of all freedoms when the whole rig moves as one rigid body, turn counted in each shaft's sense."""
+    motion = np.zeros(model.size)
+    for shaft, nodes in model.freedoms.nodes.items():
+        placement = model.rig.placement(shaft)
+        for i, x in enumerate(nodes.x):
+            here = shift + np.cross(rotation, [x, placement.y, placement.z])
+            first = nodes.first + 6 * i
+            motion[first : first + 6] = [*here, placement.sense * rotation[0], rotation[1], rotation[2]]
+    for gear in model.rig.drivetrain.gears:
+        place = model.freedoms.place(gear.name)
+        motion[place.turn] = model.rig.placement(gear.shaft).sense * rotation[0]
+    return motion
 
 
 def gear_on(name: str, shaft: str, position: float, inertia: float, mass: float) -> GearBody:
