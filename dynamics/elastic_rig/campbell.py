@@ -1,7 +1,8 @@
 """Natural frequencies, decrements and whirl over speed, each mode followed by its shape."""
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +17,13 @@ Array = NDArray[np.float64]
 
 RESERVE = 1.3
 """Modes are computed up to this times the highest frequency wanted, so that one that crosses it is not lost."""
+WITHOUT_PEAK = math.sqrt(0.5)
+"""Damping ratio from which a mode has no resonance peak, and no place in the diagram: journals in their films."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CampbellDiagram:
-    """Modes over speed; a mode that stops oscillating or leaves the range has no value (nan) from there on.
+    """Modes over speed; a mode that is damped out or leaves the range has no value (nan) there.
 
     speeds : (s,) of the reference shaft [rad/s]; frequency : (s, m) damped [Hz]
     logarithmic_decrement : (s, m) [-]; whirl : (s, m) of the shaft that moves most, from -1 to 1
@@ -62,7 +65,7 @@ def campbell_diagram(
     before: DampedModes | None = None
     members: list[int] = []
     for i, speed in enumerate(speeds):
-        modes = damped_modes(rig, state(float(speed)), RESERVE * highest)
+        modes = _with_peak(damped_modes(rig, state(float(speed)), RESERVE * highest))
         character = mode_character(rig, modes)
         lead = np.argmax(character.share[:, :-1, 2], axis=1)
         matches = {} if before is None else _matches(rig, before, modes)
@@ -79,6 +82,11 @@ def campbell_diagram(
             names[now[-1]] = max(names[now[-1]], (round(abs(whirl), 3), character.names[k]))
         before, members = modes, now
     return _diagram(speeds, tracks, [name for _, name in names], highest)
+
+
+def _with_peak(modes: DampedModes) -> DampedModes:
+    keep = modes.damping_ratio < WITHOUT_PEAK
+    return replace(modes, poles=modes.poles[keep], shapes=modes.shapes[:, keep])
 
 
 def _matches(rig: ReducedElasticRig, before: DampedModes, after: DampedModes) -> dict[int, int]:

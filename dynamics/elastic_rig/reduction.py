@@ -71,6 +71,11 @@ class ReducedElasticRig:
         """Number of coordinates n."""
         return self.squared.size
 
+    @property
+    def inertia(self) -> Array:
+        """(n,) ones: the coordinates are mass-orthonormal."""
+        return np.ones(self.size)
+
     @cached_property
     def rigid(self) -> Array:
         """(n, n_rigid) rigid motions: the first unit vectors."""

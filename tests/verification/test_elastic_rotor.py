@@ -189,7 +189,7 @@ def test_internal_damping_drives_whirl_above_its_threshold() -> None:
     ).all()
 
 
-def kahraman(modulus: float) -> tuple[ElasticRig, tuple[float, float]]:
+def kahraman(modulus: float) -> ElasticRig:
     """V5: Kahraman, Oezgueven, Houser, Zakrajsek 1992, two like shafts with gears in the middle."""
     names, radius, angle = ("driver", "driven"), 0.0445, math.radians(20.0)
     distance = 2.0 * radius / math.cos(angle)
@@ -219,12 +219,13 @@ def kahraman(modulus: float) -> tuple[ElasticRig, tuple[float, float]]:
             ShaftPlacement(shaft="driven", y=distance, z=0.0, sense=-1),
         ),
         axial_locations=tuple(AxialLocation(bearing=f"{name} left", stiffness=1e9) for name in names),
-    ), (radius, distance)  # fmt: skip
+    )  # fmt: skip
 
 
 def test_geared_rotor_of_kahraman() -> None:
-    """581, 687 to 691 and 2524 Hz within 2 %; the paper prints no modulus, 2.1e11 Pa is that of the sheet."""
-    rig, _ = kahraman(2.10e11)
+    """581, 687 to 691 and 2524 Hz within 2 % (ours 572.9, 681.9, 2521). The elastic modulus is assumed: 2.0e11 Pa would
+    give 559.8 and 665.9 Hz; without shear 2.1e11 Pa gives 587.3 and 698.9 Hz."""
+    rig = kahraman(2.10e11)
     model = assemble_rig(rig)
     held = bearings(rig, 1e9, 0.0)
     reduced = reduce_rig(model, held)
@@ -240,6 +241,8 @@ def test_geared_rotor_of_kahraman() -> None:
 def test_torsion_alone_is_the_torsional_model() -> None:
     """Lumped torsional inertia: the same numbers in the same order, so the same chain to rounding."""
     rig = prototype_rig()
+    shafts = tuple(replace(shaft, damping_time=1e-6) for shaft in rig.drivetrain.shafts)
+    rig = replace(rig, drivetrain=replace(rig.drivetrain, shafts=shafts))
     model = assemble_rig(rig)
     torsional = assemble(rig.drivetrain)
     turns = np.flatnonzero(np.array(model.freedoms.family) == 0)
@@ -248,7 +251,9 @@ def test_torsion_alone_is_the_torsional_model() -> None:
         (model.stiffness, torsional.stiffness),
         (model.damping, torsional.damping),
     ):
-        assert ours[turns][:, turns].toarray() == pytest.approx(theirs, rel=1e-12, abs=1e-9 * theirs.max())
+        found = ours[turns][:, turns].toarray()
+        assert np.abs(found - theirs).max() < 1e-12 * np.abs(theirs).max()
+        assert np.diag(found) == pytest.approx(np.diag(theirs), rel=1e-12)
     loads = model.joint("pinion side", "coupling").load("turn")
     assert loads[turns] == pytest.approx(torsional.twist_load, rel=1e-15)
     assert [name.removesuffix(" turn") for name in np.array(model.names)[turns]] == list(torsional.dofs)

@@ -6,7 +6,7 @@ import pytest
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.accuracy import reduction_error
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.layout import AxialLocation, isotropic_support
+from dynamics.elastic_rig.layout import AxialLocation, HousingSupport, isotropic_support
 from dynamics.elastic_rig.mesh_rows import approach_row, mesh_ports
 from dynamics.elastic_rig.reduction import ReducedElasticRig, port_rows_of, reduce_rig
 from dynamics.elastic_rig.running_state import (
@@ -109,7 +109,7 @@ def test_static_answer_at_ports_is_exact_for_any_bearing_and_mesh(
     bordered = np.block([[stiffness, held[:, None]], [held, 0.0]])
     found = reduced.basis @ np.linalg.solve(bordered, [*reduced.rows(load), 0.0])[:-1]
     rows = np.vstack([approach_row(model, "test"), *[port[:2] for port in model.ports.values()]])
-    # 1e6 N m s/rad of the coupling's turn is no port: its static shape is not kept, but its spring is in the modes
+    # rounding of the solutions, with stiffnesses from 1e2 to 1e10 N/m in one matrix
     assert rows @ found == pytest.approx(rows @ exact, rel=1e-6, abs=1e-9 * np.abs(rows @ exact).max())
 
 
@@ -145,11 +145,10 @@ def test_static_shapes_are_what_makes_a_small_basis_exact(model: ElasticModel) -
 def test_lines_that_nothing_ties_stay_apart(model: ElasticModel, reduced: ReducedElasticRig) -> None:
     """Torsion, axial motion and bending of two lines are six groups; no coordinate reaches into another's freedoms."""
     assert set(reduced.components) == set(range(6))
-    for matrix in (reduced.damping, reduced.gyroscopic, *(p.T @ p for p in reduced.ports.values())):
+    films = (port[[0, 1, 3, 4]] for port in reduced.ports.values())
+    for matrix in (reduced.damping, reduced.gyroscopic, *(film.T @ film for film in films)):
         i, j = np.nonzero(np.abs(matrix) > 1e-12 * np.abs(matrix).max())
-        inside = reduced.components[i] == reduced.components[j]
-        # a port row of a film is lateral only; its axial row touches the axial group alone
-        assert inside.mean() > 0.8
+        assert (reduced.components[i] == reduced.components[j]).all()
     shafts = np.array(model.freedoms.shaft_of)
     for component in range(6):
         touched = np.abs(reduced.basis[:, reduced.components == component]).max(axis=1) > 0.0
@@ -157,8 +156,6 @@ def test_lines_that_nothing_ties_stay_apart(model: ElasticModel, reduced: Reduce
 
 
 def test_a_common_housing_ties_them(model: ElasticModel) -> None:
-    from dynamics.elastic_rig.layout import HousingSupport
-
     stiffness = 5e8 * np.eye(4)
     stiffness[0, 2] = stiffness[2, 0] = 1e8
     support = HousingSupport(
