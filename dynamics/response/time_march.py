@@ -123,7 +123,7 @@ class TimeMarch:
         """
         drags = tuple(loads.drag_torques)
         accounts = settings.accounts
-        self.laws = tuple(laws)
+        self.laws, self.system = tuple(laws), system
         self.step = settings.step
         self.substeps = settings.substeps
         self.drags = drags
