@@ -16,11 +16,13 @@ from dataclasses import dataclass, replace
 from scipy.optimize import brentq
 
 from dynamics.bearing.journal_characteristic import Characteristic, characteristic
+from dynamics.bearing.journal_feed import FEEDS, Feed
+from dynamics.bearing.journal_lateral import RunningFilm
+from dynamics.bearing.journal_state import JournalState, limit_warnings
 from dynamics.bearing.protocol import (
     BearingError,
     BearingNotConvergedError,
     BearingOperation,
-    BearingState,
 )
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY
 
@@ -37,7 +39,7 @@ SOURCE = "ISO 7902-1 / DIN 31652-1, film solved"
 
 @dataclass(frozen=True, kw_only=True)
 class JournalBearing:
-    """Plain cylindrical bearing, fed with oil at its widest gap.
+    """Plain cylindrical bearing.
 
     diameter, width : journal diameter D and supporting width B [m]
     diametral_clearance : bore minus journal at running temperature and speed [m]; thermal and centrifugal
@@ -47,9 +49,10 @@ class JournalBearing:
         assumption of ISO 7902-1, 0 leaves only the oil that the film itself drives out of its ends. Not less
         than that ever flows through the film as long as it is fed. Assumed, look at its range: it decides the
         film temperature of a bearing fed far beyond its own demand
+    feed : where oil enters: ``widest_gap`` (ISO 7902-1) or ``two_axial_grooves`` of 20 degrees across the load
 
-    Raises BearingError for a size that is not above 0, a relative clearance outside 1e-4 to 1e-2 or a feed share
-    outside 0 to 1.
+    Raises BearingError for a size that is not above 0, a relative clearance outside 1e-4 to 1e-2, a feed share
+    outside 0 to 1 or an unknown feed.
     """
 
     diameter: float
@@ -57,6 +60,7 @@ class JournalBearing:
     diametral_clearance: float
     transition_constant: float = 1.0
     feed_share: float = 1.0
+    feed: Feed = "widest_gap"
 
     def __post_init__(self) -> None:
         for name in ("diameter", "width", "diametral_clearance", "transition_constant"):
@@ -71,6 +75,10 @@ class JournalBearing:
         if not 0.0 <= self.feed_share <= 1.0:
             raise BearingError(
                 f"journal bearing: feed_share = {self.feed_share:.6g}: must lie within 0 to 1; it is a share"
+            )
+        if self.feed not in FEEDS:
+            raise BearingError(
+                f"journal bearing: feed = {self.feed!r}: must be one of {', '.join(FEEDS)}; choose where oil enters"
             )
         if not 1e-4 <= self.relative_clearance <= 1e-2:
             raise BearingError(
@@ -88,7 +96,7 @@ class JournalBearing:
         """Journal volume inside the bearing pi D^2 B / 4 [m3]."""
         return 0.25 * math.pi * self.diameter**2 * self.width
 
-    def operating_state(self, operation: BearingOperation) -> "JournalState":
+    def operating_state(self, operation: BearingOperation) -> JournalState:
         """Solve film and heat balance together.
 
         Raises
@@ -99,7 +107,7 @@ class JournalBearing:
         Source: ISO 7902-1 / DIN 31652-1: heat carried by the oil alone, effective film temperature the mean of
         inlet and outlet. Heat exchanged with the bodies is an input here instead of an assumed housing film.
         """
-        curve = characteristic(self.width / self.diameter)
+        curve = characteristic(self.width / self.diameter, self.feed)
         oil = operation.oil
         if not oil.flow > 0.0:
             raise BearingError(
@@ -128,33 +136,6 @@ class JournalBearing:
         film = _film(self, curve, operation, oil.viscosity(temperature))
         outlet = oil.inlet_temperature + oil.temperature_rise(heat_into(film), oil.flow)
         return _state(self, operation, film, temperature, outlet)
-
-
-@dataclass(frozen=True, kw_only=True)
-class JournalState(BearingState):
-    """Steady state of a journal bearing; beyond the common fields those of its film, SI units."""
-
-    specific_load: float
-    minimum_film: float
-    transition_speed: float
-    """Vogelpohl: fluid friction above this speed at this load and viscosity [rad/s]."""
-    regime: str
-    """``hydrodynamic``, ``mixed`` (film thinner than the solved range) or ``standstill``."""
-    sommerfeld: float
-    """So; infinite at standstill."""
-    eccentricity: float
-    attitude_angle: float
-    """Load to line of centres [rad]."""
-    friction_coefficient: float
-    """Drag force / load [-]; infinite without load."""
-    petroff_torque: float
-    """Drag torque of the concentric journal 2 pi eta omega B R^3 / c, a lower bound [N m]."""
-    viscosity: float
-    """At the film temperature [Pa s]."""
-    side_flow: float
-    """Oil the film drives out of the ends [m3/s]; more than is fed means starving."""
-    reynolds_number: float
-    reynolds_limit: float
 
 
 def sommerfeld_number(bearing: JournalBearing, load: float, omega: float, viscosity: float) -> float:
@@ -273,31 +254,13 @@ def _state(
         heat_from_bodies=operation.heat_from_bodies,
         source=SOURCE,
         warnings=(),
+        film=RunningFilm(
+            diameter=bearing.diameter,
+            width=bearing.width,
+            diametral_clearance=bearing.diametral_clearance,
+            viscosity=film.viscosity,
+            omega=omega,
+            feed=bearing.feed,
+        ),
     )
-    return replace(state, warnings=_warnings(state))
-
-
-def _warnings(state: JournalState) -> tuple[str, ...]:
-    """Sentences for what lies outside the theory: name, value, limit, remedy."""
-    found = []
-    if state.regime == "mixed":
-        found.append(
-            f"eccentricity >= {HIGHEST_ECCENTRICITY}: mixed friction, drag torque and film thickness are bounds; "
-            "raise speed or viscosity or lower the load"
-        )
-    if 0.0 < state.omega < state.transition_speed:
-        found.append(
-            f"speed = {state.omega * 30.0 / math.pi:.0f} rpm: below the transition speed "
-            f"{state.transition_speed * 30.0 / math.pi:.0f} rpm of this load; lower the load until it is passed"
-        )
-    if state.reynolds_number > state.reynolds_limit:
-        found.append(
-            f"Reynolds number = {state.reynolds_number:.0f}: above {state.reynolds_limit:.0f}, the film is not "
-            "laminar and its drag torque is higher; reduce the clearance or use a thicker oil"
-        )
-    if state.side_flow > state.flow:
-        found.append(
-            f"oil flow = {state.flow * 6e4:.3g} l/min: below the {state.side_flow * 6e4:.3g} l/min the film drives "
-            "out, the bearing starves; feed more oil"
-        )
-    return tuple(found)
+    return replace(state, warnings=limit_warnings(state))

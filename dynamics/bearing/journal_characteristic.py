@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+from dynamics.bearing.journal_feed import Feed
 from dynamics.bearing.journal_film import FilmSolution, solve_film
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels.journal import (
@@ -75,26 +76,38 @@ class Characteristic:
         return root
 
 
-def characteristic(width_ratio: float) -> Characteristic:
-    """Characteristic of a width ratio B/D, solved once and kept.
+def characteristic(width_ratio: float, feed: Feed = "widest_gap") -> Characteristic:
+    """Characteristic of a width ratio B/D and a feed, solved once and kept.
 
     Raises
     ------
     DynamicsInputError : B/D outside 0.1 to 2, where a plain bearing of this kind is not built
     """
+    return _solved(width_steps(width_ratio), feed)
+
+
+def width_steps(width_ratio: float) -> int:
+    """B/D in whole steps of `WIDTH_RATIO_STEP`; raises as `characteristic`."""
     if not 0.1 <= width_ratio <= 2.0:
         raise DynamicsInputError(
             f"width ratio B/D = {width_ratio:.4g}: must lie within 0.1 to 2; change width or diameter"
         )
-    return _solved(round(width_ratio / WIDTH_RATIO_STEP))
+    return round(width_ratio / WIDTH_RATIO_STEP)
+
+
+def solved_films(width_ratio: float, feed: Feed, nodes: Array) -> list[FilmSolution]:
+    """Film at every node -ln(1 - eps), rising."""
+    films: list[FilmSolution] = []
+    for node in nodes:
+        near = films[-1] if films else None
+        films.append(solve_film(-math.expm1(-node), width_ratio, near=near, feed=feed))
+    return films
 
 
 @lru_cache(maxsize=64)
-def _solved(steps: int) -> Characteristic:
+def _solved(steps: int, feed: Feed) -> Characteristic:
     width_ratio = steps * WIDTH_RATIO_STEP
-    films: list[FilmSolution] = []
-    for node in NODES:
-        films.append(solve_film(-math.expm1(-node), width_ratio, near=films[-1] if films else None))
+    films = solved_films(width_ratio, feed, NODES)
     quotient = [math.log(f.sommerfeld / short_bearing_load(f.eccentricity, width_ratio)) for f in films]
     attitude = [f.attitude_angle - short_bearing_attitude(f.eccentricity) for f in films]
     flow = [f.side_flow / short_bearing_side_flow(f.eccentricity, width_ratio) for f in films]

@@ -4,27 +4,41 @@ With H = 1 + eps cos(theta) counted from the widest gap, zeta = z / (B/2) and P 
 
     d/dtheta (H^3 dP/dtheta) + (D/B)^2 d/dzeta (H^3 dP/dzeta) = -6 eps sin(theta) ,   P >= 0
 
-Oil enters at ambient pressure at the widest gap and at both ends; the film breaks where P and its gradient
-vanish (Reynolds or Swift-Stieber condition), found as a linear complementarity problem by active sets.
+Oil enters at ambient pressure at the widest gap, or from two axial grooves, and at both ends; the film breaks where P
+and its gradient vanish (Reynolds or Swift-Stieber condition), found as a linear complementarity problem by active sets.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
+from scipy.optimize import brentq
 
+from dynamics.bearing.journal_feed import Feed, film_arcs
+from dynamics.bearing.journal_grid import FilmGrid, apply, film_grid, solve_active
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 
 Array = NDArray[np.float64]
-
-FILM_END = 1.5 * math.pi
-"""Angle behind the widest gap at which the grid ends [rad]: beyond any break-up of the film (257 deg)."""
+Mask = NDArray[np.bool_]
 
 
 class FilmNotConvergedError(DynamicsNotConverged):
     """The cavitated region of a bearing film did not converge."""
+
+
+@dataclass(frozen=True, eq=False)
+class FilmArc:
+    """Pressure P on one arc, (n + 1, m + 1) on the nodes of its grid."""
+
+    grid: FilmGrid
+    pressure: Array
+
+    @property
+    def carries(self) -> Mask:
+        """(n - 1, m) unknown nodes that carry pressure."""
+        return self.pressure[1:-1, :-1] > 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +57,8 @@ class FilmSolution:
     shear_torque: float
     """Torque on the journal from its wall shear, M (C_D/2) / (2 eta omega B R^3), oil all round the gap [-];
     divided by So it is the friction number f/psi."""
-    carries: NDArray[np.bool_] = field(repr=False)
-    """(n_theta - 1, n_zeta) nodes within the film that carry pressure."""
+    arcs: tuple[FilmArc, ...] = field(repr=False)
+    """Pressure on the arcs of film between the places of feed."""
 
 
 def solve_film(
@@ -53,6 +67,7 @@ def solve_film(
     n_theta: int = 240,
     n_zeta: int = 24,
     near: FilmSolution | None = None,
+    feed: Feed = "widest_gap",
 ) -> FilmSolution:
     """Solve the film at one eccentricity.
 
@@ -62,6 +77,7 @@ def solve_film(
     width_ratio : B/D, above 0 [-]
     n_theta, n_zeta : cells round the film and over half the width; second-order accurate
     near : film of a neighbouring eccentricity on as many cells; the search for the break-up starts from its own
+    feed : where oil enters; the cells round the film are shared out among its arcs
 
     Returns
     -------
@@ -80,58 +96,46 @@ def solve_film(
         )
     if not width_ratio > 0.0:
         raise DynamicsInputError(f"width ratio B/D = {width_ratio}: must be above 0; give a positive width")
-    theta = _clustered_angles(eccentricity, n_theta)
-    zeta = np.sin(np.linspace(0.0, 0.5 * math.pi, n_zeta + 1))
-    start = np.broadcast_to((theta[1:-1] < 1.2 * math.pi)[:, None], (n_theta - 1, n_zeta))
-    if near is not None and near.carries.shape == start.shape:
-        start = near.carries
-    pressure = _pressure(theta, zeta, eccentricity, width_ratio, start)
-    return _integrals(theta, zeta, pressure, eccentricity, width_ratio)
+
+    def at(attitude: float) -> FilmSolution:
+        ends = film_arcs(feed, attitude)
+        grids = [film_grid(eccentricity, width_ratio, arc, n_theta // len(ends), n_zeta) for arc in ends]
+        return _integrals([_pressed(grid, _start(grid, near, i)) for i, grid in enumerate(grids)])
+
+    if feed == "widest_gap":
+        return at(0.0)
+    # grooves stand across the load: the attitude at which the film pushes against it
+    attitude = brentq(lambda angle: at(angle).attitude_angle - angle, 0.02, 0.5 * math.pi, xtol=1e-8)
+    return at(attitude)
 
 
-def _clustered_angles(eccentricity: float, n_theta: int) -> Array:
-    """Grid over (0, FILM_END), drawn together at the narrowest gap (Sommerfeld's substitution)."""
-    squeeze = math.sqrt((1.0 - eccentricity) / (1.0 + eccentricity))
-    squeeze = max(squeeze, 0.12)
-    last = math.pi + 2.0 * math.atan(math.tan(0.5 * (FILM_END - math.pi)) / squeeze)
-    even = np.linspace(-math.pi, last - math.pi, n_theta + 1)
-    inner = math.pi + 2.0 * np.arctan(squeeze * np.tan(0.5 * even[1:-1]))
-    angles: Array = np.concatenate([[0.0], inner, [FILM_END]])
-    return angles
+def solve_arc(grid: FilmGrid, squeeze: Array | None = None) -> FilmArc:
+    """Film on one arc of any position, started from nothing known.
 
+    squeeze : (n - 1,) dH/dtau, tau = omega t, at the unknown nodes: the walls also approach each other
 
-def _pressure(
-    theta: Array, zeta: Array, eccentricity: float, width_ratio: float, start: NDArray[np.bool_]
-) -> Array:
-    """Nodal pressure P, shape (n_theta + 1, n_zeta + 1), zeta = 0 the plane of symmetry.
-
-    start : (n_theta - 1, n_zeta) nodes that carry pressure in the first step
+    Raises as `solve_film`.
     """
-    n, m = theta.size - 2, zeta.size - 1
-    gap_mid = 1.0 + eccentricity * np.cos(0.5 * (theta[1:] + theta[:-1]))
-    gap_cubed = (1.0 + eccentricity * np.cos(theta[1:-1])) ** 3
-    cell_theta = 0.5 * (theta[2:] - theta[:-2])
-    half_steps = np.diff(zeta)
-    cell_zeta = np.concatenate([[0.5 * half_steps[0]], 0.5 * (half_steps[1:] + half_steps[:-1])])
-    round_link = (gap_mid**3 / np.diff(theta))[:, None] * cell_zeta[None, :]
-    axial_link = (gap_cubed * cell_theta)[:, None] / half_steps[None, :] / width_ratio**2
-    diagonal = round_link[1:] + round_link[:-1] + axial_link
-    diagonal[:, 1:] += axial_link[:, :-1]
-    # Couette inflow of each cell, exact difference of the gap over its faces: 6 (H_west - H_east)
-    inflow = -6.0 * np.diff(gap_mid)[:, None] * cell_zeta[None, :]
+    return _pressed(grid, _start(grid, None, 0), squeeze)
 
-    size = n * m
-    axial = np.zeros((n, m))
-    axial[:, :-1] = -axial_link[:, :-1]
-    bands = np.zeros((m + 1, size))
-    bands[0] = diagonal.ravel()
-    bands[1] = axial.ravel()
-    bands[m, : size - m] = -round_link[1:-1].ravel()
-    source = inflow.ravel()
-    active = start.ravel()
+
+def _start(grid: FilmGrid, near: FilmSolution | None, index: int) -> Mask:
+    """Nodes that carry pressure in the first step."""
+    if near is not None and index < len(near.arcs) and near.arcs[index].carries.shape == grid.shape:
+        return near.arcs[index].carries
+    converging = np.mod(grid.theta[1:-1], 2.0 * math.pi) < 1.2 * math.pi
+    return np.broadcast_to(converging[:, None], grid.shape)
+
+
+def _pressed(grid: FilmGrid, start: Mask, squeeze: Array | None = None) -> FilmArc:
+    bands = grid.bands()
+    inflow = grid.wedge(grid.middle_gap)
+    if squeeze is not None:
+        inflow = inflow - 12.0 * squeeze[:, None] * grid.areas
+    source, active = inflow.ravel(), start.ravel()
     for _ in range(100):
-        solution = _solve_active(bands, source, active, m)
-        residual = _apply(bands, solution, m) - source
+        solution = solve_active(bands, source, active)
+        residual = apply(bands, solution) - source
         # keep a node while it carries pressure, add a dry one that is fed more than it passes on
         wanted = np.where(active, solution > 0.0, residual < 0.0)
         if np.array_equal(wanted, active):
@@ -139,56 +143,41 @@ def _pressure(
         active = wanted
     else:
         raise FilmNotConvergedError(
-            f"film at eccentricity {eccentricity}, B/D {width_ratio}: cavitated region still moves after "
+            f"film at eccentricity {grid.eccentricity}, B/D {grid.width_ratio}: cavitated region still moves after "
             "100 steps; refine the grid"
         )
-    pressure: Array = np.zeros((theta.size, zeta.size))
-    pressure[1:-1, :-1] = solution.reshape(n, m)
-    return pressure
+    pressure: Array = np.zeros((grid.theta.size, grid.zeta.size))
+    pressure[1:-1, :-1] = solution.reshape(grid.shape)
+    return FilmArc(grid, pressure)
 
 
-def _solve_active(bands: Array, source: Array, active: NDArray[np.bool_], width: int) -> Array:
-    """Solve for the nodes that carry pressure, all others held at zero."""
-    reduced = bands.copy()
-    reduced[0, ~active] = 1.0
-    for offset in (1, width):
-        both = active[offset:] & active[:-offset]
-        reduced[offset, : both.size] *= both
-    solution: Array = solveh_banded(reduced, np.where(active, source, 0.0), lower=True, check_finite=False)
-    return solution
-
-
-def _apply(bands: Array, vector: Array, width: int) -> Array:
-    """Product of the symmetric banded matrix with a vector."""
-    product: Array = bands[0] * vector
-    for offset in (1, width):
-        link = bands[offset, :-offset]
-        product[offset:] += link * vector[:-offset]
-        product[:-offset] += link * vector[offset:]
-    return product
-
-
-def _integrals(
-    theta: Array, zeta: Array, pressure: Array, eccentricity: float, width_ratio: float
-) -> FilmSolution:
-    mean = np.trapezoid(pressure, zeta, axis=1)
-    along = -0.5 * float(np.trapezoid(mean * np.cos(theta), theta))
-    across = 0.5 * float(np.trapezoid(mean * np.sin(theta), theta))
-    sommerfeld = math.hypot(along, across)
-    gap = 1.0 + eccentricity * np.cos(theta)
-    near, far = 1.0 - zeta[-2], 1.0 - zeta[-3]
-    gradient = (pressure[:, -2] * far / near - pressure[:, -3] * near / far) / (far - near)
-    side_flow = float(np.trapezoid(gap**3 * gradient, theta)) / (48.0 * width_ratio)
-    # wall shear on the journal: Couette part over the full ring, pressure part (H/2) dP/dtheta over the film
+def _integrals(arcs: Sequence[FilmArc]) -> FilmSolution:
+    eccentricity, width_ratio = arcs[0].grid.eccentricity, arcs[0].grid.width_ratio
+    along, across, side_flow, poiseuille = np.sum([_arc_integrals(arc) for arc in arcs], axis=0)
     couette = math.pi / math.sqrt(1.0 - eccentricity**2)
-    middle_gap = 1.0 + eccentricity * np.cos(0.5 * (theta[1:] + theta[:-1]))
-    poiseuille = 0.25 * float(np.sum(middle_gap * np.diff(mean)))
     return FilmSolution(
         eccentricity=eccentricity,
         width_ratio=width_ratio,
-        sommerfeld=sommerfeld,
+        sommerfeld=math.hypot(along, across),
         attitude_angle=math.atan2(across, along),
-        side_flow=side_flow,
-        shear_torque=couette + poiseuille,
-        carries=pressure[1:-1, :-1] > 0.0,
+        side_flow=float(side_flow),
+        shear_torque=couette + float(poiseuille),
+        arcs=tuple(arcs),
     )
+
+
+def _arc_integrals(arc: FilmArc) -> tuple[float, float, float, float]:
+    """Load along and across the line of centres, side flow and shear by pressure of one arc.
+
+    Wall shear on the journal is a Couette part over the full ring and this pressure part (H/2) dP/dtheta over the film.
+    """
+    theta, zeta, pressure = arc.grid.theta, arc.grid.zeta, arc.pressure
+    mean = np.trapezoid(pressure, zeta, axis=1)
+    along = -0.5 * float(np.trapezoid(mean * np.cos(theta), theta))
+    across = 0.5 * float(np.trapezoid(mean * np.sin(theta), theta))
+    gap = 1.0 + arc.grid.eccentricity * np.cos(theta)
+    near, far = 1.0 - zeta[-2], 1.0 - zeta[-3]
+    gradient = (pressure[:, -2] * far / near - pressure[:, -3] * near / far) / (far - near)
+    side_flow = float(np.trapezoid(gap**3 * gradient, theta)) / (48.0 * arc.grid.width_ratio)
+    poiseuille = 0.25 * float(np.sum(arc.grid.middle_gap * np.diff(mean)))
+    return along, across, side_flow, poiseuille

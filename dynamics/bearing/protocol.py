@@ -1,4 +1,5 @@
-"""What every kind of bearing answers: its steady state at a load, a speed, an oil supply and the heat of its bodies.
+"""What every kind of bearing answers: its steady state at a load, a speed, an oil supply and the heat of its bodies;
+and its state, what stiffness and damping a rotor finds there.
 
 A kind of bearing is a module of its own behind `Bearing`. What a kind adds to the common `BearingState` stays between
 its module and its tests; whoever reads a state reads the common fields and need not know the kind.
@@ -7,8 +8,9 @@ its module and its tests; whoever reads a state reads the common fields and need
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
+from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 
 
@@ -112,6 +114,40 @@ class BearingOperation:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LateralOperation:
+    """Load under which a bearing in its steady state is asked for stiffness and damping.
+
+    force : on the journal in y and z, weight included [N]; it decides the static position and may differ from the load
+        at which temperature and viscosity of the state were found
+    axial_force : on the shaft along x inside the bearing [N]; its sign says which way an angular contact presses
+    sense : +1 for a shaft that turns about +x, from y to z; -1 the other way
+    structural_damping : of contacts of metal, c = structural_damping times k, not negative [s]; rolling bearings have
+        0.25e-5 to 2.5e-5 s (E. Kraemer, Dynamics of Rotors and Foundations, 1993)
+
+    Raises BearingError for a force that is not finite, another sense or a negative damping.
+    """
+
+    force: tuple[float, float]
+    axial_force: float = 0.0
+    sense: Literal[1, -1] = 1
+    structural_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in (("force", math.hypot(*self.force)), ("axial_force", self.axial_force)):
+            if not math.isfinite(value):
+                raise BearingError(f"bearing: {name} = {value} N: must be finite; correct the loads")
+        if self.sense not in (1, -1):
+            raise BearingError(
+                f"bearing: sense = {self.sense}: must be 1 (turns about +x) or -1; state one of them"
+            )
+        if not (self.structural_damping >= 0.0 and math.isfinite(self.structural_damping)):
+            raise BearingError(
+                f"bearing: structural_damping = {self.structural_damping} s: must be finite and not negative; 1e-5 s "
+                "is usual"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
 class HeatStar:
     """A bearing as one node between shaft seat, housing seat and oil.
 
@@ -179,6 +215,16 @@ class BearingState:
     """What lies outside the theory: name, value, limit, remedy."""
     star: HeatStar | None = None
     """Of a kind that conducts its heat to its seats; None for a film that takes up the heat of its walls."""
+
+    def lateral_coefficients(self, operation: LateralOperation) -> LateralCoefficients:
+        """Stiffness, damping and static position at this speed and temperature under a load vector.
+
+        Raises BearingError where nothing holds the journal, or for a kind that states no stiffness.
+        """
+        raise BearingError(
+            f"bearing: stiffness = none: {type(self).__name__} states none; use constant coefficients for a load of "
+            f"{math.hypot(*operation.force):.6g} N"
+        )
 
 
 class Bearing(Protocol):

@@ -316,6 +316,7 @@ def _state(
         reference_speed_utilisation=omega / data.reference_speed,
         minimum_load=minimum_load(data, omega, viscosity / oil.density),
         stiffness=stiffness,
+        row=bearing.row,
         source=SOURCES[bearing.law],
         warnings=(),
     )

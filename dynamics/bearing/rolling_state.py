@@ -3,10 +3,13 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from dynamics.bearing.protocol import BearingState
+from dynamics.bearing.lateral import LateralCoefficients
+from dynamics.bearing.protocol import BearingState, LateralOperation
 from dynamics.bearing.rolling_catalogue import RPM, CatalogueBearing
 from dynamics.bearing.rolling_friction import FrictionTorque
+from dynamics.bearing.rolling_lateral import rolling_lateral
 from dynamics.bearing.rolling_life import LARGEST_AXIAL_SHARE, RatingLife
+from dynamics.bearing.rolling_row import RowOfElements
 from dynamics.bearing.rolling_stiffness import BearingStiffness
 from dynamics.standards import iso281_2007
 
@@ -56,6 +59,15 @@ class RollingState(BearingState):
     """Radial load below which rolling elements may slide [N]."""
     stiffness: BearingStiffness
     """Tangent stiffness at the load and its displacement."""
+    row: RowOfElements
+    """Rolling elements and clearance as it runs, about which the stiffness is taken."""
+
+    def lateral_coefficients(self, operation: LateralOperation) -> LateralCoefficients:
+        """Stiffness, structural damping and static position of its rings under the load of the operation.
+
+        Raises BearingError without a load on a bearing without preload.
+        """
+        return rolling_lateral(self.row, operation)
 
 
 def rolling_state(state: BearingState) -> RollingState | None:

@@ -88,7 +88,11 @@ def stiffness_matrix(row: RowOfElements, radial: float, axial: float, azimuth: f
 
     Raises as `bearing_stiffness`.
     """
-    found = bearing_stiffness(replace(row, direction=1), radial, axial)
+    return stiffness_at(row, bearing_stiffness(replace(row, direction=1), radial, axial), azimuth)
+
+
+def stiffness_at(row: RowOfElements, found: BearingStiffness, azimuth: float = 0.0) -> FloatArray:
+    """As `stiffness_matrix`, at a displacement that `bearing_stiffness` has found for the row in direction 1."""
     along = row.direction * found.axial_displacement
     matrix = ring_load((row,), np.array([found.radial_displacement, 0.0, along, 0.0, 0.0])).stiffness
     cosine, sine = math.cos(azimuth), math.sin(azimuth)

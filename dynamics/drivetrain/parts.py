@@ -3,9 +3,33 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from dynamics.drivetrain.shaft import DrivetrainError, tilting_inertia
 from dynamics.drivetrain.shaft_torque import ShaftTorque
 
 End = Literal["left", "right"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointStiffness:
+    """What a joint of two parts of one axis resists besides torsion; the torsional model does not read it.
+
+    axial, lateral : between its middle sections, the same in all lateral directions [N/m]; angular : against tilting
+    of one part against the other [N m/rad]; the dampers likewise [N s/m], [N m s/rad], turning with the shaft.
+
+    Raises DrivetrainError for a negative value.
+    """
+
+    axial: float = 0.0
+    lateral: float = 0.0
+    angular: float = 0.0
+    axial_damping: float = 0.0
+    lateral_damping: float = 0.0
+    angular_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not value >= 0.0:
+                raise DrivetrainError(f"joint: {name} = {value}: must not be negative; correct the sign")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,6 +37,10 @@ class GearBody:
     """Rigid gear on a shaft, joined by a spline or key.
 
     position : on the shaft [m]; inertia [kg m2]; stiffness [N m/rad]; damping [N m s/rad].
+
+    Of the elastic rig alone: mass [kg]; diametral_inertia [kg m2], that of a cylinder if not given; width [m];
+    offset : of the centre of the gear from its position, towards the right end of the shaft [m]; seat : None is rigid
+    with the shaft in every direction but torsion.
     """
 
     name: str
@@ -21,6 +49,16 @@ class GearBody:
     inertia: float
     stiffness: float
     damping: float = 0.0
+    mass: float = 0.0
+    diametral_inertia: float | None = None
+    width: float = 0.0
+    offset: float = 0.0
+    seat: JointStiffness | None = None
+
+    @property
+    def tilting_inertia(self) -> float:
+        """Inertia about a diameter [kg m2]: as given, else that of a cylinder, I_p / 2 + m b^2 / 12."""
+        return tilting_inertia(f"gear body {self.name!r}", self)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +66,8 @@ class Coupling:
     """Massless spring and damper between two shaft ends: stiffness [N m/rad], damping [N m s/rad].
 
     Flange masses (a torque flange, say) are discs on the shafts. ``excitation`` acts between its ends, positive where
-    it draws the first shaft ahead, and counts the turns of the first shaft.
+    it draws the first shaft ahead, and counts the turns of the first shaft. ``flexibility`` is what it resists besides
+    torsion: nothing unless given.
     """
 
     name: str
@@ -37,6 +76,7 @@ class Coupling:
     stiffness: float
     damping: float = 0.0
     excitation: tuple[ShaftTorque, ...] = ()
+    flexibility: JointStiffness = JointStiffness()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +104,11 @@ class DragPlace:
 
 @dataclass(frozen=True, kw_only=True)
 class MeshConnection:
-    """Gear mesh between two gear bodies: base radii [m], tooth numbers, working centre distance [m]."""
+    """Gear mesh between two gear bodies: base radii [m], tooth numbers, working centre distance [m].
+
+    base_helix_angle : [rad], positive for a right-hand pinion, of a double-helical one for its half towards the front
+    (lower x); of the elastic rig alone.
+    """
 
     name: str
     pinion: str
@@ -72,6 +116,7 @@ class MeshConnection:
     base_radii: tuple[float, float]
     teeth: tuple[int, int]
     centre_distance: float
+    base_helix_angle: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,6 +124,8 @@ class Motor:
     """Drive on a shaft: torque acts at ``position`` [m], on a rotor of its own if ``stiffness`` is given.
 
     inertia : rotor [kg m2], added to the station when there is no stiffness. ripple : of its torque about the mean.
+    mass [kg], width [m] and diametral_inertia [kg m2] : of the elastic rig alone, for a rotor that the shaft carries,
+    rigid with the station. Without a diametral inertia bearings of its own carry it, and only its torsion counts.
     """
 
     shaft: str
@@ -87,3 +134,11 @@ class Motor:
     stiffness: float | None = None
     damping: float = 0.0
     ripple: tuple[ShaftTorque, ...] = ()
+    mass: float = 0.0
+    diametral_inertia: float | None = None
+    width: float = 0.0
+
+    @property
+    def tilting_inertia(self) -> float:
+        """Inertia about a diameter [kg m2]: as given, else that of a cylinder."""
+        return tilting_inertia("motor", self)

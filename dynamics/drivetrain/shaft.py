@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ STEEL_SHEAR_MODULUS = 79.3e9
 """Shear modulus of steel [Pa] (E 206 GPa, nu 0.30)."""
 STEEL_DENSITY = 7850.0
 """Density of steel [kg/m3]."""
+STEEL_POISSON_RATIO = 0.30
+"""Poisson's ratio of steel [-]."""
 
 
 class DrivetrainError(DynamicsInputError):
@@ -46,17 +49,64 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True)
 class Disc:
-    """Rigid disc on a shaft (coupling flange, nut, torque flange half): inertia [kg m2] at a position [m]."""
+    """Rigid disc on a shaft (coupling flange, nut, torque flange half): inertia [kg m2] at a position [m].
+
+    mass [kg], diametral_inertia [kg m2] and width [m] are those of the elastic rig; torsion does not read them.
+    """
 
     name: str
     position: float
     inertia: float
+    mass: float = 0.0
+    diametral_inertia: float | None = None
+    width: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.inertia > 0.0:
             raise DrivetrainError(
                 f"disc {self.name!r}: inertia = {self.inertia} kg m2: must be above 0; else leave it out"
             )
+
+    @property
+    def tilting_inertia(self) -> float:
+        """Inertia about a diameter [kg m2]: as given, else that of a cylinder, I_p / 2 + m b^2 / 12."""
+        return tilting_inertia(f"disc {self.name!r}", self)
+
+
+class RigidBody(Protocol):
+    """What the inertia of a disc or gear about a diameter follows from."""
+
+    @property
+    def inertia(self) -> float:
+        """Polar [kg m2]."""
+
+    @property
+    def mass(self) -> float:
+        """[kg]"""
+
+    @property
+    def width(self) -> float:
+        """Along the axis [m]."""
+
+    @property
+    def diametral_inertia(self) -> float | None:
+        """As given [kg m2]."""
+
+
+def tilting_inertia(part: str, body: RigidBody) -> float:
+    """Inertia about a diameter [kg m2]: as given, else that of a cylinder, I_p / 2 + m b^2 / 12.
+
+    Raises DrivetrainError for one below half of the polar inertia, which no body has.
+    """
+    thin = 0.5 * body.inertia
+    if body.diametral_inertia is None:
+        return thin + body.mass * body.width**2 / 12.0
+    if body.diametral_inertia < (1.0 - 1e-9) * thin:
+        raise DrivetrainError(
+            f"{part}: diametral inertia = {body.diametral_inertia} kg m2: must be at least half of the polar "
+            f"inertia, {thin:.6g} kg m2; correct one, or leave it out for that of a cylinder"
+        )
+    return body.diametral_inertia
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +116,7 @@ class Shaft:
     ``element_length`` [m] is the longest element. Lumped inertia makes a frequency low by the share
     (omega h / c)^2 / 24 with c = sqrt(G/rho) = 3180 m/s: 0.3 % at 13 kHz for the default 10 mm.
     ``damping_time`` [s] is the damping of every element over its stiffness: the loss factor at omega over omega.
+    ``poisson_ratio`` gives the elastic modulus of bending; torsion does not read it.
     """
 
     name: str
@@ -75,6 +126,7 @@ class Shaft:
     density: float = STEEL_DENSITY
     element_length: float = 0.010
     damping_time: float = 0.0
+    poisson_ratio: float = STEEL_POISSON_RATIO
 
     def __post_init__(self) -> None:
         if not self.sections:
@@ -88,8 +140,17 @@ class Shaft:
             raise DrivetrainError(
                 f"shaft {self.name!r}: damping_time = {self.damping_time} s: must not be negative; correct the sign"
             )
+        if not 0.0 <= self.poisson_ratio < 0.5:
+            raise DrivetrainError(
+                f"shaft {self.name!r}: poisson_ratio = {self.poisson_ratio}: must lie within 0 and 0.5; correct it"
+            )
         for disc in self.discs:
             self.check_position(disc.position, f"disc {disc.name!r}")
+
+    @property
+    def elastic_modulus(self) -> float:
+        """Elastic modulus 2 G (1 + nu) [Pa]."""
+        return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
 
     @property
     def length(self) -> float:
@@ -136,7 +197,7 @@ def discretise(shaft: Shaft, stations: tuple[float, ...] = ()) -> ShaftChain:
 
     Element stiffness G J / h; half of the inertia rho J h goes to either end. The disc inertias are added.
     """
-    steps = np.cumsum([0.0] + [section.length for section in shaft.sections])
+    steps = _steps(shaft)
     nodes = np.concatenate(
         [steps, np.clip(stations, 0.0, steps[-1]), [disc.position for disc in shaft.discs]]
     )
@@ -147,9 +208,7 @@ def discretise(shaft: Shaft, stations: tuple[float, ...] = ()) -> ShaftChain:
     ]
     positions = np.concatenate([*pieces, nodes[-1:]])
     lengths = np.diff(positions)
-    middle = positions[:-1] + 0.5 * lengths
-    section_of = np.clip(np.searchsorted(steps, middle) - 1, 0, len(shaft.sections) - 1)
-    moment = np.array([section.polar_moment for section in shaft.sections])[section_of]
+    moment = np.array([section.polar_moment for section in element_sections(shaft, positions)])
     inertia = np.zeros(positions.size)
     half = 0.5 * shaft.density * moment * lengths
     inertia[:-1] += half
@@ -158,6 +217,18 @@ def discretise(shaft: Shaft, stations: tuple[float, ...] = ()) -> ShaftChain:
     for disc in shaft.discs:
         inertia[chain.node(disc.position)] += disc.inertia
     return chain
+
+
+def element_sections(shaft: Shaft, positions: Array) -> tuple[Section, ...]:
+    """Section of each element between neighbouring positions (n,) [m] of a chain: n - 1 of them."""
+    middle = 0.5 * (positions[:-1] + positions[1:])
+    index = np.clip(np.searchsorted(_steps(shaft), middle) - 1, 0, len(shaft.sections) - 1)
+    return tuple(shaft.sections[i] for i in index)
+
+
+def _steps(shaft: Shaft) -> Array:
+    """Positions [m] of the ends of the sections, from 0 on."""
+    return np.cumsum([0.0] + [section.length for section in shaft.sections])
 
 
 def free_frequencies(shaft: Shaft, attached: tuple[tuple[float, float], ...] = (), count: int = 3) -> Array:

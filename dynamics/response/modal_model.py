@@ -227,8 +227,8 @@ def _groups(moved: Array, branch_of: NDArray[np.int64]) -> NDArray[np.int64]:
     count = int(branch_of.max()) + 1
     tied = np.eye(count, dtype=bool)
     for column in np.abs(moved).T:
-        together = np.unique(branch_of[column > 1e-9 * max(column.max(), 1e-300)])
-        tied[together[0], together] = True
+        together = np.unique(branch_of[column > 1e-9 * column.max()])
+        tied[np.ix_(together, together)] = True
     return np.asarray(connected_components(tied, directed=False)[1], np.int64)
 
 

@@ -123,7 +123,7 @@ class TimeMarch:
         """
         drags = tuple(loads.drag_torques)
         accounts = settings.accounts
-        self.laws = tuple(laws)
+        self.laws, self.system = tuple(laws), system
         self.step = settings.step
         self.substeps = settings.substeps
         self.drags = drags
@@ -131,6 +131,7 @@ class TimeMarch:
         self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
         self.packed = pack_meshes(laws, derivative_torques=settings.derivative_torques)
         self.unconverged = 0
+        self._settings = settings
         self._marched = 0
         self._names = system.dofs
         self._record_all = settings.record_all
@@ -328,6 +329,20 @@ class TimeMarch:
                     angles += turned * model.shapes[:, line]
                     placed.add(line)
         return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._carried.slow[1]))
+
+    def continued(self, system: LinearSystem, model: ModalModel) -> "TimeMarch":
+        """The same motion with other matrices of the same freedoms from this instant on: another speed band.
+
+        system : with the same ports and loads; model : its ``march_model`` for the laws and drags of this march
+        """
+        drags = dict(zip(self.drags, self._carried.drags[self._places].tolist()))
+        loads = DriveLoads(drive_torque=float(self._carried.slow[0]), drag_torques=drags)
+        march = TimeMarch(system, self.laws, self.state(), self._settings, loads, model)
+        march._marched, march.unconverged = self._marched, self.unconverged
+        before, after = self._carried, march._carried
+        after.ports[:, :4], after.slow[:], after.offset[:] = before.ports[:, :4], before.slow, before.offset
+        after.controller[:], after.work[:] = before.controller, before.work
+        return march
 
     def preset_speed_integral(self, torque: float) -> None:
         """Let the speed controller start from a motor torque [N m]."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.command import (
@@ -30,6 +31,7 @@ from dynamics.response.envelopes import EnvelopeWindows, LiftOff, WindowStatisti
 from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
+from dynamics.response.march_loads import march_model
 from dynamics.response.time_march import TimeMarch
 
 Array = NDArray[np.float64]
@@ -113,7 +115,7 @@ class TimeResponse:
 
 
 def run_schedule(
-    system: LinearSystem,
+    drivetrain: DrivetrainOverSpeed,
     laws: Sequence[MeshLaw],
     command: Command,
     motor: MotorDrive,
@@ -124,7 +126,9 @@ def run_schedule(
 
     Parameters
     ----------
-    laws : of the meshes, in the order of ``system.mesh_ports``
+    drivetrain : without its meshes, the same matrices at all speeds (a ``LinearSystem``) or by ``SpeedBands``, whose
+        matrices change at the end of a block of samples; the state goes on as it is
+    laws : of the meshes, in the order of ``mesh_ports``
     command : speed and bracing over time
     motor : torque limit and controller
     drags : drag torque over speed for names of ``system.drag_loads``
@@ -138,6 +142,7 @@ def run_schedule(
         If the initial state is not found or the march leaves the finite numbers.
     """
     check_command(command, len(laws))
+    system = drivetrain.at(abs(float(command.speed[0])))
     sample_rate, substeps = sampling.sample_rate, sampling.substeps
     curves = dict(drags or {})
     names = tuple(curves)
@@ -168,6 +173,7 @@ def run_schedule(
         ),
         DriveLoads(drive_torque=wound.drive_torque, drag_torques=drag_now),
     )
+    models = {id(system): march.model}
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
     control = motor.speed_control or default_speed_control(system, laws, float(limits[0]))
     march.preset_speed_integral(wound.drive_torque)
@@ -215,6 +221,11 @@ def run_schedule(
         block = march.advance(
             given, offsets=offsets, speed_control=control, torque_control=bracing, drags=tables
         )
+        band = drivetrain.at(abs(float(block.slow_speed[-1, 0])) / drive_ratio)
+        if band is not march.system:
+            if id(band) not in models:
+                models[id(band)] = march_model(band, laws, names, sampling.cutoff)
+            march = march.continued(band, models[id(band)])
         dynamic = radius * block.force
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
         if sampling.keep_channels:

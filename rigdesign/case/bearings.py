@@ -24,6 +24,7 @@ from rigdesign.case.fields import (
     Length,
     LinearDamping,
     LinearStiffness,
+    Mass,
     Name,
     Part,
     Play,
@@ -78,6 +79,8 @@ class JournalBearingInput(Part):
     """Of the housing under the bearing, radially and in series with it; rigid when left out."""
     support_damping: LinearDamping = 0.0
     """Damper beside the stiffness of the support."""
+    support_mass: Mass = 1.0
+    """Of the housing that moves with the bearing on its support."""
 
     @property
     def label(self) -> str:

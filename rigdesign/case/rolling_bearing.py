@@ -18,6 +18,7 @@ from rigdesign.case.fields import (
     Length,
     LinearDamping,
     LinearStiffness,
+    Mass,
     Name,
     Part,
     Play,
@@ -163,6 +164,8 @@ class RollingBearingInput(Part):
     """Of the housing under the bearing, radially and in series with it; rigid when left out."""
     support_damping: LinearDamping = 0.0
     """Damper beside the stiffness of the support."""
+    support_mass: Mass = 1.0
+    """Of the housing that moves with the bearing on its support."""
 
     @field_validator("designation")
     @classmethod

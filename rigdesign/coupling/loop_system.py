@@ -1,11 +1,21 @@
 """Matrices of the power circuit at an operating point: torsional, the same always, or elastic, with its bearings."""
 
 from collections.abc import Mapping
+from typing import Literal
 
-from dynamics.bearing.protocol import BearingState
+from dynamics.bearing.lateral import LateralCoefficients, constant_coefficients
+from dynamics.bearing.protocol import BearingState, LateralOperation
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
+from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
+
+Sense = Literal[1, -1]
+
+ROLLING_DAMPING_TIME = 1.25e-5
+"""Damping over stiffness of a rolling bearing [s]: middle of 0.25e-5 to 2.5e-5 s (E. Kraemer, Dynamics of Rotors and
+Foundations, 1993)."""
 
 
 def loop_system(
@@ -15,5 +25,50 @@ def loop_system(
 
     bearings : state of every bearing at this point, by ``gearbox.bearing``
     """
-    assert rig.system is not None
-    return rig.system
+    if rig.shaft_model == "torsional":
+        assert rig.system is not None
+        return rig.system
+    coefficients = bearing_coefficients(rig, coupling_state, bearings)
+    return rig.elastic.seen.system(
+        RunningState(
+            speed=rig.drive_speed(point.speed),
+            bearings={name: _at_seat(one) for name, one in coefficients.items()},
+        )
+    )
+
+
+def bearing_coefficients(
+    rig: Rig, coupling_state: CouplingState, bearings: Mapping[str, BearingState]
+) -> dict[str, LateralCoefficients]:
+    """Lateral stiffness, damping and static position of every bearing, by ``gearbox.bearing``.
+
+    Computed from its state at the load of this coupling state, or as the case states them.
+    """
+    power = rig.case.drivetrain
+    assert power is not None
+    loads = bearing_loads(rig, coupling_state)
+    found = {}
+    for name, _, entry in rig.bearings():
+        load = loads[name]
+        force = load.radial * load.direction[0], load.radial * load.direction[1]
+        if power.bearing_coefficients == "stated":
+            assert entry.radial_stiffness is not None
+            found[name] = constant_coefficients(entry.radial_stiffness, entry.radial_damping or 0.0, force)
+            continue
+        sense: Sense = 1 if rig.axes[entry.shaft].sense > 0.0 else -1
+        operation = LateralOperation(
+            force=force, axial_force=load.axial, sense=sense, structural_damping=ROLLING_DAMPING_TIME
+        )
+        found[name] = bearings[name].lateral_coefficients(operation)
+    return found
+
+
+def _at_seat(coefficients: LateralCoefficients) -> BearingCoefficients:
+    """Lateral and tilting part in the order of the elastic rig; what locates a shaft is a spring of its own."""
+    order = [1, 2, 0, 3, 4]
+    stiffness = coefficients.node_stiffness[order][:, order]
+    damping = coefficients.node_damping[order][:, order]
+    for matrix in (stiffness, damping):
+        matrix[2] = 0.0
+        matrix[:, 2] = 0.0
+    return BearingCoefficients(stiffness=stiffness, damping=damping)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import BracingState, locked_share, shifted_laws
+from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
@@ -74,14 +76,15 @@ def run_ramp(
     NotConvergedError
         The motor does not reach a speed the schedule asks for; the message shows the torque balance.
     """
-    assert rig.system is not None and rig.case.drivetrain is not None
+    assert rig.case.drivetrain is not None
     schedule = schedule_of(rig)
     command = schedule.command(COMMAND_INTERVAL)
     numerics = rig.case.numerics
     controlled = setting.mode == "torque_controlled"
     laws = shifted_laws(rig, warm.models, setting)
+    top = max(stage.speed_end for stage in rig.case.schedule.resolved())
     response = run_schedule(
-        rig.system,
+        loop_over_speed(rig, warm, (0.0, top), partial(torque_share_at, rig, warm)),
         laws,
         RunCommand(
             time=command.time,
@@ -102,6 +105,15 @@ def run_ramp(
     )
     require_speeds(rig, schedule, response)
     return response
+
+
+def torque_share_at(rig: Rig, warm: IterationResult, speed: float) -> float:
+    """Torque under which the schedule first reaches a speed [rad/s], per that of the warm point."""
+    for stage in rig.case.schedule.resolved():
+        low, high = sorted((stage.speed_start, stage.speed_end))
+        if low <= speed <= high and warm.point.torque:
+            return stage.torque_end / warm.point.torque
+    return 1.0
 
 
 def torque_limits(rig: Rig) -> NDArray[np.float64]:

@@ -17,7 +17,7 @@ from rigdesign.prediction.model import (
     Prediction,
     features_of,
 )
-from rigdesign.prediction.operating import operating_point, rig_at
+from rigdesign.prediction.operating import operating_point, rig_at, torsional
 from rigdesign.prediction.readings import readings
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
@@ -31,7 +31,7 @@ def predict_full(
     """What the channels would read by the full thermal model; see `rigdesign.prediction.predict.predict`."""
     check_names(settings, channels)
     with solver_errors(case), threadpool_limits(limits=1), one_thread():
-        rig = build_rig(case, fidelity)
+        rig = torsional(build_rig(case, fidelity))
         values = list(_at_points(rig, settings, channels)) + standing_values(rig, channels)
     return Prediction(features=features_of(settings, channels), values=np.array(values, dtype=np.float64))
 

@@ -63,6 +63,11 @@ def case_at(case: Case, setting: OperatingCondition) -> Case:
     return case.model_copy(update=update) if update else case
 
 
+def torsional(rig: Rig) -> Rig:
+    """The rig that channels are predicted with: shafts that only twist, whatever the case asks for."""
+    return replace(rig, shaft_model="torsional")
+
+
 def like(stated: Rig, case: Case) -> Rig:
     """The rig of another ``case`` with whatever of the stated rig the other case leaves as it is.
 
@@ -73,7 +78,7 @@ def like(stated: Rig, case: Case) -> Rig:
     """
     if case is stated.case:
         return stated
-    rig = build_rig(case, stated.fidelity)
+    rig = replace(build_rig(case, stated.fidelity), shaft_model=stated.shaft_model)
     if same_housings(rig, stated):
         take_over(rig, stated, HOUSINGS)
     if rig.drivetrain == stated.drivetrain:

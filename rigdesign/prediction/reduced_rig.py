@@ -19,7 +19,7 @@ from rigdesign.prediction.full import standing_values
 from rigdesign.prediction.housings import HousingNumbers, ReducedHousings
 from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.prediction.model import Channel, OperatingCondition
-from rigdesign.prediction.operating import operating_point, rig_at
+from rigdesign.prediction.operating import operating_point, rig_at, torsional
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
 from rigdesign.rig.model import Rig, build_rig
@@ -52,7 +52,7 @@ class ReducedRig:
         housings: Mapping[str, HousingNumbers] | None = None,
     ) -> None:
         self.conditions, self.channels = conditions, channels
-        self.stated = build_rig(case, fidelity)
+        self.stated = torsional(build_rig(case, fidelity))
         self.reads = readings(self.stated, channels)
         if housings is None:
             self.housings = ReducedHousings(self.stated, self._boundary_conditions(), self._sensors())

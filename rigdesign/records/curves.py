@@ -16,6 +16,7 @@ from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
+from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.results.dynamics import DynamicFactorPoint
@@ -156,9 +157,11 @@ def _curve(
     *,
     refined: bool = True,
 ) -> ResponseCurve:
-    assert rig.system is not None
+    share = torque / signed_torque(rig, warm.point)
+    ends = [speed / rig.pinion_speed(1.0) for speed in (min(speeds), max(speeds))]
+    drivetrain = loop_over_speed(rig, warm, (ends[0], ends[1]), lambda _: share)
     solve = partial(
-        periodic_response, rig.system, periodic_laws(rig, laws), load=LoopLoad(torque=torque), drag_torques=warm.drags,
+        periodic_response, drivetrain, periodic_laws(rig, laws), load=LoopLoad(torque=torque), drag_torques=warm.drags,
         settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )  # fmt: skip
     return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)

@@ -158,8 +158,8 @@ def _over_speed(rig: Rig, run: DynamicRun, mesh: int, test: _HeldRoots) -> Itera
 
 
 def _stresses(rig: Rig, point: PointResult, mesh: int) -> _HeldRoots:
-    assert rig.system is not None and point.last.response is not None
-    ports = port_model(rig.system, laws_of(point.last.models))
+    assert point.last.system is not None and point.last.response is not None
+    ports = port_model(point.last.system, laws_of(point.last.models))
     state = solve_static(ports, LoopLoad(torque=signed_torque(rig, point.point)))
     model = point.last.models[mesh]
     roots = root.mesh_roots(rig, model)
@@ -183,7 +183,7 @@ def stage_bracing(rig: Rig, point: PointResult) -> StageBracing:
 
 def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:
     """The bracing of one held point, as set and then warmed up."""
-    system, power = rig.system, rig.case.drivetrain
+    system, power = point.last.system, rig.case.drivetrain
     assert system is not None and power is not None
     initial = laws_of(mesh_models(rig, point.point, initial_state(rig, point.point)))
     gear = shifted_gear(rig)

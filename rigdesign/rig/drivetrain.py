@@ -10,15 +10,18 @@ from dynamics.drivetrain.parts import (
     DragPlace,
     End,
     GearBody,
+    JointStiffness,
     MeshConnection,
     Motor,
 )
-from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
+from dynamics.drivetrain.shaft import STEEL_DENSITY, Disc, DrivetrainError, Section, Shaft
 from dynamics.drivetrain.shaft_torque import ShaftTorque
 from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
-from rigdesign.case.drivetrain import HarmonicTorqueInput
+from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
+from rigdesign.case.rotation import has_hands, helix_hands
 from rigdesign.properties.materials import Material
 
 ENDS: dict[str, End] = {"start": "left", "end": "right"}
@@ -54,6 +57,7 @@ def build_drivetrain(
                 stiffness=coupling.torsional_stiffness,
                 damping=coupling.torsional_damping,
                 excitation=_shaft_torques(coupling.excitation),
+                flexibility=_flexibility(coupling),
             )
             for name, coupling in power.couplings.items()
         ),
@@ -78,11 +82,18 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
             for section in shaft.sections
         ),
         discs=tuple(
-            Disc(name=disc, position=entry.position, inertia=entry.inertia)
+            Disc(
+                name=disc,
+                position=entry.position,
+                inertia=entry.inertia,
+                mass=entry.mass or disc_mass(entry.inertia),
+                diametral_inertia=entry.diametral_inertia,
+            )
             for disc, entry in shaft.discs.items()
         ),
         shear_modulus=material.elastic_modulus / (2.0 * (1.0 + material.poisson_ratio)),
         density=material.density,
+        poisson_ratio=material.poisson_ratio,
         damping_time=shaft.material_damping / mesh_frequency(case) if shaft.material_damping else 0.0,
     )
 
@@ -107,6 +118,8 @@ def _gear_bodies(
                     shaft=gear.shaft,
                     position=gear.position,
                     inertia=gear_inertia(case, box_name, name, pairs, materials),
+                    mass=gear_mass(case, box_name, name, pairs, materials),
+                    width=box.body_width(name),
                     stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
                     damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
                 )
@@ -135,6 +148,35 @@ def gear_inertia(
     return part.inertia_factor * inertia
 
 
+def gear_mass(
+    case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+) -> float:
+    """Mass of a gear body [kg]: of the bored disc whose inertia it has; of a stated inertia, at the same radius of
+    gyration."""
+    part = case.gearboxes[box].gears[gear]
+    tip, bore = 2.0 * _toothing(gear, box, case, pairs).reference_radius, part.bore_diameter
+    return gear_inertia(case, box, gear, pairs, materials) * 8.0 / (tip**2 + bore**2)
+
+
+def disc_mass(inertia: float) -> float:
+    """Mass of a steel disc a third as thick as its radius [kg], from its polar inertia [kg m2]."""
+    radius = (6.0 * inertia / (math.pi * STEEL_DENSITY)) ** 0.2
+    return float(2.0 * inertia / radius**2)
+
+
+def _flexibility(coupling: CouplingInput) -> JointStiffness:
+    """What a coupling resists besides torsion."""
+    axial, lateral, angular = (
+        value or 0.0
+        for value in (coupling.axial_stiffness, coupling.radial_stiffness, coupling.angular_stiffness)
+    )
+    time = coupling.lateral_damping_time
+    return JointStiffness(
+        axial=axial, lateral=lateral, angular=angular,
+        axial_damping=time * axial, lateral_damping=time * lateral, angular_damping=time * angular,
+    )  # fmt: skip
+
+
 def disc_inertia(outer_diameter: float, bore_diameter: float, width: float, density: float) -> float:
     """Polar inertia of a bored disc, pi rho b (D^4 - d^4) / 32 [kg m2]."""
     return math.pi * density * width * (outer_diameter**4 - bore_diameter**4) / 32.0
@@ -161,9 +203,20 @@ def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[MeshConnection]:
                 base_radii=pair.base_radii,
                 teeth=pair.teeth,
                 centre_distance=pair.centre_distance,
+                base_helix_angle=_hand(case.gearboxes[box_name], name) * pair.base_helix_angle,
             )
         )
     return meshes
+
+
+def _hand(box: Gearbox, mesh: str) -> float:
+    """1 for a right-hand pinion, also where the case states no hand, -1 for a left-hand one; 0 where axial forces
+    cancel."""
+    entry = box.meshes[mesh]
+    if not has_hands(entry):
+        return 0.0
+    found = helix_hands(box).get(entry.pinion)
+    return 1.0 if found is None or found.hand == "right" else -1.0
 
 
 def _motor(case: Case) -> Motor:

@@ -12,7 +12,7 @@ from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.circuit_parts import oil_circuits
-from rigdesign.case.drivetrain import MeshStiffness
+from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
@@ -23,6 +23,7 @@ from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
+from rigdesign.rig.elastic_rig import ElasticDrivetrain, elastic_rig
 from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.influence_store import Progress
@@ -49,6 +50,7 @@ class Rig:
 
     pairs : gear pair as drawn, by ``gearbox.mesh``; oils, materials : by the name the case uses
     mesh_stiffness : tooth model of the meshes; that of the case, analytic at fidelity quick
+    shaft_model : of the power circuit; that of the case, torsional at fidelity quick
     tooth_influence : influence numbers of the cold gears, from the store or computed when they are asked for
     coarsening : of the loop, for estimates of its discretisation error
     """
@@ -59,6 +61,7 @@ class Rig:
     materials: Mapping[str, Material]
     pairs: Mapping[str, GearPair]
     mesh_stiffness: MeshStiffness = "iso_6336_scaled"
+    shaft_model: ShaftModel = "torsional"
     tooth_influence: ToothInfluence = field(default_factory=ToothInfluence)
     coarsening: Coarsening = AS_RULED
 
@@ -226,6 +229,16 @@ class Rig:
         """Strain gauges in tooth roots by ``gearbox.gear.gauge``."""
         return root_gauges(self.case, self.pairs, self.materials)
 
+    @cached_property
+    def elastic(self) -> ElasticDrivetrain:
+        """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
+        assert self.drivetrain is not None
+        return ElasticDrivetrain(
+            rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs),
+            faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
+            cutoff=self.highest_mode,
+        )
+
     @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
@@ -354,6 +367,9 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         materials=materials,
         pairs=pairs,
         mesh_stiffness=_mesh_stiffness(case, fidelity),
+        shaft_model="torsional"
+        if case.drivetrain is None or fidelity == "quick"
+        else case.drivetrain.shaft_model,
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
     if rig.heat_parts.machines:

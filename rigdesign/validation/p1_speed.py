@@ -41,13 +41,12 @@ class SpeedEffect:
 
 def speed_effect(rig: Rig, mesh: str, curve: GaugeCurve) -> SpeedEffect:
     """At the last held stage of a rig, for a gauge of the pinion of a mesh, ``gearbox.mesh``."""
-    assert rig.system is not None
     point = solve_point(rig, held_points(rig)[-1])
     response = point.last.response
-    assert response is not None
+    assert response is not None and point.last.system is not None
     number = rig.mesh_names.index(mesh)
     model = point.last.models[number]
-    ports = port_model(rig.system, laws_of(point.last.models))
+    ports = port_model(point.last.system, laws_of(point.last.models))
     state = solve_static(ports, LoopLoad(torque=signed_torque(rig, point.point)))
     roots = root.mesh_roots(rig, model)
     (at_speed,) = root.dynamic_forces(model, [response], number)

@@ -1,0 +1,267 @@
+"""What the elastic rig needs beyond the drivetrain: where the shafts stand, how housing and axial locations hold them.
+
+x runs along all shafts, y across, z up. The torsional drivetrain stays the one description of shafts, gears, couplings,
+bearings and meshes; what of their fields torsion does not read is read here.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.parts import Coupling, GearBody, MeshConnection
+from dynamics.drivetrain.power_loop import DISTANCE_TOLERANCE, speed_ratios
+from dynamics.drivetrain.shaft import DrivetrainError
+from dynamics.elastic_rig.beam import ShearRule, TorsionalInertia
+
+Array = NDArray[np.float64]
+Sign = Literal[1, -1]
+
+SEAT_DIRECTIONS = ("u_y", "u_z", "u_x", "theta_y", "theta_z")
+"""Order of the motions between journal and seat: a film knows the first two, a rolling bearing all five."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaftPlacement:
+    """Where a shaft stands: axis at (y, z), its left end at x = ``start`` [m].
+
+    direction : 1 if it is drawn along +x from there, else -1; sense : 1 if it turns about +x, else -1
+    """
+
+    shaft: str
+    y: float
+    z: float
+    sense: Sign
+    start: float = 0.0
+    direction: Sign = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class HousingSupport:
+    """Seats of bearings that the housing holds: their motion against the foundation.
+
+    bearings : names of k of them. stiffness, mass, damping : (d k, d k) symmetric [N/m], [kg], [N s/m] and likewise for
+    rotations, bearing after bearing, each in the first d of `SEAT_DIRECTIONS`, d = 2 or 5; in the others a seat stands
+    still. Condensed from a finite-element mesh of the housing (Guyan 1965), or one bearing by `isotropic_support`.
+
+    Raises DrivetrainError for a wrong shape, or a stiffness or mass that is not symmetric and positive definite.
+    """
+
+    name: str
+    bearings: tuple[str, ...]
+    stiffness: Array
+    mass: Array
+    damping: Array | None = None
+
+    def __post_init__(self) -> None:
+        sizes = tuple((d * len(self.bearings),) * 2 for d in (2, 5))
+        for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass), ("damping", self.damping)):
+            if matrix is None:
+                continue
+            if matrix.shape not in sizes or matrix.shape != self.stiffness.shape:
+                raise DrivetrainError(
+                    f"housing support {self.name!r}: {name} has shape {matrix.shape}: must be "
+                    f"{sizes[0]} or {sizes[1]}, the same for all; give two or five directions for each bearing"
+                )
+            if not np.allclose(matrix, matrix.T, rtol=1e-6, atol=1e-9 * float(np.abs(matrix).max())):
+                raise DrivetrainError(
+                    f"housing support {self.name!r}: {name} is not symmetric; give the condensed matrix"
+                )
+        for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+            smallest = float(np.linalg.eigvalsh(matrix)[0])
+            if not smallest > 0.0:
+                raise DrivetrainError(
+                    f"housing support {self.name!r}: smallest eigenvalue of the {name} = {smallest:.6g}: must be "
+                    "above 0; hold the housing on its foundation and give the mass that moves with each seat"
+                )
+
+    @property
+    def directions(self) -> int:
+        """Motions of a seat: 2 or 5."""
+        return int(self.stiffness.shape[0]) // len(self.bearings)
+
+
+def isotropic_support(bearing: str, stiffness: float, mass: float, damping: float = 0.0) -> HousingSupport:
+    """Seat of one bearing that yields alike in all lateral directions [N/m], [kg], [N s/m]."""
+    plane = np.eye(2)
+    return HousingSupport(
+        name=bearing,
+        bearings=(bearing,),
+        stiffness=stiffness * plane,
+        mass=mass * plane,
+        damping=damping * plane,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxialLocation:
+    """Bearing that holds its shaft along x with a spring and a damper: [N/m], [N s/m]."""
+
+    bearing: str
+    stiffness: float
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.stiffness > 0.0 and self.damping >= 0.0):
+            raise DrivetrainError(
+                f"axial location at {self.bearing!r}: stiffness = {self.stiffness} N/m, damping = {self.damping} "
+                "N s/m: must be above 0 and not negative; correct them or leave the location out"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxialMeshSpring:
+    """Spring between the gears of a double-helical mesh along x, at the pitch point: [N/m], [N s/m].
+
+    Two halves that share the mesh stiffness k with base helix angles +beta_b and -beta_b resist a shift of one gear
+    against the other by k tan^2(beta_b) (`double_helical_stiffness`).
+    """
+
+    mesh: str
+    stiffness: float
+    damping: float = 0.0
+
+
+def double_helical_stiffness(mesh_stiffness: float, base_helix_angle: float) -> float:
+    """k tan^2(beta_b) [N/m] of a mesh stiffness k in the transverse line of action [N/m]."""
+    return float(mesh_stiffness * math.tan(base_helix_angle) ** 2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProbeStation:
+    """Any further place of a shaft whose motion is wanted (gauge, seal, probe): it gets a node."""
+
+    name: str
+    shaft: str
+    position: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticRig:
+    """A drivetrain in six degrees of freedom.
+
+    axially_locating : bearings and meshes whose force, outside the matrices, holds a shaft along x (a rolling bearing
+    that comes with its axial stiffness; a helical mesh). moment_carrying : bearings that resist tilting by themselves.
+    reference_shaft : whose speed is the reference of the gyroscopics; that of the motor unless given.
+
+    Raises DrivetrainError for placements that are missing or do not fit couplings and meshes.
+    """
+
+    drivetrain: Drivetrain
+    placements: tuple[ShaftPlacement, ...]
+    supports: tuple[HousingSupport, ...] = ()
+    axial_locations: tuple[AxialLocation, ...] = ()
+    axial_mesh_springs: tuple[AxialMeshSpring, ...] = ()
+    axially_locating: tuple[str, ...] = ()
+    moment_carrying: tuple[str, ...] = ()
+    stations: tuple[ProbeStation, ...] = ()
+    reference_shaft: str | None = None
+    shear: ShearRule = "cowper"
+    torsional_inertia: TorsionalInertia = "lumped"
+
+    def __post_init__(self) -> None:
+        placed = [placement.shaft for placement in self.placements]
+        for shaft in self.drivetrain.shafts:
+            if placed.count(shaft.name) != 1:
+                raise DrivetrainError(
+                    f"shaft {shaft.name!r} has {placed.count(shaft.name)} placements: must have 1; say where it stands"
+                )
+        for name in placed:
+            self.drivetrain.shaft(name)
+        for coupling in self.drivetrain.couplings:
+            self._check_coupling(coupling)
+        for mesh in self.drivetrain.meshes:
+            self._check_mesh(mesh)
+        for station in self.stations:
+            self.drivetrain.shaft(station.shaft).check_position(station.position, f"station {station.name!r}")
+        self._check_names()
+
+    def placement(self, shaft: str) -> ShaftPlacement:
+        """Placement of a shaft."""
+        return next(placement for placement in self.placements if placement.shaft == shaft)
+
+    def mesh(self, name: str) -> MeshConnection:
+        """Mesh by its name; raises DrivetrainError if there is none."""
+        for mesh in self.drivetrain.meshes:
+            if mesh.name == name:
+                return mesh
+        raise DrivetrainError(f"mesh {name!r} does not exist: correct the name")
+
+    def x(self, shaft: str, position: float) -> float:
+        """Coordinate [m] along x of a position [m] on a shaft."""
+        placement = self.placement(shaft)
+        return placement.start + placement.direction * position
+
+    def centre(self, gear: GearBody) -> float:
+        """Coordinate [m] along x of the centre of a gear."""
+        return self.x(gear.shaft, gear.position + gear.offset)
+
+    def spins(self) -> dict[str, float]:
+        """Angular speed about +x of every shaft per reference speed, with its sign."""
+        ratios = speed_ratios(self.drivetrain)
+        reference = ratios[self.reference_shaft or self.drivetrain.motor.shaft]
+        return {name: self.placement(name).sense * ratio / reference for name, ratio in ratios.items()}
+
+    def _check_coupling(self, coupling: Coupling) -> None:
+        a, b = (self.placement(name) for name in coupling.shafts)
+        apart = math.hypot(a.y - b.y, a.z - b.z)
+        if apart > DISTANCE_TOLERANCE:
+            raise DrivetrainError(
+                f"coupling {coupling.name!r}: its shafts {a.shaft!r} and {b.shaft!r} are {apart:.6g} m apart across "
+                "x: must be on one axis; correct the placements"
+            )
+        if a.sense != b.sense:
+            raise DrivetrainError(
+                f"coupling {coupling.name!r}: senses of rotation {a.sense} and {b.sense}: must be equal; correct one"
+            )
+
+    def _check_mesh(self, mesh: MeshConnection) -> None:
+        a, b = (self.placement(self.drivetrain.gear(name).shaft) for name in (mesh.pinion, mesh.wheel))
+        distance = math.hypot(a.y - b.y, a.z - b.z)
+        if abs(distance - mesh.centre_distance) > DISTANCE_TOLERANCE:
+            raise DrivetrainError(
+                f"mesh {mesh.name!r}: axes placed {distance:.9g} m apart: must be the centre distance "
+                f"{mesh.centre_distance:.9g} m; correct the placements"
+            )
+        if a.sense == b.sense:
+            raise DrivetrainError(
+                f"mesh {mesh.name!r}: pinion and wheel both turn with sense {a.sense}: must be opposite; correct one"
+            )
+        pinion, wheel = (self.drivetrain.gear(name) for name in (mesh.pinion, mesh.wheel))
+        apart = abs(self.centre(pinion) - self.centre(wheel))
+        if pinion.width and wheel.width and apart >= 0.5 * (pinion.width + wheel.width):
+            raise DrivetrainError(
+                f"mesh {mesh.name!r}: gears stand {apart:.6g} m apart along x: must be less than half the sum of "
+                f"their widths, {0.5 * (pinion.width + wheel.width):.6g} m; correct a placement or position"
+            )
+
+    def _check_names(self) -> None:
+        bearings = {bearing.name for bearing in self.drivetrain.bearings}
+        meshes = {mesh.name for mesh in self.drivetrain.meshes}
+        seats = [name for support in self.supports for name in support.bearings]
+        drivetrain = self.drivetrain
+        taken = ["motor", *(gear.name for gear in drivetrain.gears)]
+        taken += [bearing.name for bearing in drivetrain.bearings]
+        taken += [place.name for place in drivetrain.drag_places]
+        for station in self.stations:
+            if station.name in taken:
+                raise DrivetrainError(
+                    f"station {station.name!r}: the name is taken by another place; rename it"
+                )
+            taken.append(station.name)
+        for kind, names, known in (
+            ("housing support", seats, bearings),
+            ("axial location", [location.bearing for location in self.axial_locations], bearings),
+            ("axial mesh spring", [spring.mesh for spring in self.axial_mesh_springs], meshes),
+            ("axially_locating", list(self.axially_locating), bearings | meshes),
+            ("moment_carrying", list(self.moment_carrying), bearings),
+        ):
+            for name in names:
+                if name not in known or names.count(name) > 1:
+                    raise DrivetrainError(
+                        f"{kind} {name!r}: is given {names.count(name)} times, known are "
+                        f"{', '.join(sorted(known)) or 'none'}; name each once"
+                    )

@@ -1,0 +1,197 @@
+"""Is every shaft held, and which rigid motions are left: turning of the shaft lines, axial float.
+
+Lateral motion must be held by bearings, and by couplings that join a shaft to a held one; axial motion by an axial
+location or by a part that the caller names. What is left free is known from the connections alone, so the rigid
+shapes are exact: one for every freedom that takes part, zero elsewhere.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.shaft import DrivetrainError
+from dynamics.elastic_rig.freedoms import Freedoms
+from dynamics.elastic_rig.joints import ElasticJoint, port_rows
+from dynamics.elastic_rig.layout import SEAT_DIRECTIONS, ElasticRig
+
+Array = NDArray[np.float64]
+
+GROUND = "foundation"
+FREE = 1e-9
+"""Sum of squared row values below which a lateral motion of rigid shafts counts as free, rows scaled to 1."""
+
+
+@dataclass(frozen=True)
+class RigidMotion:
+    """A rigid motion without any elastic force: ``turn`` or ``axial`` of the bodies named; shape (n,) of ones."""
+
+    kind: str
+    bodies: tuple[str, ...]
+    shape: Array
+
+
+def rigid_motions(rig: ElasticRig, freedoms: Freedoms) -> tuple[RigidMotion, ...]:
+    """Turning of every shaft line, then the axial float of whatever no spring of the matrices holds along x."""
+    lines = rig.drivetrain.lines()
+    names = np.array(freedoms.names)
+    turning = np.char.endswith(names, " turn")
+    sliding = np.char.endswith(names, " u_x")
+    shaft_of = np.array(freedoms.shaft_of)
+    motions = []
+    for line in sorted(set(lines.values())):
+        shafts = tuple(shaft for shaft in lines if lines[shaft] == line)
+        member = np.isin(shaft_of, [_index(rig, shaft) for shaft in shafts])
+        motions.append(RigidMotion("turn", shafts, (turning & member).astype(float)))
+    for bodies in _floating(rig, tie_meshes=False):
+        shape = np.zeros(freedoms.size)
+        for body in bodies:
+            if body in freedoms.nodes:
+                own = (shaft_of == _index(rig, body)) & ~_separate(rig, freedoms, body)
+                shape[own & sliding] = 1.0
+            else:
+                shape[freedoms.place(body).base] = 1.0
+        motions.append(RigidMotion("axial", bodies, shape))
+    return tuple(motions)
+
+
+def unresisted(forces: Array, scale: float = 0.0) -> Array:
+    """(r, k) orthonormal combinations of r motions that no force resists: forces (n, r) per unit of each.
+
+    A mesh spring between two shaft lines leaves one combination of their turns free. ``scale`` [force per unit] is that
+    of the numbers whose rounding the forces may hold.
+    """
+    if forces.shape[1] == 0:
+        return np.zeros((0, 0))
+    values, vectors = np.linalg.eigh(forces.T @ forces)
+    size = np.sqrt(np.maximum(values, 0.0))
+    return np.asarray(vectors[:, size <= 1e-7 * size[-1] + 1e-12 * scale])
+
+
+def check_location(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[ElasticJoint]) -> None:
+    """Raise DrivetrainError, naming shaft and remedy, if a shaft can float along x or move sideways without force."""
+    floating = _floating(rig, tie_meshes=True)
+    if floating:
+        raise DrivetrainError(
+            f"shaft or gear {floating[0][0]!r} has no axial location: 0 of its bearings hold it along x, must be 1 for "
+            f"{', '.join(floating[0])}; give an axial location, name the bearing or mesh that locates it, or couple it "
+            "axially to a located shaft"
+        )
+    _check_lateral(rig, freedoms, joints)
+
+
+def _floating(rig: ElasticRig, *, tie_meshes: bool) -> list[tuple[str, ...]]:
+    """Groups of shafts and gears that move along x together and are not held."""
+    groups = _Groups([GROUND, *(shaft.name for shaft in rig.drivetrain.shafts)])
+    for gear in rig.drivetrain.gears:
+        if gear.seat is not None:
+            groups.add(gear.name)
+            if gear.seat.axial > 0.0:
+                groups.tie(gear.name, gear.shaft)
+    for a, b in _axial_ties(rig, tie_meshes=tie_meshes):
+        groups.tie(a, b)
+    return groups.without(GROUND)
+
+
+def _axial_ties(rig: ElasticRig, *, tie_meshes: bool) -> Iterator[tuple[str, str]]:
+    bodies = {g.name: g.name if g.seat is not None else g.shaft for g in rig.drivetrain.gears}
+    shaft_of = {bearing.name: bearing.shaft for bearing in rig.drivetrain.bearings}
+    for coupling in rig.drivetrain.couplings:
+        if coupling.flexibility.axial > 0.0:
+            yield coupling.shafts
+    for bearing in (*(location.bearing for location in rig.axial_locations), *rig.axially_locating):
+        if bearing in shaft_of:
+            yield shaft_of[bearing], GROUND
+    springs = [spring.mesh for spring in rig.axial_mesh_springs]
+    for mesh in rig.drivetrain.meshes:
+        if mesh.name in springs or (tie_meshes and mesh.name in rig.axially_locating):
+            yield bodies[mesh.pinion], bodies[mesh.wheel]
+
+
+def _separate(rig: ElasticRig, freedoms: Freedoms, shaft: str) -> NDArray[np.bool_]:
+    """Freedoms of gears on this shaft that have all six of their own."""
+    mask = np.zeros(freedoms.size, bool)
+    for gear in rig.drivetrain.gears:
+        if gear.shaft == shaft and gear.seat is not None:
+            mask[freedoms.place(gear.name).freedoms] = True
+    return mask
+
+
+def _check_lateral(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[ElasticJoint]) -> None:
+    """Null space of bearing and joint rows over the lateral rigid motions of all shafts, bearings taken as locked."""
+    shafts = [shaft.name for shaft in rig.drivetrain.shafts]
+    motions = np.hstack([_lateral_motions(rig, freedoms, shaft) for shaft in shafts])
+    rows = [
+        joint.rows[np.diag(joint.stiffness) > 0.0] for joint in joints if joint.kind in ("coupling", "spline")
+    ]
+    for bearing in rig.drivetrain.bearings:
+        held = [0, 1]
+        if bearing.name in rig.moment_carrying:
+            held += [SEAT_DIRECTIONS.index("theta_y"), SEAT_DIRECTIONS.index("theta_z")]
+        rows.append(port_rows(bearing.name, freedoms)[held])
+    table = np.vstack([*rows, np.zeros((1, freedoms.size))]) @ motions
+    size = np.linalg.norm(table, axis=1, keepdims=True)
+    table = np.divide(table, size, where=size > FREE, out=np.zeros_like(table))
+    values, vectors = np.linalg.eigh(table.T @ table)
+    if values[0] > FREE:
+        return
+    share = (vectors[:, 0] ** 2).reshape(len(shafts), 4)
+    shaft = shafts[int(np.argmax(share.sum(axis=1)))]
+    count = sum(bearing.shaft == shaft for bearing in rig.drivetrain.bearings)
+    raise DrivetrainError(
+        f"shaft {shaft!r} with {count} bearing{'' if count == 1 else 's'}: a lateral rigid motion is not held; it "
+        "needs two bearings apart from each other, one that carries moments, or one and a coupling with lateral "
+        "stiffness to a held shaft; add a bearing or the lateral stiffness of the coupling"
+    )
+
+
+def _lateral_motions(rig: ElasticRig, freedoms: Freedoms, shaft: str) -> Array:
+    """(n, 4) shift along y and z, tilt about z and y of a rigid shaft with its gears, tilt 1 at half its length."""
+    names = np.array(freedoms.names)
+    own = np.array(freedoms.shaft_of) == _index(rig, shaft)
+    x = np.zeros(freedoms.size)
+    nodes = freedoms.nodes[shaft]
+    for i, here in enumerate(nodes.x):
+        x[nodes.first + 6 * i : nodes.first + 6 * i + 6] = here
+    for gear in rig.drivetrain.gears:
+        if gear.shaft == shaft and gear.seat is not None:
+            place = freedoms.place(gear.name)
+            x[place.freedoms] = place.x
+    half = 0.5 * float(np.ptp(nodes.x))
+    along = (x - 0.5 * float(nodes.x.min() + nodes.x.max())) / half
+    picked = {d: (own & np.char.endswith(names, f" {d}")).astype(float) for d in SEAT_DIRECTIONS}
+    return np.column_stack(
+        [
+            picked["u_y"],
+            picked["u_z"],
+            picked["u_y"] * along + picked["theta_z"] / half,
+            -picked["u_z"] * along + picked["theta_y"] / half,
+        ]
+    )
+
+
+def _index(rig: ElasticRig, shaft: str) -> int:
+    return [part.name for part in rig.drivetrain.shafts].index(shaft)
+
+
+class _Groups:
+    """Disjoint groups of names."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.group = {name: i for i, name in enumerate(names)}
+
+    def add(self, name: str) -> None:
+        self.group[name] = len(self.group)
+
+    def tie(self, a: str, b: str) -> None:
+        keep, drop = self.group[a], self.group[b]
+        self.group = {name: keep if i == drop else i for name, i in self.group.items()}
+
+    def without(self, name: str) -> list[tuple[str, ...]]:
+        """Groups that do not hold a name."""
+        found: dict[int, list[str]] = {}
+        for member, i in self.group.items():
+            if i != self.group[name]:
+                found.setdefault(i, []).append(member)
+        return [tuple(members) for members in found.values()]

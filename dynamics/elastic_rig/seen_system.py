@@ -1,0 +1,190 @@
+"""The reduced elastic rig as a linear system of the drivetrain: what is seen from outside becomes a freedom.
+
+The mesh ports, the drive and the ends of the couplings are freedoms of their own, as boundary freedoms are in a
+component mode synthesis (Craig and Bampton, AIAA J. 6, 1968); the rest of the motion is spanned by coordinates that
+none of them moves. With S the rows of what is seen, on the coordinates eta of the reduced rig, and N an orthonormal
+basis of what S does not see, the freedoms are z = (S eta, N' eta), hence eta = (S^+, N) z.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import Coordinates, LinearSystem
+from dynamics.drivetrain.shaft import DrivetrainError
+from dynamics.drivetrain.shaft_torque import ShaftTorques
+from dynamics.elastic_rig.joints import ElasticJoint
+from dynamics.elastic_rig.reduction import ReducedElasticRig
+from dynamics.elastic_rig.running_state import RunningState
+
+Array = NDArray[np.float64]
+
+INDEPENDENT = 1e-9
+"""Smallest singular value of the scaled rows of what is seen, over the largest."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeenRig:
+    """A reduced rig and what of it is seen.
+
+    ports : mesh -> (2, n_full) turns of pinion and wheel as their mesh sees them (`mesh_ports`), in the order of the
+        drivetrain
+    """
+
+    reduced: ReducedElasticRig
+    ports: Mapping[str, Array]
+
+    def system(self, state: RunningState) -> LinearSystem:
+        """Matrices at a running state, bearings in, meshes out; the freedoms are the same for all states.
+
+        Raises DrivetrainError as `RunningState.check`.
+        """
+        at = self.reduced.matrices(state)
+        back = self._back
+        places = self._places
+        return LinearSystem(
+            inertia=back.T @ at.mass @ back,
+            damping=back.T @ at.damping @ back,
+            stiffness=back.T @ at.stiffness @ back,
+            dofs=self._names,
+            mesh_ports=np.array(
+                [(places[f"{mesh} pinion"], places[f"{mesh} wheel"]) for mesh in self.ports], np.int64
+            ),
+            rigid=_exact(self._forth @ self.reduced.rigid),
+            drive_dof=places["drive"],
+            twist_load=self._twist_load,
+            drag_loads=self._drag_loads,
+            shaft_torques=self._shaft_torques,
+            own_coordinates=Coordinates(
+                freedoms=self._forth,
+                inertia=at.mass,
+                damping=_without_dust(at.damping),
+                stiffness=_without_dust(at.stiffness),
+                rigid=self.reduced.rigid,
+            ),
+        )
+
+    @cached_property
+    def _rows(self) -> dict[str, Array]:
+        """Row (n_full,) of everything that is seen, by name."""
+        model = self.reduced.model
+        rows = {}
+        for mesh, (pinion, wheel) in self.ports.items():
+            rows[f"{mesh} pinion"], rows[f"{mesh} wheel"] = pinion, wheel
+        rows["drive"] = model.row("motor", "turn")
+        for joint in self._couplings:
+            rows[f"{joint.name} twist"] = joint.row("turn")
+        return rows
+
+    @property
+    def _couplings(self) -> Iterator[ElasticJoint]:
+        return (joint for joint in self.reduced.model.joints if joint.kind == "coupling")
+
+    @cached_property
+    def _seen(self) -> Array:
+        """(m, n) rows on the coordinates, those of no mesh scaled to the drive."""
+        rows = self.reduced.rows(np.array(list(self._rows.values())))
+        scaled = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+        smallest = float(np.linalg.svd(scaled, compute_uv=False)[-1])
+        if smallest < INDEPENDENT:
+            raise DrivetrainError(
+                f"ports {', '.join(self._rows)}: rows depend on each other (smallest singular value {smallest:.1e}, "
+                f"limit {INDEPENDENT:.0e}): two of them are one place; part the motor from the gear by a shaft station"
+            )
+        return rows
+
+    @cached_property
+    def _hidden(self) -> Array:
+        """(n, n - m) orthonormal basis of what nothing seen moves with."""
+        return np.asarray(scipy.linalg.null_space(self._seen))
+
+    @cached_property
+    def _forth(self) -> Array:
+        """(n, n) freedoms per coordinate."""
+        return np.vstack([self._seen, self._hidden.T])
+
+    @cached_property
+    def _back(self) -> Array:
+        """(n, n) coordinates per freedom."""
+        return np.hstack([np.linalg.pinv(self._seen), self._hidden])
+
+    @cached_property
+    def _names(self) -> tuple[str, ...]:
+        hidden = (f"inner motion {i}" for i in range(self._hidden.shape[1]))
+        return (*self._rows, *hidden)
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {name: i for i, name in enumerate(self._rows)}
+
+    def _load(self, row: Array) -> Array:
+        """Load on the freedoms of one on a row of all freedoms (n_full,)."""
+        return np.asarray(self._back.T @ self.reduced.rows(row))
+
+    @cached_property
+    def _twist_load(self) -> Array:
+        drivetrain = self.reduced.model.rig.drivetrain
+        if drivetrain.bracing_coupling is None:
+            return np.zeros(len(self._forth))
+        return self._load(self.reduced.model.joint(drivetrain.bracing_coupling, "coupling").load("turn"))
+
+    @cached_property
+    def _drag_loads(self) -> dict[str, Array]:
+        drivetrain, model = self.reduced.model.rig.drivetrain, self.reduced.model
+        parts = [bearing.name for bearing in drivetrain.bearings]
+        parts += [place.name for place in drivetrain.drag_places]
+        parts += [gear.name for gear in drivetrain.gears]
+        return {name: -self._load(model.row(name, "turn")) for name in parts}
+
+    @cached_property
+    def _shaft_torques(self) -> tuple[ShaftTorques, ...]:
+        """Ripple of the motor and excitation of the couplings, which counts the turns of the line it is on."""
+        drivetrain, model = self.reduced.model.rig.drivetrain, self.reduced.model
+        found = []
+        if drivetrain.motor.ripple:
+            load = self._load(model.row("motor", "turn"))
+            found.append(
+                ShaftTorques(
+                    name="motor", load=load, dof=self._places["drive"], parts=drivetrain.motor.ripple
+                )
+            )
+        for coupling in drivetrain.couplings:
+            if coupling.excitation:
+                load = self._load(model.joint(coupling.name, "coupling").row("turn"))
+                found.append(
+                    ShaftTorques(
+                        name=coupling.name,
+                        load=load,
+                        dof=self._port_of_line(coupling.shafts[0]),
+                        parts=coupling.excitation,
+                    )
+                )
+        return tuple(found)
+
+    def _port_of_line(self, shaft: str) -> int:
+        """A freedom that turns with the line of a shaft: a gear on it."""
+        drivetrain = self.reduced.model.rig.drivetrain
+        lines = drivetrain.lines()
+        for mesh in drivetrain.meshes:
+            for gear, side in ((mesh.pinion, "pinion"), (mesh.wheel, "wheel")):
+                if lines[drivetrain.gear(gear).shaft] == lines[shaft]:
+                    return self._places[f"{mesh.name} {side}"]
+        raise DrivetrainError(
+            f"shaft {shaft!r} has no gear on its line: nothing counts its turns; add the gear"
+        )
+
+
+def _exact(shapes: Array) -> Array:
+    """Rigid shapes without rounding."""
+    return np.where(np.abs(shapes) < 1e-12 * np.abs(shapes).max(axis=0, initial=1e-300), 0.0, shapes)
+
+
+def _without_dust(matrix: Array) -> Array:
+    """A matrix without what rounding has left of entries that are zero: blocks stay apart."""
+    scale = np.sqrt(np.abs(np.diag(matrix)))
+    scale = np.maximum(scale, 1e-6 * scale.max(initial=1e-300))
+    return np.where(np.abs(matrix) < 1e-12 * np.outer(scale, scale), 0.0, matrix)

@@ -1,0 +1,46 @@
+"""Matrices of the power circuit over speed: bands in which bearings and gyroscopic moments stay as they are."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.loop_system import loop_system
+from rigdesign.rig.model import Rig
+
+WIDTH = 1.25
+"""Ratio of the speeds of neighbouring bands: over one, a film changes its stiffness by a tenth."""
+SLOWEST = 0.02
+"""Share of the highest speed below which the bearings stay as they are there."""
+LIGHTEST = 0.02
+"""Share of the held torque below which the bearings stay as they are under it."""
+
+
+def loop_over_speed(
+    rig: Rig, warm: IterationResult, speeds: tuple[float, float], torque_share: Callable[[float], float]
+) -> DrivetrainOverSpeed:
+    """The drivetrain of a warm rig between two speeds, matrices without the meshes.
+
+    speeds : lowest and highest stated speed [rad/s]
+    torque_share : mesh torques that load the bearings at a stated speed, per those of ``warm``
+    """
+    if rig.shaft_model == "torsional":
+        assert rig.system is not None
+        return rig.system
+    high = max(speeds)
+    low = max(min(speeds), SLOWEST * high)
+    count = max(1, math.ceil(math.log(high / low) / math.log(WIDTH)))
+    edges = [low * (high / low) ** (i / count) for i in range(count + 1)]
+    systems = []
+    for first, last in pairwise(edges):
+        point = replace(warm.point, speed=math.sqrt(first * last))
+        share = torque_share(point.speed)
+        share = math.copysign(max(abs(share), LIGHTEST), share)
+        torque = {name: share * value for name, value in warm.coupling_state.mesh_torque.items()}
+        state = replace(warm.coupling_state, mesh_torque=torque)
+        systems.append(loop_system(rig, point, state, solve_bearings(rig, point, state)))
+    limits = tuple(rig.pinion_speed(edge) for edge in edges[1:-1])
+    return SpeedBands(limits=limits, systems=tuple(systems))

@@ -1,0 +1,152 @@
+"""The power circuit of a case in six degrees of freedom: shafts that bend, bearings on their supports, axial locations.
+
+The reduced rig is made once: one basis for all speeds, stages and iterations, whatever the bearings do.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
+from dynamics.elastic_rig.layout import (
+    AxialLocation,
+    AxialMeshSpring,
+    ElasticRig,
+    HousingSupport,
+    ShaftPlacement,
+    Sign,
+    double_helical_stiffness,
+    isotropic_support,
+)
+from dynamics.elastic_rig.mesh_rows import mesh_ports
+from dynamics.elastic_rig.reduction import ReducedElasticRig, port_rows_of, reduce_rig
+from dynamics.elastic_rig.running_state import isotropic_bearing
+from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.gear.pair import GearPair
+from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from rigdesign.case.model import Case
+from rigdesign.rig.shaft_axes import ShaftAxis
+
+Array = NDArray[np.float64]
+Face = Literal["front", "back"]
+
+AXIAL_STIFFNESS = 1e8
+"""Of a thrust face or of the rings of a bearing that locates its shaft, where the case states none [N/m]."""
+REFERENCE_STIFFNESS = 1e8
+"""Of every bearing in the state whose modes span the reduced rig [N/m]; any other stiffness is exact at rest."""
+NOMINAL_TORQUE = 100.0
+"""Torque at which the axial spring of a double-helical mesh takes its stiffness [N m]."""
+
+
+@dataclass(frozen=True)
+class ElasticDrivetrain:
+    """The elastic rig of a case and what of it is seen from outside.
+
+    faces : flank of the pinion that carries in each mesh; cutoff : highest mode that is kept [Hz]
+    """
+
+    rig: ElasticRig
+    faces: Mapping[str, Face]
+    cutoff: float
+
+    @cached_property
+    def model(self) -> ElasticModel:
+        """All freedoms, without bearings and meshes."""
+        return assemble_rig(self.rig)
+
+    @cached_property
+    def reduced(self) -> ReducedElasticRig:
+        """Modes up to the cutoff with static shapes of all ports."""
+        reference = {
+            bearing.name: isotropic_bearing(REFERENCE_STIFFNESS) for bearing in self.rig.drivetrain.bearings
+        }
+        rows = np.vstack([port_rows_of(self.model), *self.port_rows.values()])
+        return reduce_rig(self.model, reference, self.cutoff, rows)
+
+    @cached_property
+    def seen(self) -> SeenRig:
+        """The reduced rig as the meshes, the drive and the couplings see it."""
+        return SeenRig(reduced=self.reduced, ports=self.port_rows)
+
+    @cached_property
+    def port_rows(self) -> dict[str, Array]:
+        """(2, n) turns of pinion and wheel as each mesh sees them on the flanks that carry, by mesh."""
+        return {
+            mesh.name: mesh_ports(self.model, mesh.name, self.faces[mesh.name])
+            for mesh in self.rig.drivetrain.meshes
+        }
+
+
+def elastic_rig(
+    case: Case, drivetrain: Drivetrain, axes: Mapping[str, ShaftAxis], pairs: Mapping[str, GearPair]
+) -> ElasticRig:
+    """Shafts at their axes, bearings on their supports, what locates them axially.
+
+    Raises DrivetrainError for parts that contradict each other.
+    """
+    return ElasticRig(
+        drivetrain=drivetrain,
+        placements=tuple(_placement(shaft.name, axes[shaft.name]) for shaft in drivetrain.shafts),
+        supports=tuple(_supports(case)),
+        axial_locations=tuple(_locations(case)),
+        axial_mesh_springs=tuple(_double_helical(case, pairs)),
+        axially_locating=tuple(_single_helical(case, pairs)),
+    )
+
+
+def _placement(name: str, axis: ShaftAxis) -> ShaftPlacement:
+    return ShaftPlacement(
+        shaft=name,
+        y=axis.lateral,
+        z=axis.vertical,
+        sense=_sign(axis.sense),
+        start=axis.start,
+        direction=_sign(axis.direction),
+    )
+
+
+def _sign(value: float) -> Sign:
+    return 1 if value > 0.0 else -1
+
+
+def _supports(case: Case) -> Iterator[HousingSupport]:
+    for box_name, box in case.gearboxes.items():
+        for name, bearing in box.bearings.items():
+            if bearing.support_stiffness is not None:
+                yield isotropic_support(
+                    f"{box_name}.{name}",
+                    bearing.support_stiffness,
+                    bearing.support_mass,
+                    bearing.support_damping,
+                )
+
+
+def _locations(case: Case) -> Iterator[AxialLocation]:
+    for box_name, box in case.gearboxes.items():
+        for name, bearing in box.bearings.items():
+            if bearing.locating:
+                yield AxialLocation(
+                    bearing=f"{box_name}.{name}", stiffness=bearing.axial_stiffness or AXIAL_STIFFNESS
+                )
+
+
+def _double_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[AxialMeshSpring]:
+    for full, pair in pairs.items():
+        box, name = full.split(".")
+        if case.gearboxes[box].meshes[name].double_helical and pair.helix_angle:
+            stiffness = pair.face_width * mesh_stiffness(pair, NOMINAL_TORQUE, RatingOptions())
+            yield AxialMeshSpring(
+                mesh=full, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
+            )
+
+
+def _single_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[str]:
+    for full, pair in pairs.items():
+        box, name = full.split(".")
+        if pair.helix_angle and not case.gearboxes[box].meshes[name].double_helical:
+            yield full
