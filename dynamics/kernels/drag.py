@@ -16,11 +16,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
-from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
-from dynamics.kernels.mesh_tables import POSITIVE, R1, R2
-from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
+from dynamics.kernels.contact_table import V_R1, V_R2
+from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, HELD, N_BANK, STATE_AT, WIDTH, DragModes
+from dynamics.kernels.mesh_tables import POSITIVE
+from dynamics.kernels.mesh_workspace import N_SPACE, OLD, OLDER, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources f66db97d
+# compiled from sources bf3aec6b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -117,7 +118,7 @@ def drags_on_ports(drags: DragModes, torque: Array, total: Array, space: Array) 
 
 
 @inlined
-def _move_ports(drags: DragModes, change: Array, total: Array, space: Array) -> None:
+def _move_ports(drags: DragModes, change: Array, total: Array, values: Array, space: Array) -> None:
     """Add to ports and meshes what changes of the drag torques at the end of the step give."""
     _outputs(drags.ports_new, change, total)
     for m in range(total.shape[0] // 4):
@@ -127,8 +128,8 @@ def _move_ports(drags: DragModes, change: Array, total: Array, space: Array) -> 
         space[at + TURN] += turn_1
         space[at + PORT + SPEED] += speed_2
         space[at + PORT + TURN] += turn_2
-        space[at + REACH] += space[at + R1] * turn_1 - space[at + R2] * turn_2
-        space[at + RATE] += space[at + R1] * speed_1 - space[at + R2] * speed_2
+        space[at + REACH] += values[m, V_R1] * turn_1 - values[m, V_R2] * turn_2
+        space[at + RATE] += values[m, V_R1] * speed_1 - values[m, V_R2] * speed_2
 
 
 @inlined
@@ -190,16 +191,17 @@ def _speeds(
     ``by_slow`` holds from ``first`` on what the slow inputs give to the loads, which point against the motion.
     """
     n_drags = torque.shape[0]
-    n_ports = (drags.inputs.shape[0] - n_drags) // 2
+    n_ports = (drags.inputs.shape[0] - n_drags) // HELD
     for d in range(n_drags):
         speed[d] = by_slow[first + d]
     _add_modes(drags, blocks, bank, speed)
     for port in range(n_ports):
         at = (port // 2 * N_SPACE + port % 2 * PORT) & POSITIVE
-        _add_input(drags.inputs, port, space[at + OLD], speed)
-        _add_input(drags.inputs, n_ports + port, space[at + TAU], speed)
+        _add_input(drags.inputs, port, space[at + TAU], speed)
+        _add_input(drags.inputs, n_ports + port, space[at + OLD], speed)
+        _add_input(drags.inputs, 2 * n_ports + port, space[at + OLDER], speed)
     for d in range(n_drags):
-        _add_input(drags.inputs, 2 * n_ports + d, torque[d], speed)
+        _add_input(drags.inputs, HELD * n_ports + d, torque[d], speed)
     for d in range(n_drags):
         speed[d] = -speed[d]
 
@@ -234,8 +236,8 @@ def _iterate_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def brake(
-    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, space: Array, by_slow: Array, first: int,
-    torque: Array, work: DragWork,
+    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, values: Array, space: Array, by_slow: Array,
+    first: int, torque: Array, work: DragWork,
 ) -> bool:  # fmt: skip
     """Set the drag torques at the end of a step whose mesh torques are known; return whether they converged.
 
@@ -249,5 +251,5 @@ def brake(
     converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
     for d in range(torque.shape[0]):
         change[d] += torque[d]
-    _move_ports(drags, change, work.outputs, space)
+    _move_ports(drags, change, work.outputs, values, space)
     return bool(converged)

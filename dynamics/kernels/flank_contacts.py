@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources f66db97d
+# compiled from sources bf3aec6b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

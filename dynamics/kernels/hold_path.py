@@ -63,7 +63,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources f66db97d
+# compiled from sources bf3aec6b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

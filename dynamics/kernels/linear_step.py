@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
-from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
+from dynamics.kernels.mesh_workspace import OLD, OLDER, OLDEST, SPEED, TAU, TURN
 
-# compiled from sources f66db97d
+# compiled from sources bf3aec6b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -31,8 +31,12 @@ speed of port a, turn of port a, speed and turn of port b."""
 STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
 # columns of DiscreteModes.links
 TO_A, TO_B, FROM_C, FROM_D, LINK_AT = range(5)
-# first entry of the outputs per torque at the start and at the end of the step, in a link of DiscreteModes.through
-AT_START, AT_END = 0, 8
+# first entry of the outputs per torque at the end of the step, at its start, one and two steps before, in a link of
+# DiscreteModes.through
+AT_END, AT_START, AT_OLDER, AT_OLDEST = 0, 8, 16, 24
+N_THROUGH = 32
+HELD = 3
+"""Torques of a port that act on what is seen at the end of a step: at its end, at its start, one step before."""
 
 
 class DragModes(NamedTuple):
@@ -48,8 +52,8 @@ class DragModes(NamedTuple):
     rows: Array
     """(n_drags, n_states) speed of the load of each drag over the states at the end of the step."""
     inputs: Array
-    """(2 n_ports + n_drags, n_drags) speed of the load of each drag (second) per mesh torque at the start of the step,
-    at its end, and per drag torque that stays over the step."""
+    """(HELD n_ports + n_drags, n_drags) speed of the load of each drag (second) per mesh torque at the end of the step,
+    at its start, one step before, and per drag torque that stays over the step."""
     each_other: Array
     """(n_drags, n_drags) speed of the load of a drag (second) per drag torque (first) at the end of the step."""
     ports_held: Array
@@ -61,8 +65,10 @@ class DragModes(NamedTuple):
 class DiscreteModes(NamedTuple):
     """Modes at one step length and number of steps per sample; see ``dynamics.response.propagator.discretise``.
 
-    The modal state ``w`` obeys ``w' = decay w + inputs tau`` in each step, ``tau`` being the torques of the ports
-    at its start; what the slow inputs give is added once per sample, and to the outputs in each step. Per branch the
+    Within a step a torque of a port is the cubic through its values at the end of the step, at its start, one and two
+    steps before. The modal state ``w`` leaves out what follows these values at once, so that ``w' = decay w + inputs
+    tau`` in each step, ``tau`` being the torques of the ports at its start; what the slow inputs give is added once per
+    sample, and to the outputs in each step. Per branch the
     state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
     pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for none. The outputs of port ``p`` are
     its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks and links name a port by its place in
@@ -80,16 +86,15 @@ class DiscreteModes(NamedTuple):
     """(n_links, 5) two ports, two ports of the same branch that act on them, first entry in ``through``; ports that
     act on themselves first, in the order of ``blocks``."""
     through: Array
-    """Flat, per link: outputs (4) per torque (2) at the start of the step, then at its end."""
+    """Flat, per link: outputs (4) per torque (2) at the end of the step, at its start, one and two steps before."""
     port_new: Array
     """(n_ports, n_outputs) outputs of the ports per mesh torque at the end of the step."""
     rows: Array
     """(n_rows, n_states) speed of every slow input and drag, then joint rates whose squares are losses, over the
     states at the end of the step."""
-    through_old: Array
-    """(n_ports + n_drags, n_rows) these per mesh and drag torque at the start of the step."""
-    through_new: Array
-    """The same at its end."""
+    through_ends: Array
+    """(HELD n_ports + 2 n_drags, n_rows) these per mesh torque at the end of the step, at its start, one step before,
+    and per drag torque at its end and its start."""
     slow_outputs: Array
     """(2 n_slow, substeps * (n_outputs + n_rows)) what each slow input gives in every step of a sample, per value
     at its start, then per change in a step."""
@@ -153,22 +158,32 @@ def take_state(blocks: Integers, bank: Array, state: Array) -> None:
 
 
 @inlined
+def _given(through: Array, t: int, c: float, d: float) -> tuple[float, float, float, float]:
+    """Return speed and turn of two ports that two torques give by a link."""
+    return (
+        through[t] * c + through[t + 1] * d,
+        through[t + 2] * c + through[t + 3] * d,
+        through[t + 4] * c + through[t + 5] * d,
+        through[t + 6] * c + through[t + 7] * d,
+    )
+
+
+@inlined
 def add_torques(links: Integers, first: int, through: Array, part: int, space: Array, torque: int) -> None:
     """Add to speeds and turns what the torques in column ``torque`` give by the links from ``first`` on.
 
-    They act at the start or the end of the step (``part``).
+    ``part`` says when in the step they act.
     """
     for link in range(first, links.shape[0]):
         a, b = links[link, TO_A] & POSITIVE, links[link, TO_B] & POSITIVE
         c = space[(links[link, FROM_C] & POSITIVE) + torque]
         d = space[(links[link, FROM_D] & POSITIVE) + torque]
         t = (links[link, LINK_AT] & POSITIVE) + part
-        speed_a = space[a + SPEED] + through[t] * c + through[t + 1] * d
-        turn_a = space[a + TURN] + through[t + 2] * c + through[t + 3] * d
-        speed_b = space[b + SPEED] + through[t + 4] * c + through[t + 5] * d
-        turn_b = space[b + TURN] + through[t + 6] * c + through[t + 7] * d
-        space[b + SPEED], space[b + TURN] = speed_b, turn_b
-        space[a + SPEED], space[a + TURN] = speed_a, turn_a
+        speed_a, turn_a, speed_b, turn_b = _given(through, t, c, d)
+        space[b + SPEED] += speed_b
+        space[b + TURN] += turn_b
+        space[a + SPEED] += speed_a
+        space[a + TURN] += turn_a
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -209,7 +224,7 @@ def step_modes(
         _look(further, block, bank, space)
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
-        t_a, t_b, t_a_new, t_b_new = space[a + OLD], space[b + OLD], space[a + TAU], space[b + TAU]
+        t_a, t_b = space[a + OLD], space[b + OLD]
         first = blocks[block, BANK_AT] & POSITIVE
         speed_a, turn_a, speed_b, turn_b = 0.0, 0.0, 0.0, 0.0
         for group in range(blocks[block, GROUPS]):
@@ -226,36 +241,21 @@ def step_modes(
                 bank[g + i] = decay_r * real - decay_i * imag + push_r
                 bank[g + WIDTH + i] = decay_i * real + decay_r * imag + push_i
         t = blocks[block, THROUGH_AT] & POSITIVE
-        speed_a += (
-            through[t] * t_a + through[t + 1] * t_b + through[t + 8] * t_a_new + through[t + 9] * t_b_new
-        )
-        turn_a += (
-            through[t + 2] * t_a
-            + through[t + 3] * t_b
-            + through[t + 10] * t_a_new
-            + through[t + 11] * t_b_new
-        )
-        speed_b += (
-            through[t + 4] * t_a
-            + through[t + 5] * t_b
-            + through[t + 12] * t_a_new
-            + through[t + 13] * t_b_new
-        )
-        turn_b += (
-            through[t + 6] * t_a
-            + through[t + 7] * t_b
-            + through[t + 14] * t_a_new
-            + through[t + 15] * t_b_new
-        )
-        space[b + SPEED] += speed_b
-        space[b + TURN] += turn_b
-        space[a + SPEED] += speed_a
-        space[a + TURN] += turn_a
+        now = _given(through, t + AT_END, space[a + TAU], space[b + TAU])
+        start = _given(through, t + AT_START, t_a, t_b)
+        older = _given(through, t + AT_OLDER, space[a + OLDER], space[b + OLDER])
+        oldest = _given(through, t + AT_OLDEST, space[a + OLDEST], space[b + OLDEST])
+        space[b + SPEED] += speed_b + (now[2] + start[2]) + (older[2] + oldest[2])
+        space[b + TURN] += turn_b + (now[3] + start[3]) + (older[3] + oldest[3])
+        space[a + SPEED] += speed_a + (now[0] + start[0]) + (older[0] + oldest[0])
+        space[a + TURN] += turn_a + (now[1] + start[1]) + (older[1] + oldest[1])
     for block in range(further.shape[0]):
         _push(further, block, bank, space)
     if links.shape[0] > blocks.shape[0]:
-        add_torques(links, blocks.shape[0], through, AT_START, space, OLD)
         add_torques(links, blocks.shape[0], through, AT_END, space, TAU)
+        add_torques(links, blocks.shape[0], through, AT_START, space, OLD)
+        add_torques(links, blocks.shape[0], through, AT_OLDER, space, OLDER)
+        add_torques(links, blocks.shape[0], through, AT_OLDEST, space, OLDEST)
 
 
 @njit(cache=True, fastmath=LOOSE)
@@ -264,13 +264,13 @@ def end_rows(
 ) -> None:
     """Fill the outputs that are no port's at the end of a step, ``state`` standing there.
 
-    ``torques`` (2, n_ports + n_drags) at start and end of the step; ``slow`` holds from ``first`` on what the slow
-    inputs give.
+    ``torques`` in the order of ``DiscreteModes.through_ends``; ``slow`` holds from ``first`` on what the slow inputs
+    give.
     """
     for r in range(values.shape[0]):
         total = slow[first + r]
         for i in range(state.shape[0]):
             total += modes.rows[r, i] * state[i]
-        for p in range(torques.shape[1]):
-            total += modes.through_old[p, r] * torques[0, p] + modes.through_new[p, r] * torques[1, p]
+        for p in range(torques.shape[0]):
+            total += modes.through_ends[p, r] * torques[p]
         values[r] = total

@@ -26,7 +26,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources f66db97d
+# compiled from sources bf3aec6b
 Array = NDArray[np.float64]
 
 
@@ -72,6 +72,8 @@ class Sums(NamedTuple):
     """Force of the law at full resolution, with damping [N]."""
     curvature: float
     """Half the second derivative of the elastic force over the approach [N/m^2]."""
+    force_xv: float
+    """Mixed second derivative of the force over approach and rate [N s/m^2]."""
     moment: float
     """Tilting moment, and its derivatives over approach and tilt: 0 on tables without tilt [N m]."""
     moment_x: float
@@ -93,7 +95,8 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
     force, elastic, a_1, a_2 = 0.0, 0.0, 0.0, 0.0
     force_x, stiffness, a_1_x, a_2_x = 0.0, 0.0, 0.0, 0.0
     force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
-    friction_1, damped, energy, recorded, curvature = 0.0, 0.0, 0.0, 0.0, 0.0
+    friction_1, damped, energy, recorded = 0.0, 0.0, 0.0, 0.0
+    curvature, force_xv = 0.0, 0.0
     tilting, tilting_x, tilting_tilt = 0.0, 0.0, 0.0
     for p in range(n):
         r = (first + N_ROW * p) & POSITIVE
@@ -147,6 +150,7 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         full = normal + rows[r + 6] + d * rows[r + 7]
         recorded += full if full > 0.0 else 0.0
         curvature += f_2
+        force_xv += weight_x
         energy += rows[r] + d * (rows[r + 1] + d * (0.5 * f_1 + d * f_2 / 3.0))
         t, u = r + R_MOMENT, r + R_TILT
         tilting += rows[t] + d * (rows[t + 1] + d * (0.5 * rows[t + 2] + d * rows[t + 3] / 3.0))
@@ -154,7 +158,7 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         tilting_tilt += rows[u] + d * (rows[u + 1] + d * (0.5 * rows[u + 2] + d * rows[u + 3] / 3.0))
     return Sums(
         force, elastic, a_1, a_2, force_x, stiffness, a_1_x, a_2_x, force_v, a_1_v, a_2_v, friction_1, damped, energy,
-        recorded, curvature, tilting, tilting_x, tilting_tilt,
+        recorded, curvature, force_xv, tilting, tilting_x, tilting_tilt,
     )  # fmt: skip
 
 

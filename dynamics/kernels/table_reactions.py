@@ -22,7 +22,7 @@ from dynamics.kernels.hold_path import FlankState, Held, hold_path
 from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources f66db97d
+# compiled from sources bf3aec6b
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40

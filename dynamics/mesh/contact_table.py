@@ -149,7 +149,8 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
     for mesh, law in enumerate(laws):
         check_mesh_law(law)
         depths = _depths(law, grid)
-        levels: Array = grid.per_pitch / (SHARPEST * law.base_pitch) / BLUNTER ** np.arange(LEVELS)[::-1]
+        blunter = BLUNTER ** np.arange(LEVELS, dtype=float)[::-1]
+        levels: Array = np.asarray(grid.per_pitch / (SHARPEST * law.base_pitch) / blunter, float)
         path_step, cell = 0.0, law.base_pitch / grid.per_pitch
         if march is not None:
             path_step = law.base_radius_1 * march.speeds[mesh] * march.step
@@ -158,7 +159,7 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
         flanks = [
             flank_table(
                 law,
-                NodeLaw(law.damping_depth, _tabulated_body(law), _reversal(law), np.asarray(levels)),
+                NodeLaw(law.damping_depth, _tabulated_body(law), _reversal(law), levels),
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),

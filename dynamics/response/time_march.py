@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
-from dynamics.mesh.force import evaluate_mesh, pack_meshes
+from dynamics.kernels.contact_table import V_BODY, ContactTables
+from dynamics.mesh.contact_table import DEFAULT_GRID, MarchStep, contact_tables
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.path_filter import KEPT
+from dynamics.mesh.table_force import TableReaction, evaluate_table
 from dynamics.response.march_inputs import (
     DragTables,
     DriveLoads,
@@ -31,6 +34,10 @@ Array = NDArray[np.float64]
 
 CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
+SEGMENT = 1000
+"""Samples after which the contact tables are those of the speed that has come."""
+RUNG = 0.06
+"""Change of a speed after which its contact tables are made anew [-]."""
 NO_LOADS = DriveLoads()
 
 
@@ -129,53 +136,59 @@ class TimeMarch:
         self.drags = drags
         self.model = model or march_model(system, laws, drags, settings.cutoff)
         self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
-        self.packed = pack_meshes(laws, derivative_torques=settings.derivative_torques)
         self.unconverged = 0
         self._settings = settings
+        self._tabulated_speeds: Array | None = None
+        filtered = [KEPT * law.base_pitch / law.base_radius_1 for law in self.laws]
+        self._slow_enough = 2.0 * np.array(filtered) / (self.step * DEFAULT_GRID.per_pitch)
         self._marched = 0
         self._names = system.dofs
         self._record_all = settings.record_all
-        self._laws_packed = [pack_meshes([law]) for law in self.laws]
         self._places = drag_places(system, drags)
         braked = drag_loads(system, drags)
         columns = np.column_stack((slow_loads(system), braked))
         n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.shaft_torques), braked.shape[1]
         self._n_slow = n_slow
         n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
-        ports = np.zeros((n_meshes, 6))
-        damping = np.zeros((n_meshes, 2))
-        powers = np.zeros(n_power)
-        for mesh, (law, (pinion, wheel)) in enumerate(zip(self.laws, system.mesh_ports)):
-            x = law.base_radius_1 * start.angles[pinion] - law.base_radius_2 * start.angles[wheel]
-            rate = law.base_radius_1 * start.speeds[pinion] - law.base_radius_2 * start.speeds[wheel]
-            reaction = evaluate_mesh(
-                self._laws_packed[mesh], start.angles[pinion], x + law.offset, start.speeds[pinion], start.speeds[wheel]
-            )  # fmt: skip
-            torques = float(reaction.torque_1[0]), float(reaction.torque_2[0])
-            ports[mesh] = (*torques, *torques, x, start.angles[pinion])
-            damping[mesh, 1] = rate
-            powers[2 * mesh : 2 * mesh + 2] = (reaction.friction_power[0], reaction.damping_power[0])[
-                :n_power
-            ]
+        pinions, wheels = system.mesh_ports.T
+        self._tables = self._tables_at(start.speeds[pinions])
+        ports = np.zeros((n_meshes, kernels.N_PORTS))
+        powers = np.zeros((3, n_power))
+        for mesh, law in enumerate(self.laws):
+            angles = start.angles[pinions[mesh]], start.angles[wheels[mesh]]
+            turning = start.speeds[pinions[mesh]], start.speeds[wheels[mesh]]
+            for back in range(3):
+                # the steps before are those of a steady rotation
+                now = [angle - back * self.step * speed for angle, speed in zip(angles, turning)]
+                x = law.base_radius_1 * now[0] - law.base_radius_2 * now[1]
+                reaction = self._reaction(mesh, now[0], x + law.offset, *turning)
+                ports[mesh, 2 * back : 2 * back + 2] = reaction.torque_1[0], reaction.torque_2[0]
+                if back == 0:
+                    ports[mesh, 6:8] = x, now[0]
+                    ports[mesh, 8:] = self._outer_given(mesh, x + law.offset, reaction)
+                if accounts:
+                    powers[back, 2 * mesh : 2 * mesh + 2] = (
+                        reaction.friction_power[0],
+                        reaction.damping_power[0],
+                    )
         slow = np.zeros(n_slow)
         slow[:2] = loads.drive_torque, start.twist
         braking = np.zeros(n_drags)
         braking[self._places] = list(loads.drag_torques.values())
         speeds = columns.T @ start.speeds
         if accounts:
-            powers[2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
-            powers[-1] = start.speeds @ system.damping @ start.speeds
+            powers[:, 2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
+            powers[:, -1] = start.speeds @ system.damping @ start.speeds
         self._carried = kernels.Carried(
             state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
             slow=slow,
             drags=braking,
-            offset=self.packed.offsets.copy(),
+            offset=np.array([law.offset for law in self.laws], float),
             controller=np.zeros(5),
             speeds=speeds,
             powers=powers,
             work=np.zeros(n_power),
-            damping=damping,
         )
         with np.errstate(invalid="ignore"):  # an infinite torque shows in the march, which says where
             self._carried.state[:] = modal_state(
@@ -230,24 +243,27 @@ class TimeMarch:
             if offsets is None
             else np.ascontiguousarray(offsets)
         )
-        history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
-        samples = np.empty((n_samples, 2 * n_slow + n_drags + 1))
-        commands = kernels.Commands(
-            given=np.ascontiguousarray(given, float),
-            offsets=held,
-            control=control,
-            drags=kernels.DragLaws(
-                torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
-            ),
+        drag_laws = kernels.DragLaws(
+            torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
         )
-        self.unconverged += kernels.march(
-            self.packed,
-            self.propagator.modes,
-            commands,
-            self._carried,
-            kernels.Steps(self.step, self.substeps),
-            kernels.MarchRecord(history, samples),
-        )
+        given = np.ascontiguousarray(given, float)
+        histories, all_samples = [], []
+        for first in range(0, n_samples, SEGMENT):
+            part = slice(first, min(first + SEGMENT, n_samples))
+            count = part.stop - part.start
+            histories.append(np.empty((n_meshes, 6 if self._record_all else 1, count * self.substeps)))
+            all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
+            self._tables = self._tables_at(self._pinion_speeds())
+            self.unconverged += kernels.march(
+                self._tables,
+                self.propagator.modes,
+                kernels.Commands(given=given[part], offsets=held[part], control=control, drags=drag_laws),
+                self._carried,
+                kernels.Steps(self.step, self.substeps),
+                kernels.MarchRecord(histories[-1], all_samples[-1]),
+            )
+        history = histories[0] if len(histories) == 1 else np.concatenate(histories, axis=2)
+        samples = all_samples[0] if len(histories) == 1 else np.concatenate(all_samples)
         if not np.all(np.isfinite(self._carried.ports)):
             raise MarchDiverged(self._diverged(history[:, 0], samples[:, : 2 * n_slow]))
         self._marched += n_samples
@@ -283,9 +299,42 @@ class TimeMarch:
 
     def mean_torque_of_first_mesh(self) -> float:
         """Torque of the first mesh at its pinion at this instant, friction left out [N m]."""
-        law, ports = self.laws[0], self._carried.ports[0]
-        force = evaluate_mesh(self._laws_packed[0], ports[5], ports[4] + self._carried.offset[0], 0.0, 0.0)
-        return float(law.base_radius_1 * (force.force_front[0] - force.force_back[0]))
+        force = self._reaction_now(0)
+        return float(self.laws[0].base_radius_1 * (force.force_front[0] - force.force_back[0]))
+
+    def _reaction(self, mesh: int, angle: float, reach: float, *speeds: float) -> TableReaction:
+        """What a mesh answers at the angle of its pinion and an approach, imposed part included."""
+        return evaluate_table(self._tables, angle, reach, *speeds, mesh=mesh)
+
+    def _reaction_now(self, mesh: int) -> TableReaction:
+        """What a mesh answers at rest at this instant."""
+        approach, angle = self._carried.ports[mesh, 6:8]
+        return self._reaction(mesh, angle, approach + self._carried.offset[mesh])
+
+    def _outer_given(self, mesh: int, reach: float, reaction: TableReaction) -> float:
+        """Part of an approach that bodies outside the table give [m]."""
+        outside = self._tables.values[mesh, V_BODY] > 0.0
+        return float(reach - reaction.tooth_approach[0]) if outside else 0.0
+
+    def _pinion_speeds(self) -> Array:
+        """Speeds of the pinions (n_meshes,) without their vibration [rad/s]."""
+        model = self.model
+        scaled = scaled_state(model, self.propagator, self._carried.state, self._inputs())
+        rigid = model.n_lines
+        return np.asarray(model.shapes[model.mesh_ports[:, 0], :rigid] @ scaled[:rigid])
+
+    def _tables_at(self, speeds: Array) -> ContactTables:
+        """Contact tables for these speeds of the pinions, those at hand as long as they are good."""
+        known = self._tabulated_speeds
+        if known is None or np.any(np.abs(speeds - known) > RUNG * np.abs(known) + self._slow_enough):
+            rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
+            known = np.where(np.abs(speeds) < self._slow_enough, 0.0, np.sign(speeds) * (1.0 + RUNG) ** rungs)
+            self._tabulated_speeds = known
+        return contact_tables(
+            self.laws,
+            march=MarchStep(step=self.step, speeds=tuple(known.tolist())) if known.any() else None,
+            derivative_torques=self._settings.derivative_torques,
+        )
 
     def accounts(self) -> Accounts:
         """Return work and losses since the start; zeros if the march keeps no accounts."""
@@ -306,9 +355,7 @@ class TimeMarch:
         """Kinetic energy plus elastic energy of joints and tooth contacts at this instant [J]."""
         scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
         stored = 0.5 * float(scaled @ scaled)
-        for packed, ports, offset in zip(self._laws_packed, self._carried.ports, self._carried.offset):
-            stored += float(evaluate_mesh(packed, ports[5], ports[4] + offset, 0.0, 0.0).energy[0])
-        return stored
+        return stored + sum(float(self._reaction_now(mesh).energy[0]) for mesh in range(len(self.laws)))
 
     def state(self) -> DriveState:
         """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""
@@ -320,7 +367,7 @@ class TimeMarch:
         placed: set[int] = set()
         for mesh in range(len(self.laws)):
             law = self.laws[mesh]
-            approach, pinion = self._carried.ports[mesh, 4:]
+            approach, pinion = self._carried.ports[mesh, 6:8]
             wheel = (law.base_radius_1 * pinion - approach) / law.base_radius_2
             for port, angle in zip(model.mesh_ports[mesh], (pinion, wheel)):
                 line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
@@ -340,7 +387,7 @@ class TimeMarch:
         march = TimeMarch(system, self.laws, self.state(), self._settings, loads, model)
         march._marched, march.unconverged = self._marched, self.unconverged
         before, after = self._carried, march._carried
-        after.ports[:, :4], after.slow[:], after.offset[:] = before.ports[:, :4], before.slow, before.offset
+        after.ports[:], after.slow[:], after.offset[:] = before.ports, before.slow, before.offset
         after.controller[:], after.work[:] = before.controller, before.work
         return march
 
@@ -350,11 +397,11 @@ class TimeMarch:
 
     def pinion_angle(self) -> float:
         """Angle of the pinion of the first mesh at this instant [rad]."""
-        return float(self._carried.ports[0, 5])
+        return float(self._carried.ports[0, 7])
 
     def kick(self, speeds: Array) -> None:
         """Add ``speeds`` (n,) [rad/s] to the motion at once."""
-        nothing = np.zeros(self.model.inputs.shape[1])
+        nothing = np.zeros(self.propagator.hold.shape[1])
         self._carried.state[:] += modal_state(
             self.model, self.propagator, np.zeros_like(speeds), speeds, nothing
         )
@@ -370,4 +417,5 @@ class TimeMarch:
 
     def _inputs(self) -> Array:
         carried = self._carried
-        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
+        now, older, oldest = (carried.ports[:, first : first + 2].ravel() for first in (0, 2, 4))
+        return np.concatenate((now, carried.slow, carried.drags, older, oldest))
