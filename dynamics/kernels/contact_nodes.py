@@ -10,6 +10,8 @@ Array = NDArray[np.float64]
 
 SUMS = 7
 """Sums at a node before those of friction."""
+FRICTION = 4
+"""Sums of friction for each sharpness of its reversal."""
 MOST_SETS = 64
 """Sets of closed contacts that are tried behind a shared body; four are many."""
 
@@ -36,6 +38,8 @@ class NodeLaw(NamedTuple):
     """[m]"""
     body: float
     """Compliance that all slices share [m/N]."""
+    rolling_radii: tuple[float, float]
+    """T1C and T2C [m]."""
     reversal: float
     """Path position where sliding reverses [m]."""
     sharpness: Array
@@ -65,22 +69,23 @@ def _behind_body(
 
 @njit(cache=True)
 def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array) -> None:
-    """Fill ``sums`` (n_places, n_depths, SUMS + 2 n_sharpness) at ``approach`` (n_places, n_depths), rising [m].
+    """Fill ``sums`` (n_places, n_depths, SUMS + FRICTION n_sharpness) at ``approach`` (n_places, n_depths), rising [m].
 
     Elastic energy, force, damper weight; tilting moment and its derivative over the approach; damper weight times
-    slope of the gap, times its square; then for each sharpness the force times direction of sliding, and that times
-    path position.
+    slope of the gap, times its square; then for each sharpness the force times direction of sliding, that times path
+    position, and what both lose per advance of the reversal.
     """
     stiffness, gap, slope, path = springs.stiffness, springs.gap, springs.slope, springs.path
     face, sharpness = springs.face, law.sharpness
     n_slices, n_depths = stiffness.shape[1], approach.shape[1]
-    direction = np.empty((n_slices, sharpness.shape[0]))
+    direction, turning = np.empty((n_slices, sharpness.shape[0])), np.empty((n_slices, sharpness.shape[0]))
     sums[:] = 0.0
     for a in range(stiffness.shape[0]):
         for i in range(n_slices):
             for q in range(sharpness.shape[0]):
                 ratio = min(1.0, max(-1.0, sharpness[q] * (path[a, i] - law.reversal)))
                 direction[i, q] = ratio * (1.5 - 0.5 * ratio * ratio)
+                turning[i, q] = 1.5 * sharpness[q] * (1.0 - ratio * ratio)
         y = approach[a, 0]
         for j in range(n_depths):
             share = 1.0
@@ -103,6 +108,9 @@ def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array
                 at[5] += weight * slope[a, i]
                 at[6] += weight * slope[a, i] * slope[a, i]
                 for q in range(sharpness.shape[0]):
-                    at[SUMS + 2 * q] += force * direction[i, q]
-                    at[SUMS + 1 + 2 * q] += force * direction[i, q] * path[a, i]
+                    first = SUMS + FRICTION * q
+                    at[first] += force * direction[i, q]
+                    at[first + 1] += force * direction[i, q] * path[a, i]
+                    at[first + 2] -= force * turning[i, q]
+                    at[first + 3] -= force * turning[i, q] * path[a, i]
             at[0] += 0.5 * law.body * at[1] * at[1]

@@ -30,9 +30,9 @@ LINES = 4
 (
     V_R1, V_R2, V_PER_PITCH, V_ORIGIN, V_BACK_ORIGIN, V_BACKLASH, V_DAMP_TIME, V_BODY, V_PER_FINEST, V_LOWEST,
     V_LEAST_GAP, V_PER_KNOT, V_FRICTION, V_ROLL_1, V_ROLL_2, V_PER_REVERSAL, V_CLOSING, V_DERIVATIVE, V_FLOOR, V_TILT,
-    V_PER_TILT, V_TABULATED_BODY,
-) = range(22)  # fmt: skip
-N_TABLE_VALUES = 22
+    V_PER_TILT, V_TABULATED_BODY, V_REVERSAL,
+) = range(23)  # fmt: skip
+N_TABLE_VALUES = 23
 # columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1
 (
     C_PER_PITCH, C_PAIRS, C_KNOTS, C_CELLS, C_FINEST, C_BACK, C_GAPS_AT, C_CELLS_AT, C_MOMENTS_AT, C_DEPTHS_AT,
@@ -66,8 +66,8 @@ class ContactTables(NamedTuple):
     cell_of: Integers
     """Per mesh (n_finest,) cell at each multiple of the finest depth step."""
     friction: Array
-    """Flat, per flank (n_planes, n_levels, n_knots, n_cells, LINES): sums of force times direction of sliding, and
-    times path position."""
+    """Flat, per flank (n_planes, n_levels, n_knots, n_cells, 2 LINES): levers of friction on pinion and wheel, with the
+    direction of sliding, then what they gain per advance of its reversal [m]."""
     levels: Array
     """Flat, per mesh (n_levels,) sharpness of the reversal over the path at which they hold [1/m]."""
     closing: Array

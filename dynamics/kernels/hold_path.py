@@ -55,15 +55,19 @@ from dynamics.kernels.contact_table import (
     V_PER_FINEST,
     V_PER_KNOT,
     V_PER_PITCH,
+    V_PER_REVERSAL,
     V_PER_TILT,
     V_R1,
+    V_REVERSAL,
+    V_ROLL_1,
+    V_ROLL_2,
     V_TILT,
     ContactTables,
 )
 from dynamics.kernels.knots import add_lines, contract_cell, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources bf3aec6b
+# compiled from sources 1d4bced3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -75,8 +79,9 @@ class FlankState(NamedTuple):
     """0 in front, 1 on the back."""
     theta_1: float
     """Angle of the pinion [rad]."""
-    sharpness: float
-    """Sum of both speeds over the sliding speed at which friction reverses [1/m]."""
+    omega_1: float
+    """Speeds of pinion and wheel, which decide on the direction of sliding [rad/s]."""
+    omega_2: float
     tilt: float
     """Gap that closes per face width from mid-face [rad]; of no effect on tables without tilt."""
 
@@ -143,6 +148,52 @@ def _of_teeth(
     return gap, slope
 
 
+@inlined
+def _values_at(f: float) -> tuple[float, float, float, float]:
+    """Return the cubic B-splines of four knots at a fraction of a cell."""
+    e = 1.0 - f
+    return (
+        e * e * e / 6.0,
+        (4.0 + f * f * (3.0 * f - 6.0)) / 6.0,
+        (4.0 + e * e * (3.0 * e - 6.0)) / 6.0,
+        f * f * f / 6.0,
+    )
+
+
+class _Reversal(NamedTuple):
+    """Where sliding reverses, against a rotation without vibration."""
+
+    advance: float
+    """Along the path [m]."""
+    knots: int
+    """Knots from the place of the flank to that where the gain by the advance is read, half of it back."""
+    weights: tuple[float, float, float, float]
+    """Of the knots there."""
+
+
+@inlined
+def _reversal(
+    values: Array, counts: Integers, m: int, state: FlankState, place: float, knot: int
+) -> _Reversal:
+    """Return where sliding reverses, half a pitch ahead at most."""
+    both = state.omega_1 + state.omega_2
+    ahead = (
+        values[m, V_ROLL_2] * state.omega_2
+        - values[m, V_ROLL_1] * state.omega_1
+        - values[m, V_REVERSAL] * both
+    )
+    most = 0.5 * abs(both) / values[m, V_PER_PITCH]
+    ahead = ahead if ahead < most else most
+    ahead = ahead if ahead > -most else -most
+    advance = ahead / both if abs(both) > 1e-9 else 0.0
+    at = place - 0.5 * advance * values[m, V_PER_KNOT]
+    if counts[m, C_INDIVIDUAL] == 0:
+        per_pitch = counts[m, C_PER_PITCH]
+        at -= per_pitch * np.floor(at / per_pitch)
+    whole = np.floor(at)
+    return _Reversal(advance, int(whole) - knot, _values_at(at - whole))
+
+
 class _Plane(NamedTuple):
     """Place of a tilt between two of those that are tabulated, the weights of a cubic by value and derivative."""
 
@@ -196,7 +247,7 @@ def _cell_tables(
     return _CellTables(
         counts[m, C_CELLS_AT] + before * size * CELL,
         counts[m, C_MOMENTS_AT] + before * size * LINES,
-        counts[m, C_FRICTION_AT] + (before * levels + level[0]) * size * LINES,
+        counts[m, C_FRICTION_AT] + 2 * (before * levels + level[0]) * size * LINES,
         counts[m, C_CLOSING_AT] + before * size * LINES,
         size,
         counts[m, C_CELLS],
@@ -212,40 +263,53 @@ def _share_of(weights: tuple[float, ...], share: float) -> tuple[float, float, f
 
 
 @inlined
-def _add_lines(
+def _add_friction(
+    tables: ContactTables, m: int, kinds: _CellTables, plane: int, share: float, cell: int,
+    weights: tuple[float, ...], reversal: _Reversal, beside: int, rows: Array, row: int,
+) -> None:  # fmt: skip
+    """Add ``share`` of the levers of friction to a row; what they gain by the reversal is read in a cell beside."""
+    if tables.values[m, V_FRICTION] > 0.0:
+        step = 2 * kinds.knot * LINES
+        first = kinds.friction + 2 * LINES * kinds.levels * plane * kinds.plane
+        for level in range(2 if kinds.levels > 1 else 1):
+            own = share * (kinds.level[1] if level == 0 else kinds.level[2])
+            still, moved = _share_of(weights, own), _share_of(reversal.weights, own * reversal.advance)
+            add_lines(
+                tables.friction, (first + 2 * LINES * cell) & POSITIVE, step, still, rows, row + R_FRICTION
+            )
+            at = (first + 2 * LINES * beside + LINES) & POSITIVE
+            add_lines(tables.friction, at, step, moved, rows, row + R_FRICTION)
+            first += 2 * kinds.plane * LINES
+
+
+@inlined
+def _add_closing(
     tables: ContactTables, m: int, kinds: _CellTables, plane: int, share: float, cell: int,
     weights: tuple[float, ...], rows: Array, row: int,
 ) -> None:  # fmt: skip
-    """Add to a row ``share`` of friction and closing weights."""
-    values = tables.values
-    step = kinds.knot * LINES
-    own = _share_of(weights, share)
-    if values[m, V_FRICTION] > 0.0:
-        first = kinds.friction + (cell + kinds.levels * plane * kinds.plane) * LINES
-        lower, upper = _share_of(own, kinds.level[1]), _share_of(own, kinds.level[2])
-        add_lines(tables.friction, first & POSITIVE, step, lower, rows, row + R_FRICTION)
-        if kinds.levels > 1:
-            first += kinds.plane * LINES
-            add_lines(tables.friction, first & POSITIVE, step, upper, rows, row + R_FRICTION)
-    if values[m, V_CLOSING] > 0.0:
+    """Add ``share`` of the closing weights to a row."""
+    if tables.values[m, V_CLOSING] > 0.0:
         first = kinds.closing + (cell + plane * kinds.plane) * LINES
-        add_lines(tables.closing, first & POSITIVE, step, own, rows, row + R_CLOSING)
+        own = _share_of(weights, share)
+        add_lines(tables.closing, first & POSITIVE, kinds.knot * LINES, own, rows, row + R_CLOSING)
 
 
 @inlined
 def _fill_row(
     tables: ContactTables, m: int, kinds: _CellTables, plane: _Plane, cell: int, weights: tuple[float, ...],
-    rows: Array, row: int,
+    reversal: _Reversal, beside: int, rows: Array, row: int,
 ) -> None:  # fmt: skip
     """Write the numbers of a cell into a row."""
     contract_cell(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, kinds.knot * CELL, weights, rows, row)
     for i in range(R_FRICTION, N_SCALED):
         rows[row + i] = 0.0
     if tables.counts[m, C_PLANES] == 1:
-        _add_lines(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
+        _add_friction(tables, m, kinds, 0, 1.0, cell, weights, reversal, beside, rows, row)
+        _add_closing(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
         return
-    _add_lines(tables, m, kinds, 0, 1.0 - plane.share, cell, weights, rows, row)
-    _add_lines(tables, m, kinds, 1, plane.share, cell, weights, rows, row)
+    for side, share in ((0, 1.0 - plane.share), (1, plane.share)):
+        _add_friction(tables, m, kinds, side, share, cell, weights, reversal, beside, rows, row)
+        _add_closing(tables, m, kinds, side, share, cell, weights, rows, row)
     _tilt_row(tables, kinds, plane, cell, weights, rows, row)
 
 
@@ -300,13 +364,16 @@ def hold_path(
     f = place - knot
     e = 1.0 - f
     per = values[m, V_PER_KNOT]
+    w_0, w_1, w_2, w_3 = _values_at(f)
     weights = (
-        e * e * e / 6.0, (4.0 + f * f * (3.0 * f - 6.0)) / 6.0, (4.0 + e * e * (3.0 * e - 6.0)) / 6.0, f * f * f / 6.0,
+        w_0, w_1, w_2, w_3,
         -0.5 * per * e * e, 0.5 * per * f * (3.0 * f - 4.0), -0.5 * per * e * (3.0 * e - 4.0), 0.5 * per * f * f,
     )  # fmt: skip
     gaps_at = counts[m, C_GAPS_AT] + back * knots
+    reversal = _reversal(values, counts, m, state, place, knot)
+    sharpness = (state.omega_1 + state.omega_2) * values[m, V_PER_REVERSAL]
     plane = _plane(values, counts, m, state.tilt)
-    kinds = _cell_tables(tables, m, back, plane.first, _level(tables, m, state.sharpness))
+    kinds = _cell_tables(tables, m, back, plane.first, _level(tables, m, sharpness))
     lowest, per_finest = values[m, V_LOWEST], values[m, V_PER_FINEST]
     individual, per_tooth = counts[m, C_INDIVIDUAL] != 0, counts[m, C_PER_TOOTH]
     teeth_1, teeth_2, tooth_1, tooth_2, step = counts[m, C_TEETH_1], counts[m, C_TEETH_2], 0, 0, 2 * side - 1
@@ -354,10 +421,14 @@ def hold_path(
             if cell < n_cells - 1:
                 high = min(high, gap + tables.depths[depths_at + 1])
             row = (first + N_ROW * n) & POSITIVE
-            _fill_row(tables, m, kinds, plane, knot * n_cells + cell, weights, rows, row)
+            beside = (max(0, min(knot + reversal.knots, knots - 4)) - knot) * n_cells
+            one = knot * n_cells + cell
+            _fill_row(tables, m, kinds, plane, one, weights, reversal, one + beside, rows, row)
             rows[row + R_START], rows[row + R_GAP_SLOPE] = start, slope
             if scale != 1.0:
-                for i in range(N_SCALED):
+                for i in range(R_FRICTION):
+                    rows[row + i] *= scale
+                for i in range(R_CLOSING, N_SCALED):
                     rows[row + i] *= scale
             n += 1
         knot += per_pitch

@@ -60,7 +60,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources bf3aec6b
+# compiled from sources 1d4bced3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources bf3aec6b
+# compiled from sources 1d4bced3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -19,7 +19,6 @@ from dynamics.kernels.contact_table import (
     V_BODY,
     V_CLOSING,
     V_LEAST_GAP,
-    V_PER_REVERSAL,
     V_R1,
     V_R2,
     ContactTables,
@@ -61,7 +60,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
 
-# compiled from sources bf3aec6b
+# compiled from sources 1d4bced3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -101,8 +100,9 @@ def _press(tables: ContactTables, space: Array, at: int, m: int, side: int, held
     """Hold a flank at the angle that its mesh reaches and press it there; enter the range of its rows."""
     values = tables.values
     pressing = _pressing(space, at, values, m, side, space[at + TEETH])
-    sharpness = (space[at + SPEED] + space[at + PORT + SPEED]) * values[m, V_PER_REVERSAL]
-    state = FlankState(side, space[at + ANGLE] + space[at + TURN], sharpness, 0.0)
+    state = FlankState(
+        side, space[at + ANGLE] + space[at + TURN], space[at + SPEED], space[at + PORT + SPEED], 0.0
+    )
     first = held.first[m, side] & POSITIVE
     rows = hold_path(tables, m, state, pressing.reach, held.rows, first)
     held.counts[m, side] = rows.n

@@ -21,12 +21,10 @@ from dynamics.kernels.contact_table import (
     V_FRICTION,
     V_R1,
     V_R2,
-    V_ROLL_1,
-    V_ROLL_2,
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources bf3aec6b
+# compiled from sources 1d4bced3
 Array = NDArray[np.float64]
 
 
@@ -91,7 +89,6 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
     damp_time, derivative = values[m, V_DAMP_TIME], values[m, V_DERIVATIVE]
     mu_1 = sign * values[m, V_FRICTION] / values[m, V_R1]
     mu_2 = sign * values[m, V_FRICTION] / values[m, V_R2]
-    roll_1, roll_2 = values[m, V_ROLL_1], values[m, V_ROLL_2]
     force, elastic, a_1, a_2 = 0.0, 0.0, 0.0, 0.0
     force_x, stiffness, a_1_x, a_2_x = 0.0, 0.0, 0.0, 0.0
     force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
@@ -128,12 +125,8 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
             normal = own if own < 0.0 else 0.0
             normal_x, normal_v = k if own < 0.0 else 0.0, 0.0
         q = r + R_FRICTION
-        moment, moment_x = rows[q] + d * rows[q + 1], rows[q + 1]
-        placed, placed_x = rows[q + 2] + d * rows[q + 3], rows[q + 3]
-        per = 1.0 / own if own > 0.0 else 0.0
-        lever_1, lever_2 = mu_1 * (roll_1 * moment + placed) * per, mu_2 * (roll_2 * moment - placed) * per
-        lever_1_x = mu_1 * (roll_1 * moment_x + placed_x) * per - lever_1 * k * per
-        lever_2_x = mu_2 * (roll_2 * moment_x - placed_x) * per - lever_2 * k * per
+        lever_1_x, lever_2_x = mu_1 * rows[q + 1], mu_2 * rows[q + 3]
+        lever_1, lever_2 = mu_1 * rows[q] + d * lever_1_x, mu_2 * rows[q + 2] + d * lever_2_x
         force += normal
         elastic += own
         stiffness += k

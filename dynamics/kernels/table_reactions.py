@@ -12,7 +12,6 @@ from dynamics.kernels.contact_table import (
     V_BACKLASH,
     V_BODY,
     V_CLOSING,
-    V_PER_REVERSAL,
     V_R1,
     V_R2,
     V_TABULATED_BODY,
@@ -22,7 +21,7 @@ from dynamics.kernels.hold_path import FlankState, Held, hold_path
 from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources bf3aec6b
+# compiled from sources 1d4bced3
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -67,7 +66,7 @@ def _table_reactions(
                 for side in range(2):
                     sign = 1.0 - 2.0 * side
                     reach = sign * y - side * values[m, V_BACKLASH]
-                    state = FlankState(side, states.theta_1[n], 0.0, tilts[n, side])
+                    state = FlankState(side, states.theta_1[n], 0.0, 0.0, tilts[n, side])
                     _, sums = _press_side(tables, m, state, Pressing(sign, reach, 0.0, 0.0), rows)
                     net += sign * sums.elastic
                     stiffness += sums.stiffness
@@ -89,9 +88,7 @@ def _table_reactions(
             sign = 1.0 - 2.0 * side
             path_speed = sign * r_1 * omega_1 if values[m, V_CLOSING] > 0.0 else 0.0
             pressing = Pressing(sign, sign * y - side * values[m, V_BACKLASH], sign * rate, path_speed)
-            state = FlankState(
-                side, states.theta_1[n], (omega_1 + omega_2) * values[m, V_PER_REVERSAL], tilts[n, side]
-            )
+            state = FlankState(side, states.theta_1[n], omega_1, omega_2, tilts[n, side])
             _, sums = _press_side(tables, m, state, pressing, rows)
             friction, damping = powers(sums, values, m, pressing, omega_1, omega_2)
             out[n, 0] -= sign * r_1 * sums.a_1

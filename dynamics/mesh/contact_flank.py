@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import spline_filter1d
 
-from dynamics.kernels.contact_nodes import SUMS, NodeLaw, SliceSprings, slice_sums
+from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings, slice_sums
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.path_filter import TAIL, PathFilter
 from dynamics.mesh.slice_springs import slice_springs
@@ -49,7 +49,7 @@ class FlankTable:
 
     start : path position of the first cell [m]; pairs : base pitches that the path takes
     gaps : (n_knots,) of the least gap [m]; cells : (n_planes, n_knots, n_cells, CELL)
-    moments, closing : (n_planes, n_knots, n_cells, LINES); friction : (n_planes, n_levels, n_knots, n_cells, LINES)
+    moments, closing : (n_planes, n_knots, n_cells, LINES); friction : (n_planes, n_levels, n_knots, n_cells, 2 LINES)
     path, share : (n_places, n_slices) path position of each slice at the knots [m], and its share in the force
     """
 
@@ -127,7 +127,7 @@ def _plane(
     springs: SliceSprings, law: NodeLaw, gap: Array, grid: FlankGrid, cell: float
 ) -> tuple[Array, Array, Array, Array]:
     """Cells, moments, closing weights and friction of slices at one tilt, as in ``FlankTable``; ``cell`` in metres."""
-    sums = np.empty((len(gap), len(grid.depths), SUMS + 2 * len(law.sharpness)))
+    sums = np.empty((len(gap), len(grid.depths), SUMS + FRICTION * len(law.sharpness)))
     slice_sums(springs, law, gap[:, None] + grid.depths, sums)
     recorded = sums[..., 1]
     if grid.path_filter is not None:
@@ -136,9 +136,10 @@ def _plane(
     energy, force, weight, moment, moment_x = (sums[..., i] for i in range(5))
     depths = grid.depths
     cells = (_cubics(energy, force, depths), _lines(weight, depths), _lines(recorded - force, depths))
+    linear = [[sums[..., 5], sums[..., 6]]]
+    linear += [_levers(law, force, sums[..., i : i + FRICTION]) for i in range(SUMS, sums.shape[2], FRICTION)]
     closing, *friction = (
-        splines(np.concatenate([_lines(sums[..., i + k], depths) for k in (0, 1)], axis=-1), grid.pairs)
-        for i in range(5, sums.shape[2], 2)
+        splines(np.concatenate([_lines(one, depths) for one in kind], axis=-1), grid.pairs) for kind in linear
     )
     moments = splines(_cubics(moment, moment_x, depths), grid.pairs) if len(grid.tilts) > 1 else np.zeros(0)
     return splines(np.concatenate(cells, axis=-1), grid.pairs), moments, closing, np.array(friction)
@@ -165,6 +166,31 @@ def _shares(springs: SliceSprings, gap: Array) -> Array:
     force = springs.stiffness * np.maximum(gap[:, None] + USUAL_DEPTH - springs.gap, 0.0)
     total = force.sum(axis=1, keepdims=True)
     return np.where(total > 0.0, force / np.where(total > 0.0, total, 1.0), 1.0 / force.shape[1])
+
+
+def _levers(law: NodeLaw, force: Array, moments: Array) -> list[Array]:
+    """Lever of friction on both gears, of the force over its direction of sliding (n_places, n_depths) [m].
+
+    moments : (n_places, n_depths, FRICTION) sums of ``slice_sums``. Then what the levers gain per advance of the
+    reversal [-]. Where nothing is pressed they are those of the least depth at which something is.
+    """
+    pressed = force > 1e-6 * force.max()
+    first = np.argmax(pressed, axis=1)[:, None]
+    at = np.maximum(np.arange(force.shape[1]), first)
+    found = []
+    for k in (0, 2):
+        share, place = (
+            np.take_along_axis(
+                np.where(pressed, moments[..., k + i] / np.where(pressed, force, 1.0), 0.0), at, axis=1
+            )
+            for i in (0, 1)
+        )
+        for radius, sign in zip(law.rolling_radii, (1.0, -1.0)):
+            lever = radius * share + sign * place
+            # a trace of force that a filter leaves beside the path has no lever of its own
+            most = 2.0 * np.quantile(np.abs(lever), 0.99)
+            found.append(np.clip(lever, -most, most))
+    return found
 
 
 def _cubics(energy: Array, force: Array, depths: Array) -> Array:

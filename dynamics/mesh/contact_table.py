@@ -159,7 +159,7 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
         flanks = [
             flank_table(
                 law,
-                NodeLaw(law.damping_depth, _tabulated_body(law), _reversal(law), levels),
+                _node_law(law, levels),
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),
@@ -187,6 +187,16 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
             field.name: np.concatenate([getattr(part, field.name) for part in parts])
             for field in fields(_MeshTables)
         },
+    )
+
+
+def _node_law(law: MeshLaw, levels: Array) -> NodeLaw:
+    return NodeLaw(
+        damping_depth=law.damping_depth,
+        body=_tabulated_body(law),
+        rolling_radii=(law.rolling_radius_1, law.rolling_radius_2),
+        reversal=_reversal(law),
+        sharpness=levels,
     )
 
 
@@ -311,7 +321,7 @@ def _fill_values(
         (layout.V_CLOSING, float(law.damping_acts_on == "contact_closing_rate")),
         (layout.V_FLOOR, 1e-12 * law.mean_stiffness * law.base_radius_1),
         (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
-        (layout.V_TABULATED_BODY, law.body_compliance - body),
+        (layout.V_REVERSAL, _reversal(law)), (layout.V_TABULATED_BODY, law.body_compliance - body),
         (layout.V_PER_TILT, 0.0 if grid.tilts is None else (grid.planes - 1) / (grid.tilts[1] - grid.tilts[0])),
     ):  # fmt: skip
         values[column] = value
