@@ -33,13 +33,15 @@ LINES = 4
     V_PER_TILT, V_TABULATED_BODY, V_REVERSAL,
 ) = range(23)  # fmt: skip
 N_TABLE_VALUES = 23
-# columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1
+# columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1; GENERAL is 0
+# where all teeth are alike and do not tilt
 (
     C_PER_PITCH, C_PAIRS, C_KNOTS, C_CELLS, C_FINEST, C_BACK, C_GAPS_AT, C_CELLS_AT, C_MOMENTS_AT, C_DEPTHS_AT,
     C_CELL_OF_AT, C_FRICTION_AT, C_CLOSING_AT, C_INDIVIDUAL, C_OFFSET_2, C_DEVIATIONS_AT, C_TEETH_1, C_TEETH_2,
     C_PER_TOOTH, C_SCALES_AT, C_SCALED_1, C_SCALED_2, C_PLANES, C_LEVELS, C_LEVELS_AT,
-) = range(25)  # fmt: skip
-N_TABLE_COUNTS = 25
+    C_GENERAL,
+) = range(26)  # fmt: skip
+N_TABLE_COUNTS = 26
 # places in a row: a cell (CELL), its slopes over the path (CELL), friction, closing weights, tilting moment and its
 # derivative over the tilt; the approach at the start of the cell, the slope of the gap
 R_SLOPES, R_FRICTION, R_CLOSING, R_MOMENT, R_TILT, R_START, R_GAP_SLOPE = 8, 16, 20, 24, 28, 32, 33
@@ -58,20 +60,20 @@ class ContactTables(NamedTuple):
     gaps: Array
     """Per flank (n_knots,) spline coefficients of the least gap [m]."""
     cells: Array
-    """Flat, per flank (n_planes, n_knots, n_cells, CELL): those of the cubics over the depth at every tilt."""
+    """Flat, per flank (n_planes, n_cells, n_knots, CELL): those of the cubics over the depth at every tilt."""
     moments: Array
-    """Flat, per flank (n_planes, n_knots, n_cells, LINES): those of the tilting moment, as of W; empty without tilt."""
+    """Flat, per flank (n_planes, n_cells, n_knots, LINES): those of the tilting moment, as of W; empty without tilt."""
     depths: Array
     """Per mesh (n_cells + 1,) first depth of each cell [m]."""
     cell_of: Integers
     """Per mesh (n_finest,) cell at each multiple of the finest depth step."""
     friction: Array
-    """Flat, per flank (n_planes, n_levels, n_knots, n_cells, 2 LINES): levers of friction on pinion and wheel, with the
+    """Flat, per flank (n_planes, n_levels, n_cells, n_knots, 2 LINES): levers of friction on pinion and wheel, with the
     direction of sliding, then what they gain per advance of its reversal [m]."""
     levels: Array
     """Flat, per mesh (n_levels,) sharpness of the reversal over the path at which they hold [1/m]."""
     closing: Array
-    """Flat, per flank (n_planes, n_knots, n_cells, LINES): damper weights times slope of the gap and times its square;
+    """Flat, per flank (n_planes, n_cells, n_knots, LINES): damper weights times slope of the gap and times its square;
     empty for dampers on the relative rotation."""
     deviations: Array
     """Per flank, gear and tooth: spline coefficients over the path of the gap it adds, or one number [m]."""

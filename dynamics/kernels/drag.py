@@ -21,7 +21,7 @@ from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, HELD, N_BANK, ST
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, OLDER, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -7,9 +7,10 @@ known angle needs no table.
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import inlined
+from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.contact_table import (
     C_BACK,
     C_CELL_OF_AT,
@@ -67,7 +68,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -79,11 +80,20 @@ class FlankState(NamedTuple):
     """0 in front, 1 on the back."""
     theta_1: float
     """Angle of the pinion [rad]."""
-    omega_1: float
-    """Speeds of pinion and wheel, which decide on the direction of sliding [rad/s]."""
-    omega_2: float
     tilt: float
     """Gap that closes per face width from mid-face [rad]; of no effect on tables without tilt."""
+
+
+class Sliding(NamedTuple):
+    """Which friction a mesh has at a motion."""
+
+    level: int
+    """First of two sharpnesses of the reversal at which friction is tabulated."""
+    lower: float
+    """Share of this and of the next, negative where the gears turn backwards."""
+    upper: float
+    advance: float
+    """By how much sliding reverses further along the path than without vibration [m]."""
 
 
 class Held(NamedTuple):
@@ -96,23 +106,55 @@ class Held(NamedTuple):
     high: float
 
 
-@inlined
-def _level(tables: ContactTables, m: int, sharpness: float) -> tuple[int, float, float]:
-    """Return the first of two levels of friction and the shares of both at a sharpness, negative ones reversed."""
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def sliding_at(tables: ContactTables, m: int, omega_1: float, omega_2: float) -> Sliding:
+    """Return the friction of a mesh at speeds of pinion and wheel."""
+    values = tables.values
+    both = omega_1 + omega_2
     first, count = tables.counts[m, C_LEVELS_AT], tables.counts[m, C_LEVELS]
-    wanted = abs(sharpness)
-    sign = 1.0 if sharpness >= 0.0 else -1.0
-    if count == 1:
-        return 0, sign, 0.0
-    if wanted <= tables.levels[first]:
-        return 0, sign * wanted / tables.levels[first], 0.0
-    level = 0
-    while level < count - 2 and wanted > tables.levels[first + level + 1]:
-        level += 1
-    lower, upper = tables.levels[first + level], tables.levels[first + level + 1]
-    share = (wanted - lower) / (upper - lower)
-    share = share if share < 1.0 else 1.0
-    return level, sign * (1.0 - share), sign * share
+    sign = 1.0 if both >= 0.0 else -1.0
+    level, lower, upper = 0, sign, 0.0
+    if count > 1:
+        wanted = abs(both) * values[m, V_PER_REVERSAL]
+        if wanted <= tables.levels[first]:
+            lower = sign * wanted / tables.levels[first]
+        else:
+            while level < count - 2 and wanted > tables.levels[first + level + 1]:
+                level += 1
+            begin, end = tables.levels[first + level], tables.levels[first + level + 1]
+            share = min((wanted - begin) / (end - begin), 1.0)
+            lower, upper = sign * (1.0 - share), sign * share
+    return Sliding(
+        level, lower, upper, advance_of(values, m, omega_1, omega_2, reversal_per_speed(values, m, both))
+    )
+
+
+@inlined
+def reversal_per_speed(values: Array, m: int, both: float) -> float:
+    """Return how far the reversal moves per speed that the flanks slide there [s], none about standstill."""
+    least = 1e-3 / (values[m, V_PER_PITCH] * values[m, V_PER_REVERSAL])
+    return 1.0 / both if abs(both) > least else 0.0
+
+
+@inlined
+def advance_of(values: Array, m: int, omega_1: float, omega_2: float, per_speed: float) -> float:
+    """Return by how much sliding reverses further along the path than without vibration, half a pitch at most [m]."""
+    ahead = (values[m, V_ROLL_2] * omega_2 - values[m, V_ROLL_1] * omega_1) * per_speed
+    ahead = ahead - values[m, V_REVERSAL] if per_speed != 0.0 else 0.0
+    most = 0.5 / values[m, V_PER_PITCH]
+    ahead = ahead if ahead < most else most
+    return ahead if ahead > -most else -most
+
+
+@inlined
+def spline_weights(f: float, per_knot: float) -> tuple[float, ...]:
+    """Return the cubic B-splines of four knots at a fraction of a cell, then their slopes over the path."""
+    e = 1.0 - f
+    half = 0.5 * per_knot
+    return (
+        e * e * e * (1.0 / 6.0), 2.0 / 3.0 + f * f * (0.5 * f - 1.0), 2.0 / 3.0 + e * e * (0.5 * e - 1.0),
+        f * f * f * (1.0 / 6.0), -half * e * e, half * f * (3.0 * f - 4.0), -half * e * (3.0 * e - 4.0), half * f * f,
+    )  # fmt: skip
 
 
 @inlined
@@ -146,52 +188,6 @@ def _of_teeth(
         gap += weights[i] * value
         slope += weights[4 + i] * value
     return gap, slope
-
-
-@inlined
-def _values_at(f: float) -> tuple[float, float, float, float]:
-    """Return the cubic B-splines of four knots at a fraction of a cell."""
-    e = 1.0 - f
-    return (
-        e * e * e / 6.0,
-        (4.0 + f * f * (3.0 * f - 6.0)) / 6.0,
-        (4.0 + e * e * (3.0 * e - 6.0)) / 6.0,
-        f * f * f / 6.0,
-    )
-
-
-class _Reversal(NamedTuple):
-    """Where sliding reverses, against a rotation without vibration."""
-
-    advance: float
-    """Along the path [m]."""
-    knots: int
-    """Knots from the place of the flank to that where the gain by the advance is read, half of it back."""
-    weights: tuple[float, float, float, float]
-    """Of the knots there."""
-
-
-@inlined
-def _reversal(
-    values: Array, counts: Integers, m: int, state: FlankState, place: float, knot: int
-) -> _Reversal:
-    """Return where sliding reverses, half a pitch ahead at most."""
-    both = state.omega_1 + state.omega_2
-    ahead = (
-        values[m, V_ROLL_2] * state.omega_2
-        - values[m, V_ROLL_1] * state.omega_1
-        - values[m, V_REVERSAL] * both
-    )
-    most = 0.5 * abs(both) / values[m, V_PER_PITCH]
-    ahead = ahead if ahead < most else most
-    ahead = ahead if ahead > -most else -most
-    advance = ahead / both if abs(both) > 1e-9 else 0.0
-    at = place - 0.5 * advance * values[m, V_PER_KNOT]
-    if counts[m, C_INDIVIDUAL] == 0:
-        per_pitch = counts[m, C_PER_PITCH]
-        at -= per_pitch * np.floor(at / per_pitch)
-    whole = np.floor(at)
-    return _Reversal(advance, int(whole) - knot, _values_at(at - whole))
 
 
 class _Plane(NamedTuple):
@@ -231,33 +227,26 @@ class _CellTables(NamedTuple):
     closing: int
     plane: int
     """Cells of all knots."""
-    knot: int
-    """Cells of a knot."""
     levels: int
-    level: tuple[int, float, float]
 
 
 @inlined
-def _cell_tables(
-    tables: ContactTables, m: int, back: int, plane: int, level: tuple[int, float, float]
-) -> _CellTables:
+def _cell_tables(tables: ContactTables, m: int, back: int, plane: int, level: int) -> _CellTables:
     counts = tables.counts
     size, levels = counts[m, C_KNOTS] * counts[m, C_CELLS], counts[m, C_LEVELS]
     before = back * counts[m, C_PLANES] + plane
     return _CellTables(
         counts[m, C_CELLS_AT] + before * size * CELL,
         counts[m, C_MOMENTS_AT] + before * size * LINES,
-        counts[m, C_FRICTION_AT] + 2 * (before * levels + level[0]) * size * LINES,
+        counts[m, C_FRICTION_AT] + 2 * (before * levels + level) * size * LINES,
         counts[m, C_CLOSING_AT] + before * size * LINES,
         size,
-        counts[m, C_CELLS],
         levels,
-        level,
     )
 
 
 @inlined
-def _share_of(weights: tuple[float, ...], share: float) -> tuple[float, float, float, float]:
+def share_of(weights: tuple[float, ...], share: float) -> tuple[float, float, float, float]:
     """Return the weights of four knots times a share."""
     return share * weights[0], share * weights[1], share * weights[2], share * weights[3]
 
@@ -265,20 +254,18 @@ def _share_of(weights: tuple[float, ...], share: float) -> tuple[float, float, f
 @inlined
 def _add_friction(
     tables: ContactTables, m: int, kinds: _CellTables, plane: int, share: float, cell: int,
-    weights: tuple[float, ...], reversal: _Reversal, beside: int, rows: Array, row: int,
+    weights: tuple[float, ...], sliding: Sliding, rows: Array, row: int,
 ) -> None:  # fmt: skip
-    """Add ``share`` of the levers of friction to a row; what they gain by the reversal is read in a cell beside."""
+    """Add ``share`` of the levers of friction to a row."""
     if tables.values[m, V_FRICTION] > 0.0:
-        step = 2 * kinds.knot * LINES
-        first = kinds.friction + 2 * LINES * kinds.levels * plane * kinds.plane
+        first = kinds.friction + 2 * LINES * (cell + kinds.levels * plane * kinds.plane)
         for level in range(2 if kinds.levels > 1 else 1):
-            own = share * (kinds.level[1] if level == 0 else kinds.level[2])
-            still, moved = _share_of(weights, own), _share_of(reversal.weights, own * reversal.advance)
+            own = share * (sliding.lower if level == 0 else sliding.upper)
             add_lines(
-                tables.friction, (first + 2 * LINES * cell) & POSITIVE, step, still, rows, row + R_FRICTION
+                tables.friction, first & POSITIVE, 2 * LINES, share_of(weights, own), rows, row + R_FRICTION
             )
-            at = (first + 2 * LINES * beside + LINES) & POSITIVE
-            add_lines(tables.friction, at, step, moved, rows, row + R_FRICTION)
+            moved = share_of(weights, own * sliding.advance)
+            add_lines(tables.friction, (first + LINES) & POSITIVE, 2 * LINES, moved, rows, row + R_FRICTION)
             first += 2 * kinds.plane * LINES
 
 
@@ -290,25 +277,25 @@ def _add_closing(
     """Add ``share`` of the closing weights to a row."""
     if tables.values[m, V_CLOSING] > 0.0:
         first = kinds.closing + (cell + plane * kinds.plane) * LINES
-        own = _share_of(weights, share)
-        add_lines(tables.closing, first & POSITIVE, kinds.knot * LINES, own, rows, row + R_CLOSING)
+        own = share_of(weights, share)
+        add_lines(tables.closing, first & POSITIVE, LINES, own, rows, row + R_CLOSING)
 
 
 @inlined
 def _fill_row(
     tables: ContactTables, m: int, kinds: _CellTables, plane: _Plane, cell: int, weights: tuple[float, ...],
-    reversal: _Reversal, beside: int, rows: Array, row: int,
+    sliding: Sliding, rows: Array, row: int,
 ) -> None:  # fmt: skip
     """Write the numbers of a cell into a row."""
-    contract_cell(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, kinds.knot * CELL, weights, rows, row)
+    contract_cell(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, CELL, weights, rows, row)
     for i in range(R_FRICTION, N_SCALED):
         rows[row + i] = 0.0
     if tables.counts[m, C_PLANES] == 1:
-        _add_friction(tables, m, kinds, 0, 1.0, cell, weights, reversal, beside, rows, row)
+        _add_friction(tables, m, kinds, 0, 1.0, cell, weights, sliding, rows, row)
         _add_closing(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
         return
     for side, share in ((0, 1.0 - plane.share), (1, plane.share)):
-        _add_friction(tables, m, kinds, side, share, cell, weights, reversal, beside, rows, row)
+        _add_friction(tables, m, kinds, side, share, cell, weights, sliding, rows, row)
         _add_closing(tables, m, kinds, side, share, cell, weights, rows, row)
     _tilt_row(tables, kinds, plane, cell, weights, rows, row)
 
@@ -322,11 +309,11 @@ def _tilt_row(
     other = rows.shape[0] - SCRATCH
     moments = other + 2 * CELL
     first = (kinds.cells + (cell + kinds.plane) * CELL) & POSITIVE
-    contract_cell(tables.cells, first, kinds.knot * CELL, weights, rows, other)
+    contract_cell(tables.cells, first, CELL, weights, rows, other)
     for side in range(2):
         first = (kinds.moments + (cell + side * kinds.plane) * LINES) & POSITIVE
         at = moments + 2 * LINES * side
-        contract_lines(tables.moments, first, kinds.knot * LINES, weights, rows, at)
+        contract_lines(tables.moments, first, LINES, weights, rows, at)
     for i in range(LINES):
         a, b, c, d = rows[row + i], rows[moments + i], rows[other + i], rows[moments + 2 * LINES + i]
         at, to = row + R_SLOPES + i, moments + LINES + i
@@ -347,9 +334,9 @@ def _tilt_row(
         rows[at] = (1.0 - plane.share) * rows[at] + plane.share * rows[other + LINES + i]
 
 
-@inlined
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def hold_path(
-    tables: ContactTables, m: int, state: FlankState, reach: float, rows: Array, first: int
+    tables: ContactTables, m: int, state: FlankState, sliding: Sliding, reach: float, rows: Array, first: int
 ) -> Held:
     """Write a row for every pair of a flank that touches at the approach ``reach`` into ``rows`` from ``first`` on."""
     values, counts = tables.values, tables.counts
@@ -361,19 +348,10 @@ def hold_path(
     turn = np.floor(turned)
     place = (turned - turn) * per_pitch
     knot = max(0, min(int(place), per_pitch - 1))  # also for a run that left the finite numbers
-    f = place - knot
-    e = 1.0 - f
-    per = values[m, V_PER_KNOT]
-    w_0, w_1, w_2, w_3 = _values_at(f)
-    weights = (
-        w_0, w_1, w_2, w_3,
-        -0.5 * per * e * e, 0.5 * per * f * (3.0 * f - 4.0), -0.5 * per * e * (3.0 * e - 4.0), 0.5 * per * f * f,
-    )  # fmt: skip
+    weights = spline_weights(place - knot, values[m, V_PER_KNOT])
     gaps_at = counts[m, C_GAPS_AT] + back * knots
-    reversal = _reversal(values, counts, m, state, place, knot)
-    sharpness = (state.omega_1 + state.omega_2) * values[m, V_PER_REVERSAL]
     plane = _plane(values, counts, m, state.tilt)
-    kinds = _cell_tables(tables, m, back, plane.first, _level(tables, m, sharpness))
+    kinds = _cell_tables(tables, m, back, plane.first, sliding.level)
     lowest, per_finest = values[m, V_LOWEST], values[m, V_PER_FINEST]
     individual, per_tooth = counts[m, C_INDIVIDUAL] != 0, counts[m, C_PER_TOOTH]
     teeth_1, teeth_2, tooth_1, tooth_2, step = counts[m, C_TEETH_1], counts[m, C_TEETH_2], 0, 0, 2 * side - 1
@@ -421,9 +399,7 @@ def hold_path(
             if cell < n_cells - 1:
                 high = min(high, gap + tables.depths[depths_at + 1])
             row = (first + N_ROW * n) & POSITIVE
-            beside = (max(0, min(knot + reversal.knots, knots - 4)) - knot) * n_cells
-            one = knot * n_cells + cell
-            _fill_row(tables, m, kinds, plane, one, weights, reversal, one + beside, rows, row)
+            _fill_row(tables, m, kinds, plane, cell * knots + knot, weights, sliding, rows, row)
             rows[row + R_START], rows[row + R_GAP_SLOPE] = start, slope
             if scale != 1.0:
                 for i in range(R_FRICTION):

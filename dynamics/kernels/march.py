@@ -31,6 +31,7 @@ from dynamics.kernels.linear_step import (
 from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, Workspace
 from dynamics.kernels.mesh_solve import (
     HeldRows,
+    choose_friction,
     correct,
     flank_powers,
     invert,
@@ -60,7 +61,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -70,7 +71,7 @@ TOLERANCE = 1e-6
 MOST_SWEEPS = 50
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _account(tables: ContactTables, carried: Carried, work: Workspace, step: float, share: float) -> None:
     """Add the work of one step, which ends at ``share`` of the sample, to the accounts.
 
@@ -128,6 +129,7 @@ def march(
             rows=np.zeros(int(room.sum()) + SCRATCH),
             counts=np.zeros((n_meshes, 2), np.int64),
             first=(np.cumsum(room) - room).reshape(n_meshes, 2),
+            levels=np.zeros(n_meshes, np.int64),
         ),
         bank=modes.bank.copy(),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
@@ -154,6 +156,7 @@ def _begin(space: Array, values: Array, ports: Array, port_new: Array, give: Arr
             space[port + OLDEST] = ports[m, 4 + side]
         space[at + APPROACH], space[at + ANGLE] = ports[m, 6], ports[m, 7]
         space[at + GIVEN], space[at + GIVEN_OLD] = ports[m, 8], ports[m, 9]
+        space[at + SPEED], space[at + PORT + SPEED] = ports[m, 10], ports[m, 11]
         for port in range(2 * n_meshes):
             for k in range(2):
                 given_1, given_2 = port_new[port, 4 * m + k], port_new[port, 4 * m + 2 + k]
@@ -172,6 +175,7 @@ def _end(space: Array, ports: Array) -> None:
             ports[m, 4 + side] = space[port + OLDEST]
         ports[m, 6], ports[m, 7] = space[at + APPROACH], space[at + ANGLE]
         ports[m, 8], ports[m, 9] = space[at + GIVEN], space[at + GIVEN_OLD]
+        ports[m, 10], ports[m, 11] = space[at + SPEED], space[at + PORT + SPEED]
 
 
 @inlined
@@ -233,7 +237,7 @@ def _sweep_meshes(space: Array, values: Array, give: Array, n_meshes: int) -> bo
     return converged
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _march(
     tables: ContactTables,
     modes: DiscreteModes,
@@ -273,6 +277,7 @@ def _march(
         for m in range(n_meshes):
             rate = (commands.offsets[sample, m] - carried.offset[m]) / (substeps * step)
             space[m * N_SPACE + OFFSET], space[m * N_SPACE + OFFSET_RATE] = carried.offset[m], rate
+            choose_friction(tables, space, (m * N_SPACE) & POSITIVE, m, work.held)
         mean_torque = 0.0
         for sub in range(substeps):
             slow_at = sub * n_outputs

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-N_PORTS = 10
+N_PORTS = 12
 """Numbers of a mesh that go from call to call."""
 
 
@@ -38,7 +38,7 @@ class Carried(NamedTuple):
     """(n_states,) modal state."""
     ports: Array
     """(n_meshes, N_PORTS) tau_1, tau_2, both one and two steps earlier, approach, pinion angle, parts of the approach
-    that bodies outside the table gave in the last two steps."""
+    that bodies outside the table gave in the last two steps, speeds of pinion and wheel."""
     slow: Array
     """(n_slow,) motor torque, twist, torques that are given."""
     drags: Array

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.contact_table import (
+    C_GENERAL,
     V_BACKLASH,
     V_BODY,
     V_CLOSING,
@@ -23,7 +24,15 @@ from dynamics.kernels.contact_table import (
     V_R2,
     ContactTables,
 )
-from dynamics.kernels.hold_path import FlankState, hold_path
+from dynamics.kernels.hold_path import (
+    FlankState,
+    Sliding,
+    advance_of,
+    hold_path,
+    reversal_per_speed,
+    sliding_at,
+)
+from dynamics.kernels.hold_phase import hold_phase
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
@@ -36,6 +45,7 @@ from dynamics.kernels.mesh_workspace import (
     HIGH,
     INVERSE,
     LOW,
+    LOWER,
     N_SPACE,
     NET,
     NET_V,
@@ -43,6 +53,7 @@ from dynamics.kernels.mesh_workspace import (
     OFF,
     OFFSET,
     OFFSET_RATE,
+    PER_SPEED,
     PORT,
     PRESSED,
     PRESSED_V,
@@ -57,10 +68,11 @@ from dynamics.kernels.mesh_workspace import (
     TAU,
     TEETH,
     TURN,
+    UPPER,
 )
 from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -74,6 +86,18 @@ class HeldRows(NamedTuple):
     """(n_meshes, 2) rows that are in use."""
     first: Integers
     """(n_meshes, 2) first entry."""
+    levels: Integers
+    """(n_meshes,) level of friction in this sample, see ``hold_path.Sliding``."""
+
+
+@inlined
+def choose_friction(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+    """Keep the friction of a mesh at its last speeds for the steps of a sample."""
+    omega_1, omega_2 = space[at + SPEED], space[at + PORT + SPEED]
+    sliding = sliding_at(tables, m, omega_1, omega_2)
+    held.levels[m] = sliding.level
+    space[at + LOWER], space[at + UPPER] = sliding.lower, sliding.upper
+    space[at + PER_SPEED] = reversal_per_speed(tables.values, m, omega_1 + omega_2)
 
 
 @inlined
@@ -96,54 +120,86 @@ def _pressing(space: Array, at: int, values: Array, m: int, side: int, teeth: fl
 
 
 @inlined
-def _press(tables: ContactTables, space: Array, at: int, m: int, side: int, held: HeldRows) -> Sums:
-    """Hold a flank at the angle that its mesh reaches and press it there; enter the range of its rows."""
+def _sliding(values: Array, space: Array, at: int, m: int, held: HeldRows) -> Sliding:
+    """Return the friction of a mesh in this step."""
+    advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
+    return Sliding(held.levels[m], space[at + LOWER], space[at + UPPER], advance)
+
+
+@inlined
+def _press_front(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> Sums:
+    """Hold the front flank at the angle that its mesh reaches and press it there; set the range of its rows."""
     values = tables.values
-    pressing = _pressing(space, at, values, m, side, space[at + TEETH])
-    state = FlankState(
-        side, space[at + ANGLE] + space[at + TURN], space[at + SPEED], space[at + PORT + SPEED], 0.0
-    )
-    first = held.first[m, side] & POSITIVE
-    rows = hold_path(tables, m, state, pressing.reach, held.rows, first)
-    held.counts[m, side] = rows.n
-    low, high = rows.low, rows.high
-    if side == 1:
-        low, high = -values[m, V_BACKLASH] - high, -values[m, V_BACKLASH] - low
-    space[at + LOW] = low if low > space[at + LOW] else space[at + LOW]
-    space[at + HIGH] = high if high < space[at + HIGH] else space[at + HIGH]
+    pressing = _pressing(space, at, values, m, 0, space[at + TEETH])
+    sliding = _sliding(values, space, at, m, held)
+    first = held.first[m, 0] & POSITIVE
+    angle = space[at + ANGLE] + space[at + TURN]
+    if tables.counts[m, C_GENERAL] == 0:
+        rows = hold_phase(tables, m, angle, sliding, pressing.reach, held.rows, first)
+    else:
+        rows = hold_path(tables, m, FlankState(0, angle, 0.0), sliding, pressing.reach, held.rows, first)
+    held.counts[m, 0] = rows.n
+    space[at + LOW], space[at + HIGH] = rows.low, rows.high
     return press_rows(held.rows, first, rows.n, values, m, pressing)
 
 
 @inlined
-def _add_flank(space: Array, at: int, values: Array, m: int, side: int, sums: Sums) -> None:
-    """Add what a flank answers to the reaction of its mesh; derivatives over the approach of the teeth."""
-    sign = 1.0 - 2.0 * side
+def _set_front(space: Array, at: int, values: Array, m: int, sums: Sums) -> None:
+    """Set what the front flank answers as the reaction of its mesh; derivatives over the approach of the teeth."""
     wheel = at + PORT
     r_1, r_2 = values[m, V_R1], values[m, V_R2]
-    space[at + REACTION] -= sign * r_1 * sums.a_1
-    space[wheel + REACTION] += sign * r_2 * sums.a_2
+    space[at + REACTION], space[wheel + REACTION] = -r_1 * sums.a_1, r_2 * sums.a_2
+    space[at + TANGENT_X], space[wheel + TANGENT_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
+    space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
+    space[at + PRESSED], space[at + PRESSED_X] = sums.force, sums.force_x
+    space[at + PRESSED_V], space[at + NET] = sums.force_v, sums.recorded
+    space[at + NET_X], space[at + NET_V] = sums.force_x, sums.force_v
+    space[at + BENT], space[at + BENT_V] = r_1 * abs(sums.curvature), r_1 * abs(sums.force_xv)
+    space[at + OFF], space[at + SHARE] = -sums.elastic, sums.stiffness
+
+
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+    """Hold and press the back flank of a mesh and add what it answers to that of the front."""
+    values = tables.values
+    wheel = at + PORT
+    r_1, r_2 = values[m, V_R1], values[m, V_R2]
+    pressing = _pressing(space, at, values, m, 1, space[at + TEETH])
+    state = FlankState(1, space[at + ANGLE] + space[at + TURN], 0.0)
+    first = held.first[m, 1] & POSITIVE
+    rows = hold_path(tables, m, state, _sliding(values, space, at, m, held), pressing.reach, held.rows, first)
+    held.counts[m, 1] = rows.n
+    space[at + LOW] = max(space[at + LOW], -values[m, V_BACKLASH] - rows.high)
+    space[at + HIGH] = min(space[at + HIGH], -values[m, V_BACKLASH] - rows.low)
+    sums = press_rows(held.rows, first, rows.n, values, m, pressing)
+    space[at + REACTION] += r_1 * sums.a_1
+    space[wheel + REACTION] -= r_2 * sums.a_2
     space[at + TANGENT_X] -= r_1 * sums.a_1_x
     space[wheel + TANGENT_X] += r_2 * sums.a_2_x
     space[at + TANGENT_V] -= r_1 * sums.a_1_v
     space[wheel + TANGENT_V] += r_2 * sums.a_2_v
     space[at + PRESSED] += sums.force
-    space[at + PRESSED_X] += sign * sums.force_x
-    space[at + PRESSED_V] += sign * sums.force_v
-    space[at + NET] += sign * sums.recorded
+    space[at + PRESSED_X] -= sums.force_x
+    space[at + PRESSED_V] -= sums.force_v
+    space[at + NET] -= sums.recorded
     space[at + NET_X] += sums.force_x
     space[at + NET_V] += sums.force_v
     space[at + BENT] += r_1 * abs(sums.curvature)
     space[at + BENT_V] += r_1 * abs(sums.force_xv)
-    # the part of bodies outside the table, finished by ``look``
-    space[at + OFF] -= sign * sums.elastic
+    space[at + OFF] += sums.elastic
     space[at + SHARE] += sums.stiffness
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _look_at_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
-    """Do for the back flank what ``look`` does for the front."""
-    sums = _press(tables, space, at, m, 1, held)
-    _add_flank(space, at, tables.values, m, 1, sums)
+@inlined
+def _no_front(space: Array, at: int, least: float) -> None:
+    """Set the reaction of a mesh whose front flank does not touch."""
+    wheel = at + PORT
+    for port in (at, wheel):
+        space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
+    space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
+    space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
+    space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
+    space[at + LOW], space[at + HIGH] = -np.inf, least
 
 
 @inlined
@@ -151,23 +207,17 @@ def look(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -
     """Set reaction and derivatives of mesh ``m`` at its reach and rate, by its table."""
     values = tables.values
     wheel = at + PORT
-    for port in (at, wheel):
-        space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
-    space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
-    space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
-    space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
     least = values[m, V_LEAST_GAP]
     teeth = space[at + AT_REACH] - space[at + GIVEN]
-    space[at + TEETH], space[at + LOW], space[at + HIGH] = teeth, -np.inf, np.inf
+    space[at + TEETH] = teeth
     held.counts[m, 0], held.counts[m, 1] = 0, 0
     if teeth > least:
-        sums = _press(tables, space, at, m, 0, held)
-        _add_flank(space, at, values, m, 0, sums)
+        _set_front(space, at, values, m, _press_front(tables, space, at, m, held))
     else:
-        space[at + HIGH] = least
+        _no_front(space, at, least)
     turning = -values[m, V_BACKLASH] - least
     if teeth < turning:
-        _look_at_back(tables, space, at, m, held)
+        _add_back(tables, space, at, m, held)
     elif turning > space[at + LOW]:
         space[at + LOW] = turning
     body = values[m, V_BODY]

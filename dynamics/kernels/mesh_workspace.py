@@ -4,7 +4,7 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -30,8 +30,11 @@ that were just written in registers. A last row belongs to the place holder for 
     NET_V,
     BENT,  # what a Newton step leaves out of the torque: over approach twice, over approach and rate
     BENT_V,
+    LOWER,  # shares of two levels of friction, and how far sliding reverses per sliding speed, of the sample
+    UPPER,
+    PER_SPEED,
     INVERSE,  # of the Newton matrix, four numbers
-) = range(24)
+) = range(27)
 # of both ports, the pinion's first and the wheel's PORT further
 PORT = 10
 (

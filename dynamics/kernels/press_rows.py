@@ -24,7 +24,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 
 

@@ -17,11 +17,11 @@ from dynamics.kernels.contact_table import (
     V_TABULATED_BODY,
     ContactTables,
 )
-from dynamics.kernels.hold_path import FlankState, Held, hold_path
+from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
 from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 1d4bced3
+# compiled from sources da586b04
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -31,11 +31,11 @@ CLOSE = 1e-13
 
 @inlined
 def _press_side(
-    tables: ContactTables, m: int, state: FlankState, pressing: Pressing, rows: Array
-) -> tuple[Held, Sums]:
+    tables: ContactTables, m: int, state: FlankState, sliding: Sliding, pressing: Pressing, rows: Array
+) -> Sums:
     """Hold one flank at its state and sum it there."""
-    held = hold_path(tables, m, state, pressing.reach, rows, 0)
-    return held, press_rows(rows, 0, held.n, tables.values, m, pressing)
+    held = hold_path(tables, m, state, sliding, pressing.reach, rows, 0)
+    return press_rows(rows, 0, held.n, tables.values, m, pressing)
 
 
 def table_reactions(tables: ContactTables, m: int, states: MeshStates, tilts: Array, out: Array) -> None:
@@ -57,6 +57,7 @@ def _table_reactions(
     for n in range(out.shape[0]):
         omega_1, omega_2 = states.omega_1[n], states.omega_2[n]
         rate = r_1 * omega_1 - r_2 * omega_2
+        sliding = sliding_at(tables, m, omega_1, omega_2)
         x = states.reach[n]
         y, low, high = x, -np.inf, np.inf
         share = 1.0
@@ -66,8 +67,8 @@ def _table_reactions(
                 for side in range(2):
                     sign = 1.0 - 2.0 * side
                     reach = sign * y - side * values[m, V_BACKLASH]
-                    state = FlankState(side, states.theta_1[n], 0.0, 0.0, tilts[n, side])
-                    _, sums = _press_side(tables, m, state, Pressing(sign, reach, 0.0, 0.0), rows)
+                    state = FlankState(side, states.theta_1[n], tilts[n, side])
+                    sums = _press_side(tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0), rows)
                     net += sign * sums.elastic
                     stiffness += sums.stiffness
                 off = y + values[m, V_BODY] * net - x
@@ -88,8 +89,8 @@ def _table_reactions(
             sign = 1.0 - 2.0 * side
             path_speed = sign * r_1 * omega_1 if values[m, V_CLOSING] > 0.0 else 0.0
             pressing = Pressing(sign, sign * y - side * values[m, V_BACKLASH], sign * rate, path_speed)
-            state = FlankState(side, states.theta_1[n], omega_1, omega_2, tilts[n, side])
-            _, sums = _press_side(tables, m, state, pressing, rows)
+            state = FlankState(side, states.theta_1[n], tilts[n, side])
+            sums = _press_side(tables, m, state, sliding, pressing, rows)
             friction, damping = powers(sums, values, m, pressing, omega_1, omega_2)
             out[n, 0] -= sign * r_1 * sums.a_1
             out[n, 1] += sign * r_2 * sums.a_2

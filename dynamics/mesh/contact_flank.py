@@ -48,8 +48,8 @@ class FlankTable:
     """Spline coefficients over the path of one flank.
 
     start : path position of the first cell [m]; pairs : base pitches that the path takes
-    gaps : (n_knots,) of the least gap [m]; cells : (n_planes, n_knots, n_cells, CELL)
-    moments, closing : (n_planes, n_knots, n_cells, LINES); friction : (n_planes, n_levels, n_knots, n_cells, 2 LINES)
+    gaps : (n_knots,) of the least gap [m]; cells : (n_planes, n_cells, n_knots, CELL)
+    moments, closing : (n_planes, n_cells, n_knots, LINES); friction : (n_planes, n_levels, n_cells, n_knots, 2 LINES)
     path, share : (n_places, n_slices) path position of each slice at the knots [m], and its share in the force
     """
 
@@ -86,11 +86,15 @@ def flank_table(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankTable:
     gap = _least_gap(springs)
     if filtered:
         gap = np.full(len(gap), gap.min())
+    # cell by cell: what is next along the path stands next in memory
     kinds = [
         _plane(springs._replace(gap=springs.gap - tilt * springs.face), node_law, gap, grid, width)
         for tilt in grid.tilts
     ]
-    cells, moments, closing, friction = (np.array(kind) for kind in zip(*kinds))
+    tables = (np.array(kind) for kind in zip(*kinds))
+    cells, moments, closing, friction = (
+        np.ascontiguousarray(table.swapaxes(-3, -2)) if table.ndim > 2 else table for table in tables
+    )
     return FlankTable(
         start=start,
         pairs=pitches if grid.pairs else 1,

@@ -291,12 +291,12 @@ def _fill_counts(
     teeth = law.teeth_1 + law.teeth_2
     for column, count in (
         (layout.C_PER_PITCH, grid.per_pitch), (layout.C_PAIRS, flanks[0].pairs),
-        (layout.C_KNOTS, flanks[0].cells.shape[1]), (layout.C_CELLS, len(part.depths) - 1),
+        (layout.C_KNOTS, flanks[0].cells.shape[2]), (layout.C_CELLS, len(part.depths) - 1),
         (layout.C_FINEST, len(part.cell_of)), (layout.C_BACK, len(flanks) - 1), (layout.C_INDIVIDUAL, individual),
         (layout.C_OFFSET_2, law.tooth_offset_2), (layout.C_TEETH_1, law.teeth_1), (layout.C_TEETH_2, law.teeth_2),
         (layout.C_PER_TOOTH, part.deviations.size // (2 * teeth)), (layout.C_SCALED_1, len(law.scale_1)),
         (layout.C_SCALED_2, len(law.scale_2)), (layout.C_PLANES, len(flanks[0].cells)),
-        (layout.C_LEVELS, len(part.levels)),
+        (layout.C_LEVELS, len(part.levels)), (layout.C_GENERAL, individual or len(flanks[0].cells) > 1),
     ):  # fmt: skip
         counts[column] = count
 

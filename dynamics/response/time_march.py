@@ -165,7 +165,8 @@ class TimeMarch:
                 ports[mesh, 2 * back : 2 * back + 2] = reaction.torque_1[0], reaction.torque_2[0]
                 if back == 0:
                     ports[mesh, 6:8] = x, now[0]
-                    ports[mesh, 8:] = self._outer_given(mesh, x + law.offset, reaction)
+                    ports[mesh, 10:] = turning
+                    ports[mesh, 8:10] = self._outer_given(mesh, x + law.offset, reaction)
                 if accounts:
                     powers[back, 2 * mesh : 2 * mesh + 2] = (
                         reaction.friction_power[0],
