@@ -30,9 +30,9 @@ LINES = 4
 (
     V_R1, V_R2, V_PER_PITCH, V_ORIGIN, V_BACK_ORIGIN, V_BACKLASH, V_DAMP_TIME, V_BODY, V_PER_FINEST, V_LOWEST,
     V_LEAST_GAP, V_PER_KNOT, V_FRICTION, V_ROLL_1, V_ROLL_2, V_PER_REVERSAL, V_CLOSING, V_DERIVATIVE, V_FLOOR, V_TILT,
-    V_PER_TILT, V_TABULATED_BODY, V_REVERSAL,
-) = range(23)  # fmt: skip
-N_TABLE_VALUES = 23
+    V_PER_TILT, V_TABULATED_BODY, V_REVERSAL, V_MU_1, V_MU_2, V_HALF_PITCH,
+) = range(26)  # fmt: skip
+N_TABLE_VALUES = 26
 # columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1; GENERAL is 0
 # where all teeth are alike and do not tilt
 (
@@ -42,10 +42,13 @@ N_TABLE_VALUES = 23
     C_GENERAL,
 ) = range(26)  # fmt: skip
 N_TABLE_COUNTS = 26
-# places in a row: a cell (CELL), its slopes over the path (CELL), friction, closing weights, tilting moment and its
-# derivative over the tilt; the approach at the start of the cell, the slope of the gap
-R_SLOPES, R_FRICTION, R_CLOSING, R_MOMENT, R_TILT, R_START, R_GAP_SLOPE = 8, 16, 20, 24, 28, 32, 33
-N_SCALED, N_ROW = 32, 36
+# places in a row: a cell (CELL), its slopes over the path (CELL), closing weights, tilting moment and its derivative
+# over the tilt, second derivative of W over the path; levers of friction and what they gain by the reversal; the
+# approach at the start of the cell, slope and second derivative of the gap
+R_SLOPES, R_CLOSING, R_MOMENT, R_TILT, R_CURVES, R_FRICTION, R_GAIN, R_START, R_GAP_SLOPE, R_GAP_CURVE = (
+    8, 16, 20, 24, 28, 32, 36, 40, 41, 42,
+)  # fmt: skip
+N_SCALED, N_ROW = 32, 44
 SCRATCH = 2 * CELL + 4 * LINES
 """Numbers behind the rows that tilt needs."""
 

@@ -21,7 +21,7 @@ from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, HELD, N_BANK, ST
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, OLDER, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

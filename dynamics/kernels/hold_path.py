@@ -42,7 +42,10 @@ from dynamics.kernels.contact_table import (
     N_ROW,
     N_SCALED,
     R_CLOSING,
+    R_CURVES,
     R_FRICTION,
+    R_GAIN,
+    R_GAP_CURVE,
     R_GAP_SLOPE,
     R_MOMENT,
     R_SLOPES,
@@ -59,16 +62,13 @@ from dynamics.kernels.contact_table import (
     V_PER_REVERSAL,
     V_PER_TILT,
     V_R1,
-    V_REVERSAL,
-    V_ROLL_1,
-    V_ROLL_2,
     V_TILT,
     ContactTables,
 )
-from dynamics.kernels.knots import add_lines, contract_cell, contract_lines
+from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -92,8 +92,6 @@ class Sliding(NamedTuple):
     lower: float
     """Share of this and of the next, negative where the gears turn backwards."""
     upper: float
-    advance: float
-    """By how much sliding reverses further along the path than without vibration [m]."""
 
 
 class Held(NamedTuple):
@@ -124,26 +122,7 @@ def sliding_at(tables: ContactTables, m: int, omega_1: float, omega_2: float) ->
             begin, end = tables.levels[first + level], tables.levels[first + level + 1]
             share = min((wanted - begin) / (end - begin), 1.0)
             lower, upper = sign * (1.0 - share), sign * share
-    return Sliding(
-        level, lower, upper, advance_of(values, m, omega_1, omega_2, reversal_per_speed(values, m, both))
-    )
-
-
-@inlined
-def reversal_per_speed(values: Array, m: int, both: float) -> float:
-    """Return how far the reversal moves per speed that the flanks slide there [s], none about standstill."""
-    least = 1e-3 / (values[m, V_PER_PITCH] * values[m, V_PER_REVERSAL])
-    return 1.0 / both if abs(both) > least else 0.0
-
-
-@inlined
-def advance_of(values: Array, m: int, omega_1: float, omega_2: float, per_speed: float) -> float:
-    """Return by how much sliding reverses further along the path than without vibration, half a pitch at most [m]."""
-    ahead = (values[m, V_ROLL_2] * omega_2 - values[m, V_ROLL_1] * omega_1) * per_speed
-    ahead = ahead - values[m, V_REVERSAL] if per_speed != 0.0 else 0.0
-    most = 0.5 / values[m, V_PER_PITCH]
-    ahead = ahead if ahead < most else most
-    return ahead if ahead > -most else -most
+    return Sliding(level, lower, upper)
 
 
 @inlined
@@ -155,6 +134,13 @@ def spline_weights(f: float, per_knot: float) -> tuple[float, ...]:
         e * e * e * (1.0 / 6.0), 2.0 / 3.0 + f * f * (0.5 * f - 1.0), 2.0 / 3.0 + e * e * (0.5 * e - 1.0),
         f * f * f * (1.0 / 6.0), -half * e * e, half * f * (3.0 * f - 4.0), -half * e * (3.0 * e - 4.0), half * f * f,
     )  # fmt: skip
+
+
+@inlined
+def spline_curves(f: float, per_knot: float) -> tuple[float, float, float, float]:
+    """Return the second derivatives of these splines over the path."""
+    twice = per_knot * per_knot
+    return twice * (1.0 - f), twice * (3.0 * f - 2.0), twice * (1.0 - 3.0 * f), twice * f
 
 
 @inlined
@@ -260,12 +246,9 @@ def _add_friction(
     if tables.values[m, V_FRICTION] > 0.0:
         first = kinds.friction + 2 * LINES * (cell + kinds.levels * plane * kinds.plane)
         for level in range(2 if kinds.levels > 1 else 1):
-            own = share * (sliding.lower if level == 0 else sliding.upper)
-            add_lines(
-                tables.friction, first & POSITIVE, 2 * LINES, share_of(weights, own), rows, row + R_FRICTION
-            )
-            moved = share_of(weights, own * sliding.advance)
-            add_lines(tables.friction, (first + LINES) & POSITIVE, 2 * LINES, moved, rows, row + R_FRICTION)
+            own = share_of(weights, share * (sliding.lower if level == 0 else sliding.upper))
+            add_lines(tables.friction, first & POSITIVE, 2 * LINES, own, rows, row + R_FRICTION)
+            add_lines(tables.friction, (first + LINES) & POSITIVE, 2 * LINES, own, rows, row + R_GAIN)
             first += 2 * kinds.plane * LINES
 
 
@@ -284,12 +267,13 @@ def _add_closing(
 @inlined
 def _fill_row(
     tables: ContactTables, m: int, kinds: _CellTables, plane: _Plane, cell: int, weights: tuple[float, ...],
-    sliding: Sliding, rows: Array, row: int,
+    curves: tuple[float, ...], sliding: Sliding, rows: Array, row: int,
 ) -> None:  # fmt: skip
     """Write the numbers of a cell into a row."""
     contract_cell(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, CELL, weights, rows, row)
-    for i in range(R_FRICTION, N_SCALED):
+    for i in range(R_CLOSING, R_START):
         rows[row + i] = 0.0
+    contract_first(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, CELL, curves, rows, row + R_CURVES)
     if tables.counts[m, C_PLANES] == 1:
         _add_friction(tables, m, kinds, 0, 1.0, cell, weights, sliding, rows, row)
         _add_closing(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
@@ -349,6 +333,7 @@ def hold_path(
     place = (turned - turn) * per_pitch
     knot = max(0, min(int(place), per_pitch - 1))  # also for a run that left the finite numbers
     weights = spline_weights(place - knot, values[m, V_PER_KNOT])
+    curves = spline_curves(place - knot, values[m, V_PER_KNOT])
     gaps_at = counts[m, C_GAPS_AT] + back * knots
     plane = _plane(values, counts, m, state.tilt)
     kinds = _cell_tables(tables, m, back, plane.first, sliding.level)
@@ -371,6 +356,7 @@ def hold_path(
         )  # fmt: skip
         gap = weights[0] * g_0 + weights[1] * g_1 + weights[2] * g_2 + weights[3] * g_3
         slope = weights[4] * g_0 + weights[5] * g_1 + weights[6] * g_2 + weights[7] * g_3
+        curve = curves[0] * g_0 + curves[1] * g_1 + curves[2] * g_2 + curves[3] * g_3
         scale = 1.0
         if individual:
             more, steeper = _of_teeth(
@@ -399,12 +385,10 @@ def hold_path(
             if cell < n_cells - 1:
                 high = min(high, gap + tables.depths[depths_at + 1])
             row = (first + N_ROW * n) & POSITIVE
-            _fill_row(tables, m, kinds, plane, cell * knots + knot, weights, sliding, rows, row)
-            rows[row + R_START], rows[row + R_GAP_SLOPE] = start, slope
+            _fill_row(tables, m, kinds, plane, cell * knots + knot, weights, curves, sliding, rows, row)
+            rows[row + R_START], rows[row + R_GAP_SLOPE], rows[row + R_GAP_CURVE] = start, slope, curve
             if scale != 1.0:
-                for i in range(R_FRICTION):
-                    rows[row + i] *= scale
-                for i in range(R_CLOSING, N_SCALED):
+                for i in range(N_SCALED):
                     rows[row + i] *= scale
             n += 1
         knot += per_pitch

@@ -61,34 +61,11 @@ def _contraction(width: int, sums: int, add: bool) -> Any:
     return intrinsic(contract)
 
 
-def _contract_two(
-    typing: Any, data: Any, first: Any, second: Any, stride: Any, weights: Any, others: Any, out: Any, at: Any
-) -> Any:
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        table, start, further, step, factors, more, target, place = args
-        total = None
-        for begin, shares in ((start, factors), (further, more)):
-            for row in range(4):
-                where = (
-                    begin if row == 0 else builder.add(begin, builder.mul(step, ir.Constant(step.type, row)))
-                )
-                values = builder.load(
-                    _vector_at(context, builder, signature.args[0], table, where, 4), align=8
-                )
-                factor = _spread(builder, builder.extract_value(shares, row), 4)
-                product = builder.fmul(values, factor, flags=FAST)
-                total = product if total is None else builder.fadd(total, product, flags=FAST)
-        builder.store(total, _vector_at(context, builder, signature.args[6], target, place, 4), align=8)
-        return context.get_dummy_value()
-
-    return types.void(data, first, second, stride, weights, others, out, at), codegen
-
-
-contract_two: Any = intrinsic(_contract_two)
-"""contract_two(data, first, second, stride, weights, others, out, at): write 4 values, sums from two places."""
 contract_cell: Any = _contraction(8, 2, add=False)
 """contract_cell(data, first, stride, weights, out, at): write 8 values and behind them 8 slopes of a cell."""
 contract_lines: Any = _contraction(4, 2, add=False)
 """The same of 4 values and 4 slopes."""
+contract_first: Any = _contraction(4, 1, add=False)
+"""contract_first(data, first, stride, weights, out, at): write 4 values."""
 add_lines: Any = _contraction(4, 1, add=True)
 """add_lines(data, first, stride, weights, out, at): add 4 values."""

@@ -15,7 +15,7 @@ from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, OLDER, OLDEST, SPEED, TAU, TURN
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,11 +33,14 @@ from dynamics.kernels.mesh_solve import (
     HeldRows,
     choose_friction,
     correct,
+    correct_alone,
     flank_powers,
+    hold_mesh,
     invert,
     left_open,
     look,
     look_ahead,
+    move_others,
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
@@ -58,10 +61,13 @@ from dynamics.kernels.mesh_workspace import (
     REACH,
     SPEED,
     TAU,
+    TEETH,
+    TEETH_OLD,
     TURN,
+    TURN_OLD,
 )
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -145,8 +151,9 @@ def march(
 
 
 @inlined
-def _begin(space: Array, values: Array, ports: Array, port_new: Array, give: Array) -> None:
+def _begin(space: Array, values: Array, carried: Carried, port_new: Array, give: Array, step: float) -> None:
     """Take over the state of the last call, and what the torques give to the meshes."""
+    ports, offset = carried.ports, carried.offset
     n_meshes = ports.shape[0]
     for m in range(n_meshes):
         at = m * N_SPACE
@@ -157,6 +164,11 @@ def _begin(space: Array, values: Array, ports: Array, port_new: Array, give: Arr
         space[at + APPROACH], space[at + ANGLE] = ports[m, 6], ports[m, 7]
         space[at + GIVEN], space[at + GIVEN_OLD] = ports[m, 8], ports[m, 9]
         space[at + SPEED], space[at + PORT + SPEED] = ports[m, 10], ports[m, 11]
+        # rates that are straight on, or the first hold is repeated
+        space[at + TURN] = space[at + TURN_OLD] = step * ports[m, 10]
+        rate = values[m, V_R1] * ports[m, 10] - values[m, V_R2] * ports[m, 11]
+        space[at + TEETH] = ports[m, 6] + offset[m] - ports[m, 8]
+        space[at + TEETH_OLD] = space[at + TEETH] - step * rate
         for port in range(2 * n_meshes):
             for k in range(2):
                 given_1, given_2 = port_new[port, 4 * m + k], port_new[port, 4 * m + 2 + k]
@@ -179,13 +191,21 @@ def _end(space: Array, ports: Array) -> None:
 
 
 @inlined
-def _guess(space: Array, n_meshes: int, by_slow: Array, first: int) -> None:
-    """Begin a step: the parabola through the last three torques, speeds and turns with what the slow inputs give."""
-    for m in range(n_meshes):
+def _guess(tables: ContactTables, space: Array, held: HeldRows, by_slow: Array, first: int) -> None:
+    """Begin a step: the parabola through the last three torques, speeds and turns with what the slow inputs give.
+
+    The meshes are held where angle and approach go straight on.
+    """
+    for m in range(tables.values.shape[0]):
         at, given = (m * N_SPACE) & POSITIVE, (first + 4 * m) & POSITIVE
         wheel = at + PORT
         space[at + TAU] = 3.0 * (space[at + OLD] - space[at + OLDER]) + space[at + OLDEST]
         space[wheel + TAU] = 3.0 * (space[wheel + OLD] - space[wheel + OLDER]) + space[wheel + OLDEST]
+        turned = space[at + TURN]
+        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD]
+        teeth = 2.0 * space[at + TEETH] - space[at + TEETH_OLD]
+        space[at + TURN_OLD], space[at + TEETH_OLD] = turned, space[at + TEETH]
+        hold_mesh(tables, space, at, m, held, angle, teeth)
         space[at + SPEED], space[at + TURN] = by_slow[given], by_slow[given + 1]
         space[wheel + SPEED], space[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
         last = space[at + GIVEN]
@@ -216,25 +236,44 @@ def _keep_torques(space: Array, n_meshes: int, drags: Array, change: Array, torq
 
 
 @inlined
-def _sweep_meshes(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
-    """Bring all torques to the tangents of the meshes, one mesh after the other.
+def _meet_others(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
+    """Let the meshes move each other; return whether all torques are on their tangents."""
+    together = True
+    for m in range(n_meshes):
+        at = (m * N_SPACE) & POSITIVE
+        if move_others(space, at, give, n_meshes, m) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
+            together = False
+    converged = together or _sweep_meshes(space, values, give, n_meshes)
+    for m in range(n_meshes):
+        at = (m * N_SPACE) & POSITIVE
+        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
+            converged = False
+    return converged
 
-    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and
-    moves the others by less still. Returns whether that was reached and no mesh is off its tangent by more.
+
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _sweep_meshes(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
+    """Bring all torques to the tangents of the meshes, one mesh after the other; return whether that was reached.
+
+    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and moves the
+    others by less still.
     """
     correction, agreed, m = 0, -1, 0
+    for n in range(n_meshes):
+        at = n * N_SPACE
+        space[at + MISSING] -= space[at + TAU]
+        space[at + PORT + MISSING] -= space[at + PORT + TAU]
     while agreed < n_meshes - 1 and correction < MOST_SWEEPS * n_meshes:
         at = (m * N_SPACE) & POSITIVE
         error = correct(space, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
         agreed = agreed + 1 if error <= TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR] else 0
         m = m + 1 if m + 1 < n_meshes else 0
         correction += 1
-    converged = agreed >= n_meshes - 1
-    for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
-            converged = False
-    return converged
+    for n in range(n_meshes):
+        at = n * N_SPACE
+        space[at + MISSING] += space[at + TAU]
+        space[at + PORT + MISSING] += space[at + PORT + TAU]
+    return agreed >= n_meshes - 1
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
@@ -257,7 +296,7 @@ def _march(
     keeps_accounts = carried.work.shape[0] > 0
     n_outputs = 4 * n_meshes + modes.rows.shape[0]
 
-    _begin(space, values, carried.ports, modes.port_new, give)
+    _begin(space, values, carried, modes.port_new, give, step)
     put_state(blocks, state, bank)
     mean_torque = carried.controller[2]
     torque_share = values[0, V_R1] / substeps
@@ -281,7 +320,7 @@ def _march(
         mean_torque = 0.0
         for sub in range(substeps):
             slow_at = sub * n_outputs
-            _guess(space, n_meshes, by_slow, slow_at)
+            _guess(tables, space, work.held, by_slow, slow_at)
             if n_drags:
                 drags_on_ports(modes.drags, drags, work.drags.outputs, space)
             step_modes(blocks, further, links, bank, through, space)
@@ -293,17 +332,10 @@ def _march(
                 for m in range(n_meshes):
                     at = (m * N_SPACE) & POSITIVE
                     look_ahead(space, at, values, m, step)
-                    look(tables, space, at, m, work.held)
+                    look(tables, space, at, m, work.held, attempt > 0)
                     invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                    space[at + MISSING], space[at + PORT + MISSING] = (
-                        -space[at + TAU],
-                        -space[at + PORT + TAU],
-                    )
-                converged = _sweep_meshes(space, values, give, n_meshes)
-                for m in range(n_meshes):
-                    at = (m * N_SPACE) & POSITIVE
-                    space[at + MISSING] += space[at + TAU]
-                    space[at + PORT + MISSING] += space[at + PORT + TAU]
+                    correct_alone(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                converged = _meet_others(space, values, give, n_meshes)
                 add_torques(links, 0, through, AT_END, space, MISSING)
                 attempt += 1
             if n_drags:

@@ -20,18 +20,12 @@ from dynamics.kernels.contact_table import (
     V_BODY,
     V_CLOSING,
     V_LEAST_GAP,
+    V_PER_KNOT,
     V_R1,
     V_R2,
     ContactTables,
 )
-from dynamics.kernels.hold_path import (
-    FlankState,
-    Sliding,
-    advance_of,
-    hold_path,
-    reversal_per_speed,
-    sliding_at,
-)
+from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
 from dynamics.kernels.hold_phase import hold_phase
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
@@ -42,10 +36,12 @@ from dynamics.kernels.mesh_workspace import (
     BENT,
     BENT_V,
     GIVEN,
+    HELD_ANGLE,
     HIGH,
     INVERSE,
     LOW,
     LOWER,
+    MISSING,
     N_SPACE,
     NET,
     NET_V,
@@ -70,11 +66,15 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
     UPPER,
 )
-from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
+from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+NEAR = 0.2
+"""Share of a cell by which the path may be off the place at which rows are held."""
 
 
 class HeldRows(NamedTuple):
@@ -112,66 +112,94 @@ def look_ahead(space: Array, at: int, values: Array, m: int, step: float) -> Non
 
 
 @inlined
-def _pressing(space: Array, at: int, values: Array, m: int, side: int, teeth: float) -> Pressing:
-    """Return how the gears press a flank at an approach of the teeth and the rate at the end of the step."""
+def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressing:
+    """Return how the gears press a flank at the approach of the teeth and the rate at the end of the step."""
     sign = 1.0 - 2.0 * side
     path_speed = sign * values[m, V_R1] * space[at + SPEED] if values[m, V_CLOSING] > 0.0 else 0.0
-    return Pressing(sign, sign * teeth - side * values[m, V_BACKLASH], sign * space[at + RATE], path_speed)
-
-
-@inlined
-def _sliding(values: Array, space: Array, at: int, m: int, held: HeldRows) -> Sliding:
-    """Return the friction of a mesh in this step."""
+    beside = sign * values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
     advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
-    return Sliding(held.levels[m], space[at + LOWER], space[at + UPPER], advance)
+    reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH]
+    return Pressing(sign, reach, sign * space[at + RATE], path_speed, beside, advance)
 
 
 @inlined
-def _press_front(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> Sums:
-    """Hold the front flank at the angle that its mesh reaches and press it there; set the range of its rows."""
+def hold_mesh(
+    tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, angle: float, teeth: float
+) -> None:
+    """Hold the flanks of a mesh that touch at an angle of the pinion and an approach of the teeth."""
     values = tables.values
-    pressing = _pressing(space, at, values, m, 0, space[at + TEETH])
-    sliding = _sliding(values, space, at, m, held)
-    first = held.first[m, 0] & POSITIVE
-    angle = space[at + ANGLE] + space[at + TURN]
-    if tables.counts[m, C_GENERAL] == 0:
-        rows = hold_phase(tables, m, angle, sliding, pressing.reach, held.rows, first)
-    else:
-        rows = hold_path(tables, m, FlankState(0, angle, 0.0), sliding, pressing.reach, held.rows, first)
-    held.counts[m, 0] = rows.n
-    space[at + LOW], space[at + HIGH] = rows.low, rows.high
-    return press_rows(held.rows, first, rows.n, values, m, pressing)
+    least, turning = values[m, V_LEAST_GAP], -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
+    front, back = teeth > least, teeth < turning
+    space[at + HELD_ANGLE] = angle
+    held.counts[m, 0], held.counts[m, 1] = 0, 0
+    low, high = turning, least
+    if front or back:
+        side = 0 if front else 1
+        sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
+        first = held.first[m, side] & POSITIVE
+        reach = teeth if front else -teeth - values[m, V_BACKLASH]
+        if tables.counts[m, C_GENERAL] == 0:
+            rows = hold_phase(tables, m, side, angle, sliding, reach, held.rows, first)
+        else:
+            rows = hold_path(tables, m, FlankState(side, angle, 0.0), sliding, reach, held.rows, first)
+        held.counts[m, side] = rows.n
+        if front:
+            low, high = rows.low if back or rows.low > turning else turning, rows.high
+        else:
+            low, high = -values[m, V_BACKLASH] - rows.high, -values[m, V_BACKLASH] - rows.low
+            high = high if high < least else least
+    space[at + LOW], space[at + HIGH] = low, high
+    if front and back:
+        _hold_back(tables, space, at, m, held, teeth)
+
+
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _hold_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, teeth: float) -> None:
+    """Hold the back flank of a mesh whose front flank is held."""
+    backlash = tables.values[m, V_BACKLASH]
+    sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
+    state = FlankState(1, space[at + HELD_ANGLE], 0.0)
+    rows = hold_path(tables, m, state, sliding, -teeth - backlash, held.rows, held.first[m, 1] & POSITIVE)
+    held.counts[m, 1] = rows.n
+    # no longer from where the back flank begins to touch on
+    space[at + LOW] = max(
+        space[at + LOW] if space[at + LOW] > teeth - 1.0 else -np.inf, -backlash - rows.high
+    )
+    space[at + HIGH] = min(space[at + HIGH], -backlash - rows.low)
 
 
 @inlined
-def _set_front(space: Array, at: int, values: Array, m: int, sums: Sums) -> None:
-    """Set what the front flank answers as the reaction of its mesh; derivatives over the approach of the teeth."""
+def is_held(space: Array, at: int, values: Array, m: int) -> bool:
+    """Return whether the held rows of a mesh are good at the approach and the angle that it reaches."""
+    beside = values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
+    near = abs(beside) * values[m, V_PER_KNOT] < NEAR
+    return bool(near and space[at + LOW] <= space[at + TEETH] <= space[at + HIGH])
+
+
+@inlined
+def _set_flank(space: Array, at: int, values: Array, m: int, sign: float, sums: Sums) -> None:
+    """Set what a flank answers as the reaction of its mesh; derivatives over the approach of the teeth."""
     wheel = at + PORT
     r_1, r_2 = values[m, V_R1], values[m, V_R2]
-    space[at + REACTION], space[wheel + REACTION] = -r_1 * sums.a_1, r_2 * sums.a_2
+    space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
     space[at + TANGENT_X], space[wheel + TANGENT_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
     space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
-    space[at + PRESSED], space[at + PRESSED_X] = sums.force, sums.force_x
-    space[at + PRESSED_V], space[at + NET] = sums.force_v, sums.recorded
+    space[at + PRESSED], space[at + PRESSED_X] = sums.force, sign * sums.force_x
+    space[at + PRESSED_V], space[at + NET] = sign * sums.force_v, sign * sums.recorded
     space[at + NET_X], space[at + NET_V] = sums.force_x, sums.force_v
     space[at + BENT], space[at + BENT_V] = r_1 * abs(sums.curvature), r_1 * abs(sums.force_xv)
-    space[at + OFF], space[at + SHARE] = -sums.elastic, sums.stiffness
+    space[at + OFF], space[at + SHARE] = -sign * sums.elastic, sums.stiffness
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
-    """Hold and press the back flank of a mesh and add what it answers to that of the front."""
+    """Add what the back flank answers to the reaction of a mesh whose front flank touches too."""
     values = tables.values
     wheel = at + PORT
     r_1, r_2 = values[m, V_R1], values[m, V_R2]
-    pressing = _pressing(space, at, values, m, 1, space[at + TEETH])
-    state = FlankState(1, space[at + ANGLE] + space[at + TURN], 0.0)
     first = held.first[m, 1] & POSITIVE
-    rows = hold_path(tables, m, state, _sliding(values, space, at, m, held), pressing.reach, held.rows, first)
-    held.counts[m, 1] = rows.n
-    space[at + LOW] = max(space[at + LOW], -values[m, V_BACKLASH] - rows.high)
-    space[at + HIGH] = min(space[at + HIGH], -values[m, V_BACKLASH] - rows.low)
-    sums = press_rows(held.rows, first, rows.n, values, m, pressing)
+    pressing = _pressing(space, at, values, m, 1)
+    sums = press_rows(held.rows, first, held.counts[m, 1], values, m, pressing)
     space[at + REACTION] += r_1 * sums.a_1
     space[wheel + REACTION] -= r_2 * sums.a_2
     space[at + TANGENT_X] -= r_1 * sums.a_1_x
@@ -191,35 +219,35 @@ def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
 
 
 @inlined
-def _no_front(space: Array, at: int, least: float) -> None:
-    """Set the reaction of a mesh whose front flank does not touch."""
+def _no_contact(space: Array, at: int) -> None:
+    """Set the reaction of a mesh whose flanks do not touch."""
     wheel = at + PORT
     for port in (at, wheel):
         space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
     space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
     space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
     space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
-    space[at + LOW], space[at + HIGH] = -np.inf, least
 
 
 @inlined
-def look(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
-    """Set reaction and derivatives of mesh ``m`` at its reach and rate, by its table."""
+def look(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, again: bool) -> None:
+    """Set reaction and derivatives of mesh ``m`` at its reach and rate, by the rows that are held for it."""
     values = tables.values
     wheel = at + PORT
-    least = values[m, V_LEAST_GAP]
-    teeth = space[at + AT_REACH] - space[at + GIVEN]
-    space[at + TEETH] = teeth
-    held.counts[m, 0], held.counts[m, 1] = 0, 0
-    if teeth > least:
-        _set_front(space, at, values, m, _press_front(tables, space, at, m, held))
+    space[at + TEETH] = space[at + AT_REACH] - space[at + GIVEN]
+    if again or not is_held(space, at, values, m):
+        hold_mesh(tables, space, at, m, held, space[at + ANGLE] + space[at + TURN], space[at + TEETH])
+    front, back = held.counts[m, 0] > 0, held.counts[m, 1] > 0
+    if front or back:
+        side = 0 if front else 1
+        pressing = _pressing(space, at, values, m, side)
+        first = held.first[m, side] & POSITIVE
+        sums = press_rows(held.rows, first, held.counts[m, side], values, m, pressing)
+        _set_flank(space, at, values, m, pressing.sign, sums)
     else:
-        _no_front(space, at, least)
-    turning = -values[m, V_BACKLASH] - least
-    if teeth < turning:
+        _no_contact(space, at)
+    if front and back:
         _add_back(tables, space, at, m, held)
-    elif turning > space[at + LOW]:
-        space[at + LOW] = turning
     body = values[m, V_BODY]
     if body > 0.0:
         share = 1.0 / (1.0 + body * space[at + SHARE])
@@ -278,6 +306,35 @@ def correct(space: Array, at: int, give: Array, first: int, n_meshes: int) -> fl
 
 
 @inlined
+def correct_alone(space: Array, at: int, give: Array, own: int) -> None:
+    """Bring the torques of a mesh to its tangent where it was looked at, the others staying as they are."""
+    wheel = at + PORT
+    e_1, e_2 = space[at + REACTION] - space[at + TAU], space[wheel + REACTION] - space[wheel + TAU]
+    d_1 = space[at + INVERSE] * e_1 + space[at + INVERSE + 1] * e_2
+    d_2 = space[at + INVERSE + 2] * e_1 + space[at + INVERSE + 3] * e_2
+    space[at + TAU] += d_1
+    space[wheel + TAU] += d_2
+    space[at + MISSING], space[wheel + MISSING] = d_1, d_2
+    space[at + REACH] += give[own] * d_1 + give[own + 1] * d_2
+    space[at + RATE] += give[own + 2] * d_1 + give[own + 3] * d_2
+
+
+@inlined
+def move_others(space: Array, at: int, give: Array, n_meshes: int, m: int) -> float:
+    """Let the other meshes move mesh ``m`` by what ``correct_alone`` did to them; return the torque that it means."""
+    dx, dv = 0.0, 0.0
+    for n in range(n_meshes):
+        if n != m:
+            by, given = (n * N_SPACE) & POSITIVE, (4 * (n * n_meshes + m)) & POSITIVE
+            d_1, d_2 = space[by + MISSING], space[by + PORT + MISSING]
+            dx += give[given] * d_1 + give[given + 1] * d_2
+            dv += give[given + 2] * d_1 + give[given + 3] * d_2
+    space[at + REACH] += dx
+    space[at + RATE] += dv
+    return float(abs(space[at + TANGENT_X] * dx + space[at + TANGENT_V] * dv))
+
+
+@inlined
 def left_open(space: Array, at: int) -> float:
     """Bring approach of the teeth and recorded force to the tangent; return the torque that may be off it [N m].
 
@@ -300,7 +357,7 @@ def flank_powers(
     tables: ContactTables, space: Array, at: int, m: int, side: int, held: HeldRows
 ) -> tuple[float, float]:
     """Return friction and damping power of a flank at the end of the step, whose rows are held."""
-    pressing = _pressing(space, at, tables.values, m, side, space[at + TEETH])
+    pressing = _pressing(space, at, tables.values, m, side)
     first = held.first[m, side] & POSITIVE
     sums = press_rows(held.rows, first, held.counts[m, side], tables.values, m, pressing)
     return powers(sums, tables.values, m, pressing, space[at + SPEED], space[at + PORT + SPEED])

@@ -4,7 +4,7 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -16,6 +16,8 @@ that were just written in registers. A last row belongs to the place holder for 
     AT_REACH,  # the same where the mesh was last looked at
     AT_RATE,
     TEETH,  # approach that the teeth see, where the mesh was last looked at, then at the end of the step [m]
+    TEETH_OLD,  # the same at the end of the last step
+    HELD_ANGLE,  # angle of the pinion at which the rows are held [rad]
     OFF,  # by how much the approach behind the bodies is off there [m]
     SHARE,  # part of a change of the reach that the teeth take there [-]
     LOW,  # range of the approach of the teeth in which the held rows are good [m]
@@ -34,12 +36,13 @@ that were just written in registers. A last row belongs to the place holder for 
     UPPER,
     PER_SPEED,
     INVERSE,  # of the Newton matrix, four numbers
-) = range(27)
+) = range(29)
 # of both ports, the pinion's first and the wheel's PORT further
-PORT = 10
+PORT = 11
 (
     SPEED,  # at the end of the step [rad/s]
     TURN,  # in the step [rad]
+    TURN_OLD,  # in the last step
     TAU,  # torque at the end of the step [N m], then one, two and three steps earlier
     OLD,
     OLDER,

@@ -9,7 +9,10 @@ from dynamics.kernels.contact import inlined
 from dynamics.kernels.contact_table import (
     N_ROW,
     R_CLOSING,
+    R_CURVES,
     R_FRICTION,
+    R_GAIN,
+    R_GAP_CURVE,
     R_GAP_SLOPE,
     R_MOMENT,
     R_SLOPES,
@@ -18,13 +21,19 @@ from dynamics.kernels.contact_table import (
     V_CLOSING,
     V_DAMP_TIME,
     V_DERIVATIVE,
-    V_FRICTION,
+    V_HALF_PITCH,
+    V_MU_1,
+    V_MU_2,
+    V_PER_REVERSAL,
     V_R1,
     V_R2,
+    V_REVERSAL,
+    V_ROLL_1,
+    V_ROLL_2,
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 
 
@@ -39,6 +48,10 @@ class Pressing(NamedTuple):
     """Rate of the approach of the gears [m/s]."""
     path_speed: float
     """Speed of the flank along its path [m/s]; 0 where the damper acts on the relative rotation."""
+    beside: float
+    """Path position less that at which the rows are held, a small part of a cell [m]."""
+    advance: float
+    """By how much sliding reverses further along the path than without vibration [m]."""
 
 
 class Sums(NamedTuple):
@@ -79,17 +92,34 @@ class Sums(NamedTuple):
 
 
 @inlined
+def reversal_per_speed(values: Array, m: int, both: float) -> float:
+    """Return how far the reversal moves per speed of sliding at the sum of both speeds [s]; 0 about standstill."""
+    least = 1e-3 / (values[m, V_HALF_PITCH] * values[m, V_PER_REVERSAL])
+    return 1.0 / both if abs(both) > least else 0.0
+
+
+@inlined
+def advance_of(values: Array, m: int, omega_1: float, omega_2: float, per_speed: float) -> float:
+    """Return by how much sliding reverses further along the path than without vibration, half a pitch at most [m]."""
+    ahead = (values[m, V_ROLL_2] * omega_2 - values[m, V_ROLL_1] * omega_1) * per_speed
+    ahead = ahead - values[m, V_REVERSAL] if per_speed != 0.0 else 0.0
+    most = values[m, V_HALF_PITCH]
+    ahead = ahead if ahead < most else most
+    return ahead if ahead > -most else -most
+
+
+@inlined
 def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing: Pressing) -> Sums:
     """Sum the held rows of a flank at an approach and a rate.
 
     Force of a pair ``N = max(0, F + c h v)``, clipped by its damper alone; a_1 = N + dW/ds and friction, a_2 = N and
     friction.
     """
-    sign, reach, rate = pressing.sign, pressing.reach, pressing.rate
+    sign, reach, rate, beside = pressing.sign, pressing.reach, pressing.rate, pressing.beside
     damp_time, derivative = values[m, V_DAMP_TIME], values[m, V_DERIVATIVE]
-    mu_1 = sign * values[m, V_FRICTION] / values[m, V_R1]
-    mu_2 = sign * values[m, V_FRICTION] / values[m, V_R2]
-    force, elastic, a_1, a_2 = 0.0, 0.0, 0.0, 0.0
+    mu_1 = sign * values[m, V_MU_1]
+    mu_2 = sign * values[m, V_MU_2]
+    total, elastic, a_1, a_2 = 0.0, 0.0, 0.0, 0.0
     force_x, stiffness, a_1_x, a_2_x = 0.0, 0.0, 0.0, 0.0
     force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
     friction_1, damped, energy, recorded = 0.0, 0.0, 0.0, 0.0
@@ -99,23 +129,27 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         r = (first + N_ROW * p) & POSITIVE
         d = reach - rows[r + R_START]
         f_1, f_2 = rows[r + 2], rows[r + 3]
-        own = rows[r + 1] + d * (f_1 + d * f_2)
+        s, c = r + R_SLOPES, r + R_CURVES
         k = f_1 + 2.0 * d * f_2
-        s = r + R_SLOPES
         slope = rows[r + R_GAP_SLOPE]
-        along = rows[s] + d * (rows[s + 1] + d * (0.5 * rows[s + 2] + d * rows[s + 3] / 3.0)) - own * slope
-        along_x = rows[s + 1] + d * (rows[s + 2] + d * rows[s + 3]) - k * slope
+        per_path = rows[s + 1] + d * (rows[s + 2] + d * rows[s + 3])
+        along_x = per_path - k * slope
+        force = rows[r + 1] + d * (f_1 + d * f_2)
+        own = force + beside * along_x
+        along = rows[s] + d * (rows[s + 1] + d * (0.5 * rows[s + 2] + d * rows[s + 3] / 3.0)) - force * slope
+        bent = rows[c] + d * (rows[c + 1] + d * (0.5 * rows[c + 2] + d * rows[c + 3] / 3.0))
+        along += beside * (bent - slope * (per_path + along_x) - force * rows[r + R_GAP_CURVE])
         weight_x = damp_time * rows[r + 5]
         weight = damp_time * rows[r + 4] + d * weight_x
         weight = weight if weight > 0.0 else 0.0
         damping, damping_x, turned, turned_x, turned_v = weight * rate, weight_x * rate, 0.0, 0.0, 0.0
         if values[m, V_CLOSING] > 0.0:
-            c = r + R_CLOSING
-            h_1, h_2 = damp_time * (rows[c] + d * rows[c + 1]), damp_time * (rows[c + 2] + d * rows[c + 3])
+            q = r + R_CLOSING
+            h_1, h_2 = damp_time * (rows[q] + d * rows[q + 1]), damp_time * (rows[q + 2] + d * rows[q + 3])
             damping -= h_1 * pressing.path_speed
-            damping_x -= damp_time * rows[c + 1] * pressing.path_speed
+            damping_x -= damp_time * rows[q + 1] * pressing.path_speed
             turned = h_2 * pressing.path_speed - h_1 * rate
-            turned_x = damp_time * (rows[c + 3] * pressing.path_speed - rows[c + 1] * rate)
+            turned_x = damp_time * (rows[q + 3] * pressing.path_speed - rows[q + 1] * rate)
             turned_v = -h_1
         normal, normal_x, normal_v = own + damping, k + damping_x, weight
         if normal < 0.0 and damping < 0.0:
@@ -124,10 +158,12 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
             turned, turned_x, turned_v = -part * turned, 0.0, 0.0
             normal = own if own < 0.0 else 0.0
             normal_x, normal_v = k if own < 0.0 else 0.0, 0.0
-        q = r + R_FRICTION
-        lever_1_x, lever_2_x = mu_1 * rows[q + 1], mu_2 * rows[q + 3]
-        lever_1, lever_2 = mu_1 * rows[q] + d * lever_1_x, mu_2 * rows[q + 2] + d * lever_2_x
-        force += normal
+        q, g = r + R_FRICTION, r + R_GAIN
+        lever_1_x = mu_1 * (rows[q + 1] + pressing.advance * rows[g + 1])
+        lever_2_x = mu_2 * (rows[q + 3] + pressing.advance * rows[g + 3])
+        lever_1 = mu_1 * (rows[q] + pressing.advance * rows[g]) + d * lever_1_x
+        lever_2 = mu_2 * (rows[q + 2] + pressing.advance * rows[g + 2]) + d * lever_2_x
+        total += normal
         elastic += own
         stiffness += k
         force_x += normal_x
@@ -150,7 +186,7 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         tilting_x += rows[t + 1] + d * (rows[t + 2] + d * rows[t + 3])
         tilting_tilt += rows[u] + d * (rows[u + 1] + d * (0.5 * rows[u + 2] + d * rows[u + 3] / 3.0))
     return Sums(
-        force, elastic, a_1, a_2, force_x, stiffness, a_1_x, a_2_x, force_v, a_1_v, a_2_v, friction_1, damped, energy,
+        total, elastic, a_1, a_2, force_x, stiffness, a_1_x, a_2_x, force_v, a_1_v, a_2_v, friction_1, damped, energy,
         recorded, curvature, force_xv, tilting, tilting_x, tilting_tilt,
     )  # fmt: skip
 

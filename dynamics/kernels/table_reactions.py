@@ -18,10 +18,10 @@ from dynamics.kernels.contact_table import (
     ContactTables,
 )
 from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
-from dynamics.kernels.press_rows import Pressing, Sums, powers, press_rows
+from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources da586b04
+# compiled from sources 6ac092e4
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -58,6 +58,8 @@ def _table_reactions(
         omega_1, omega_2 = states.omega_1[n], states.omega_2[n]
         rate = r_1 * omega_1 - r_2 * omega_2
         sliding = sliding_at(tables, m, omega_1, omega_2)
+        per_speed = reversal_per_speed(values, m, omega_1 + omega_2)
+        advance = advance_of(values, m, omega_1, omega_2, per_speed)
         x = states.reach[n]
         y, low, high = x, -np.inf, np.inf
         share = 1.0
@@ -68,7 +70,9 @@ def _table_reactions(
                     sign = 1.0 - 2.0 * side
                     reach = sign * y - side * values[m, V_BACKLASH]
                     state = FlankState(side, states.theta_1[n], tilts[n, side])
-                    sums = _press_side(tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0), rows)
+                    sums = _press_side(
+                        tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0, 0.0, 0.0), rows
+                    )
                     net += sign * sums.elastic
                     stiffness += sums.stiffness
                 off = y + values[m, V_BODY] * net - x
@@ -88,7 +92,9 @@ def _table_reactions(
         for side in range(2):
             sign = 1.0 - 2.0 * side
             path_speed = sign * r_1 * omega_1 if values[m, V_CLOSING] > 0.0 else 0.0
-            pressing = Pressing(sign, sign * y - side * values[m, V_BACKLASH], sign * rate, path_speed)
+            pressing = Pressing(
+                sign, sign * y - side * values[m, V_BACKLASH], sign * rate, path_speed, 0.0, advance
+            )
             state = FlankState(side, states.theta_1[n], tilts[n, side])
             sums = _press_side(tables, m, state, sliding, pressing, rows)
             friction, damping = powers(sums, values, m, pressing, omega_1, omega_2)

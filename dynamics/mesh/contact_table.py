@@ -321,7 +321,9 @@ def _fill_values(
         (layout.V_CLOSING, float(law.damping_acts_on == "contact_closing_rate")),
         (layout.V_FLOOR, 1e-12 * law.mean_stiffness * law.base_radius_1),
         (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
-        (layout.V_REVERSAL, _reversal(law)), (layout.V_TABULATED_BODY, law.body_compliance - body),
+        (layout.V_MU_1, law.friction / law.base_radius_1), (layout.V_MU_2, law.friction / law.base_radius_2),
+        (layout.V_HALF_PITCH, 0.5 * law.base_pitch), (layout.V_REVERSAL, _reversal(law)),
+        (layout.V_TABULATED_BODY, law.body_compliance - body),
         (layout.V_PER_TILT, 0.0 if grid.tilts is None else (grid.planes - 1) / (grid.tilts[1] - grid.tilts[0])),
     ):  # fmt: skip
         values[column] = value
