@@ -12,11 +12,12 @@ its own file: a hash of all sources in each file that takes from another goes wi
 from pathlib import Path
 
 from dynamics.kernels.drag import DragLaws
-from dynamics.kernels.linear_step import FOUR, HELD, WIDTH, DiscreteModes, DragModes
+from dynamics.kernels.linear_step import FOUR, HELD, DiscreteModes, DragModes
 from dynamics.kernels.march import march
 from dynamics.kernels.march_state import N_PORTS, Carried, Commands, MarchRecord, Steps
 from dynamics.kernels.mesh_tables import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.mesh_workspace import port_place
+from dynamics.kernels.mode_layout import WIDTH
 from dynamics.kernels.reactions import MeshStates, mesh_reactions, tooth_pair_forces
 from thermal.fe.kernel_cache import remove_outdated
 

@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
 from dynamics.kernels.contact_table import V_R1, V_R2
-from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, HELD, N_BANK, STATE_AT, WIDTH, DragModes
+from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, HELD, STATE_AT, DragModes
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, OLDER, PORT, RATE, REACH, SPEED, TAU, TURN
+from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 6ac092e4
+# compiled from sources 5e15b067
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

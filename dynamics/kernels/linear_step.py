@@ -14,19 +14,15 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, OLDER, OLDEST, SPEED, TAU, TURN
+from dynamics.kernels.mode_layout import N_BANK, WIDTH
+from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources 6ac092e4
+# compiled from sources 5e15b067
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-WIDTH = 16
-"""Modes in a row of the tables: a fixed number, so that the compiler makes vector instructions of a loop
-over them."""
 FOUR = 4
 """Drag torques in a group, for the same reason."""
-N_BANK = 16
-"""Rows of WIDTH in a group of the bank, real and imaginary alternating: state, decay, push of torque a, of torque b,
-speed of port a, turn of port a, speed and turn of port b."""
 # columns of DiscreteModes.blocks
 STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
 # columns of DiscreteModes.links
@@ -226,20 +222,7 @@ def step_modes(
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
         t_a, t_b = space[a + OLD], space[b + OLD]
         first = blocks[block, BANK_AT] & POSITIVE
-        speed_a, turn_a, speed_b, turn_b = 0.0, 0.0, 0.0, 0.0
-        for group in range(blocks[block, GROUPS]):
-            g = first + N_BANK * WIDTH * group
-            for i in range(WIDTH):
-                real, imag = bank[g + i], bank[g + WIDTH + i]
-                speed_a += bank[g + 8 * WIDTH + i] * real + bank[g + 9 * WIDTH + i] * imag
-                turn_a += bank[g + 10 * WIDTH + i] * real + bank[g + 11 * WIDTH + i] * imag
-                speed_b += bank[g + 12 * WIDTH + i] * real + bank[g + 13 * WIDTH + i] * imag
-                turn_b += bank[g + 14 * WIDTH + i] * real + bank[g + 15 * WIDTH + i] * imag
-                decay_r, decay_i = bank[g + 2 * WIDTH + i], bank[g + 3 * WIDTH + i]
-                push_r = bank[g + 4 * WIDTH + i] * t_a + bank[g + 6 * WIDTH + i] * t_b
-                push_i = bank[g + 5 * WIDTH + i] * t_a + bank[g + 7 * WIDTH + i] * t_b
-                bank[g + i] = decay_r * real - decay_i * imag + push_r
-                bank[g + WIDTH + i] = decay_i * real + decay_r * imag + push_i
+        speed_a, turn_a, speed_b, turn_b = pass_modes(bank, first, blocks[block, GROUPS], t_a, t_b)
         t = blocks[block, THROUGH_AT] & POSITIVE
         now = _given(through, t + AT_END, space[a + TAU], space[b + TAU])
         start = _given(through, t + AT_START, t_a, t_b)

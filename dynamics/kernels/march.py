@@ -67,7 +67,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 6ac092e4
+# compiled from sources 5e15b067
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
