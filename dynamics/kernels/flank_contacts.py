@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -3,6 +3,8 @@
 One row, no single teeth, no tilt: everything is known but the cell.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,45 +44,61 @@ from dynamics.kernels.hold_path import Held, Sliding, share_of, spline_curves, s
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
+class Place(NamedTuple):
+    """Place of a flank on the knots of its table."""
+
+    knot: int
+    fraction: float
+    """Of the cell between this knot and the next."""
+
+
 @inlined
-def hold_phase(
-    tables: ContactTables,
-    m: int,
-    side: int,
-    theta_1: float,
-    sliding: Sliding,
-    reach: float,
-    rows: Array,
-    row: int,
-) -> Held:
-    """Write the row of a flank of a mesh with equal teeth, 0 in front and 1 on the back, at the approach ``reach``."""
-    values, counts = tables.values, tables.counts
-    n_cells, per_pitch, knots = counts[m, C_CELLS], counts[m, C_PER_PITCH], counts[m, C_KNOTS]
-    size, back = knots * n_cells, side * counts[m, C_BACK]
+def place_of(tables: ContactTables, m: int, side: int, theta_1: float) -> Place:
+    """Return the place of a flank of a mesh with equal teeth, 0 in front and 1 on the back."""
+    values, per_pitch = tables.values, tables.counts[m, C_PER_PITCH]
     turned = (values[m, V_ORIGIN + side] + (1.0 - 2.0 * side) * values[m, V_R1] * theta_1) * values[
         m, V_PER_PITCH
     ]
     place = (turned - np.floor(turned)) * per_pitch
     knot = max(0, min(int(place), per_pitch - 1))  # also for a run that left the finite numbers
-    weights = spline_weights(place - knot, values[m, V_PER_KNOT])
-    curves = spline_curves(place - knot, values[m, V_PER_KNOT])
+    return Place(knot, place - np.floor(place))
+
+
+@inlined
+def hold_phase(
+    tables: ContactTables, m: int, side: int, place: Place, sliding: Sliding, reach: float, cells: Integers,
+    rows: Array, row: int,
+) -> Held:  # fmt: skip
+    """Write the row of a flank of a mesh with equal teeth at the approach ``reach``.
+
+    ``cells`` (n_meshes, 2) holds the cell of the last row, mostly that of this one: what is read there waits for no
+    search.
+    """
+    values, counts = tables.values, tables.counts
+    knots, cell, knot = counts[m, C_KNOTS], cells[m, side] & POSITIVE, place.knot
+    size, back = knots * counts[m, C_CELLS], side * counts[m, C_BACK]
+    weights = spline_weights(place.fraction, values[m, V_PER_KNOT])
+    curves = spline_curves(place.fraction, values[m, V_PER_KNOT])
     at = (counts[m, C_GAPS_AT] + back * knots + knot) & POSITIVE
     g_0, g_1, g_2, g_3 = tables.gaps[at], tables.gaps[at + 1], tables.gaps[at + 2], tables.gaps[at + 3]
     gap = (weights[0] * g_0 + weights[1] * g_1) + (weights[2] * g_2 + weights[3] * g_3)
     slope = (weights[4] * g_0 + weights[5] * g_1) + (weights[6] * g_2 + weights[7] * g_3)
     curve = (curves[0] * g_0 + curves[1] * g_1) + (curves[2] * g_2 + curves[3] * g_3)
-    depth = reach - gap
-    if depth <= 0.0:
-        return Held(0, -np.inf, gap)
-    finest = min(int(depth * values[m, V_PER_FINEST]), counts[m, C_FINEST] - 1)
-    cell = tables.cell_of[(counts[m, C_CELL_OF_AT] + finest) & POSITIVE]
     depths_at = (counts[m, C_DEPTHS_AT] + cell) & POSITIVE
     start, end = gap + tables.depths[depths_at], gap + tables.depths[depths_at + 1]
+    if not start <= reach < end:
+        if reach <= gap:
+            return Held(0, -np.inf, gap)
+        finest = min(int((reach - gap) * values[m, V_PER_FINEST]), counts[m, C_FINEST] - 1)
+        cell = tables.cell_of[(counts[m, C_CELL_OF_AT] + finest) & POSITIVE]
+        cells[m, side] = cell
+        depths_at = (counts[m, C_DEPTHS_AT] + cell) & POSITIVE
+        start, end = gap + tables.depths[depths_at], gap + tables.depths[depths_at + 1]
     one = cell * knots + knot
     first = (counts[m, C_CELLS_AT] + (back * size + one) * CELL) & POSITIVE
     contract_cell(tables.cells, first, CELL, weights, rows, row)
@@ -100,4 +118,4 @@ def hold_phase(
         first = (counts[m, C_CLOSING_AT] + (back * size + one) * LINES) & POSITIVE
         contract_first(tables.closing, first, LINES, share_of(weights, 1.0), rows, row + R_CLOSING)
     rows[row + R_START], rows[row + R_GAP_SLOPE], rows[row + R_GAP_CURVE] = start, slope, curve
-    return Held(1, start, end if cell < n_cells - 1 else np.inf)
+    return Held(1, start, end if cell < counts[m, C_CELLS] - 1 else np.inf)

@@ -34,6 +34,7 @@ from dynamics.kernels.mesh_solve import (
     choose_friction,
     correct,
     correct_alone,
+    find_place,
     flank_powers,
     hold_mesh,
     invert,
@@ -67,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -136,6 +137,9 @@ def march(
             counts=np.zeros((n_meshes, 2), np.int64),
             first=(np.cumsum(room) - room).reshape(n_meshes, 2),
             levels=np.zeros(n_meshes, np.int64),
+            cells=np.zeros((n_meshes, 2), np.int64),
+            sides=np.zeros(n_meshes, np.int64),
+            knots=np.zeros(n_meshes, np.int64),
         ),
         bank=modes.bank.copy(),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
@@ -205,12 +209,14 @@ def _guess(tables: ContactTables, space: Array, held: HeldRows, by_slow: Array, 
         angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD]
         teeth = 2.0 * space[at + TEETH] - space[at + TEETH_OLD]
         space[at + TURN_OLD], space[at + TEETH_OLD] = turned, space[at + TEETH]
-        hold_mesh(tables, space, at, m, held, angle, teeth)
+        find_place(tables, space, at, m, held, angle, teeth)
         space[at + SPEED], space[at + TURN] = by_slow[given], by_slow[given + 1]
         space[wheel + SPEED], space[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
         last = space[at + GIVEN]
         space[at + GIVEN] = 2.0 * last - space[at + GIVEN_OLD]
         space[at + GIVEN_OLD] = last
+    for m in range(tables.values.shape[0]):
+        hold_mesh(tables, space, (m * N_SPACE) & POSITIVE, m, held)
 
 
 @inlined

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -26,7 +26,7 @@ from dynamics.kernels.contact_table import (
     ContactTables,
 )
 from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
-from dynamics.kernels.hold_phase import hold_phase
+from dynamics.kernels.hold_phase import Place, hold_phase, place_of
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
@@ -35,6 +35,7 @@ from dynamics.kernels.mesh_workspace import (
     AT_REACH,
     BENT,
     BENT_V,
+    FRACTION,
     GIVEN,
     HELD_ANGLE,
     HIGH,
@@ -68,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -88,6 +89,12 @@ class HeldRows(NamedTuple):
     """(n_meshes, 2) first entry."""
     levels: Integers
     """(n_meshes,) level of friction in this sample, see ``hold_path.Sliding``."""
+    cells: Integers
+    """(n_meshes, 2) cells of the last rows."""
+    sides: Integers
+    """(n_meshes,) flank that is held first: 0 in front, 1 on the back, 2 none."""
+    knots: Integers
+    """(n_meshes,) knot of its place on the path."""
 
 
 @inlined
@@ -123,33 +130,46 @@ def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressi
 
 
 @inlined
-def hold_mesh(
+def find_place(
     tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, angle: float, teeth: float
 ) -> None:
-    """Hold the flanks of a mesh that touch at an angle of the pinion and an approach of the teeth."""
+    """Find the flank of a mesh that touches at an angle of the pinion and an approach of the teeth, and its place."""
+    values = tables.values
+    front = teeth > values[m, V_LEAST_GAP]
+    back = teeth < -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
+    side = 0 if front else 1
+    space[at + HELD_ANGLE], space[at + TEETH] = angle, teeth
+    held.sides[m] = side if front or back else 2
+    place = place_of(tables, m, side, angle)
+    held.knots[m], space[at + FRACTION] = place.knot, place.fraction
+
+
+@inlined
+def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+    """Hold the flanks of a mesh that touch at the place that was found."""
     values = tables.values
     least, turning = values[m, V_LEAST_GAP], -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
-    front, back = teeth > least, teeth < turning
-    space[at + HELD_ANGLE] = angle
+    side, teeth = held.sides[m], space[at + TEETH]
     held.counts[m, 0], held.counts[m, 1] = 0, 0
     low, high = turning, least
-    if front or back:
-        side = 0 if front else 1
+    if side < 2:
         sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
         first = held.first[m, side] & POSITIVE
-        reach = teeth if front else -teeth - values[m, V_BACKLASH]
+        reach = teeth if side == 0 else -teeth - values[m, V_BACKLASH]
         if tables.counts[m, C_GENERAL] == 0:
-            rows = hold_phase(tables, m, side, angle, sliding, reach, held.rows, first)
+            place = Place(held.knots[m], space[at + FRACTION])
+            rows = hold_phase(tables, m, side, place, sliding, reach, held.cells, held.rows, first)
         else:
-            rows = hold_path(tables, m, FlankState(side, angle, 0.0), sliding, reach, held.rows, first)
+            state = FlankState(side, space[at + HELD_ANGLE], 0.0)
+            rows = hold_path(tables, m, state, sliding, reach, held.rows, first)
         held.counts[m, side] = rows.n
-        if front:
-            low, high = rows.low if back or rows.low > turning else turning, rows.high
+        if side == 0:
+            low, high = rows.low if teeth < turning or rows.low > turning else turning, rows.high
         else:
             low, high = -values[m, V_BACKLASH] - rows.high, -values[m, V_BACKLASH] - rows.low
             high = high if high < least else least
     space[at + LOW], space[at + HIGH] = low, high
-    if front and back:
+    if side == 0 and teeth < turning:
         _hold_back(tables, space, at, m, held, teeth)
 
 
@@ -236,7 +256,8 @@ def look(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, a
     wheel = at + PORT
     space[at + TEETH] = space[at + AT_REACH] - space[at + GIVEN]
     if again or not is_held(space, at, values, m):
-        hold_mesh(tables, space, at, m, held, space[at + ANGLE] + space[at + TURN], space[at + TEETH])
+        find_place(tables, space, at, m, held, space[at + ANGLE] + space[at + TURN], space[at + TEETH])
+        hold_mesh(tables, space, at, m, held)
     front, back = held.counts[m, 0] > 0, held.counts[m, 1] > 0
     if front or back:
         side = 0 if front else 1

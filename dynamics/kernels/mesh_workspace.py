@@ -4,7 +4,7 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -18,6 +18,7 @@ that were just written in registers. A last row belongs to the place holder for 
     TEETH,  # approach that the teeth see, where the mesh was last looked at, then at the end of the step [m]
     TEETH_OLD,  # the same at the end of the last step
     HELD_ANGLE,  # angle of the pinion at which the rows are held [rad]
+    FRACTION,  # of the cell of the path there
     OFF,  # by how much the approach behind the bodies is off there [m]
     SHARE,  # part of a change of the reach that the teeth take there [-]
     LOW,  # range of the approach of the teeth in which the held rows are good [m]
@@ -36,7 +37,7 @@ that were just written in registers. A last row belongs to the place holder for 
     UPPER,
     PER_SPEED,
     INVERSE,  # of the Newton matrix, four numbers
-) = range(29)
+) = range(30)
 # of both ports, the pinion's first and the wheel's PORT further
 PORT = 11
 (

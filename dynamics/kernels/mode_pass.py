@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 4
 """Numbers in a vector."""

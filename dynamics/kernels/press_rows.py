@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 
 

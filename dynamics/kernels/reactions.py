@@ -47,7 +47,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 5e15b067
+# compiled from sources ab608b3a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
