@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources ab608b3a
+# compiled from sources b8faf6d0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -17,7 +17,7 @@ from dynamics.kernels.mesh_workspace import OLD, OLDER, OLDEST, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources ab608b3a
+# compiled from sources b8faf6d0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -218,20 +218,28 @@ def step_modes(
     """
     for block in range(further.shape[0]):
         _look(further, block, bank, space)
+    # what the torques give is known before the modes are: nothing waits for its sums
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
-        t_a, t_b = space[a + OLD], space[b + OLD]
-        first = blocks[block, BANK_AT] & POSITIVE
-        speed_a, turn_a, speed_b, turn_b = pass_modes(bank, first, blocks[block, GROUPS], t_a, t_b)
         t = blocks[block, THROUGH_AT] & POSITIVE
         now = _given(through, t + AT_END, space[a + TAU], space[b + TAU])
-        start = _given(through, t + AT_START, t_a, t_b)
+        start = _given(through, t + AT_START, space[a + OLD], space[b + OLD])
         older = _given(through, t + AT_OLDER, space[a + OLDER], space[b + OLDER])
         oldest = _given(through, t + AT_OLDEST, space[a + OLDEST], space[b + OLDEST])
-        space[b + SPEED] += speed_b + (now[2] + start[2]) + (older[2] + oldest[2])
-        space[b + TURN] += turn_b + (now[3] + start[3]) + (older[3] + oldest[3])
-        space[a + SPEED] += speed_a + (now[0] + start[0]) + (older[0] + oldest[0])
-        space[a + TURN] += turn_a + (now[1] + start[1]) + (older[1] + oldest[1])
+        space[b + SPEED] += (now[2] + start[2]) + (older[2] + oldest[2])
+        space[b + TURN] += (now[3] + start[3]) + (older[3] + oldest[3])
+        space[a + SPEED] += (now[0] + start[0]) + (older[0] + oldest[0])
+        space[a + TURN] += (now[1] + start[1]) + (older[1] + oldest[1])
+    for block in range(blocks.shape[0]):
+        a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
+        first = blocks[block, BANK_AT] & POSITIVE
+        speed_a, turn_a, speed_b, turn_b = pass_modes(
+            bank, first, blocks[block, GROUPS], space[a + OLD], space[b + OLD]
+        )
+        space[b + SPEED] += speed_b
+        space[b + TURN] += turn_b
+        space[a + SPEED] += speed_a
+        space[a + TURN] += turn_a
     for block in range(further.shape[0]):
         _push(further, block, bank, space)
     if links.shape[0] > blocks.shape[0]:

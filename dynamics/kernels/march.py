@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources ab608b3a
+# compiled from sources b8faf6d0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -339,6 +339,8 @@ def _march(
                     at = (m * N_SPACE) & POSITIVE
                     look_ahead(space, at, values, m, step)
                     look(tables, space, at, m, work.held, attempt > 0)
+                for m in range(n_meshes):
+                    at = (m * N_SPACE) & POSITIVE
                     invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
                     correct_alone(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
                 converged = _meet_others(space, values, give, n_meshes)

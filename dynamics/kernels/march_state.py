@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources ab608b3a
+# compiled from sources b8faf6d0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

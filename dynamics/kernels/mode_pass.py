@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources ab608b3a
+# compiled from sources b8faf6d0
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 4
 """Numbers in a vector."""
@@ -38,7 +38,10 @@ def _pass_modes(typing: Any, bank: Any, first: Any, groups: Any, torque_a: Any, 
             return builder.fadd(a, b, flags=FAST)
 
         push_a, push_b = spread(t_a), spread(t_b)
-        sums = [cgutils.alloca_once_value(builder, ir.Constant(vector, [0.0] * LANES)) for _ in range(4)]
+        sums = [
+            cgutils.alloca_once_value(builder, ir.Constant(vector, [0.0] * LANES))  # type: ignore[no-untyped-call]
+            for _ in range(4)
+        ]
         with cgutils.for_range(builder, count, intp=number) as loop:
             group = builder.add(start, builder.mul(loop.index, ir.Constant(number, N_BANK * WIDTH)))
             for lane in range(0, WIDTH, LANES):
@@ -64,9 +67,10 @@ def _pass_modes(typing: Any, bank: Any, first: Any, groups: Any, torque_a: Any, 
             whole = builder.load(total)
             lanes = [builder.extract_element(whole, ir.Constant(ir.IntType(32), i)) for i in range(LANES)]
             found.append(plus(plus(lanes[0], lanes[1]), plus(lanes[2], lanes[3])))
-        return cgutils.pack_array(builder, found)
+        return cgutils.pack_array(builder, found)  # type: ignore[no-untyped-call]
 
-    return types.UniTuple(types.float64, 4)(bank, first, groups, torque_a, torque_b), codegen
+    four = types.UniTuple(types.float64, 4)  # type: ignore[no-untyped-call]
+    return four(bank, first, groups, torque_a, torque_b), codegen
 
 
 pass_modes: Any = intrinsic(_pass_modes)

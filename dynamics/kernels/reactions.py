@@ -47,7 +47,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources ab608b3a
+# compiled from sources b8faf6d0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -327,10 +327,13 @@ class TimeMarch:
     def _tables_at(self, speeds: Array) -> ContactTables:
         """Contact tables for these speeds of the pinions, those at hand as long as they are good."""
         known = self._tabulated_speeds
-        if known is None or np.any(np.abs(speeds - known) > RUNG * np.abs(known) + self._slow_enough):
-            rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
-            known = np.where(np.abs(speeds) < self._slow_enough, 0.0, np.sign(speeds) * (1.0 + RUNG) ** rungs)
-            self._tabulated_speeds = known
+        if known is not None:
+            near = np.where(known == 0.0, self._slow_enough, RUNG * np.abs(known))
+            if np.all(np.abs(speeds - known) <= near):
+                return self._tables
+        rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
+        known = np.where(np.abs(speeds) < self._slow_enough, 0.0, np.sign(speeds) * (1.0 + RUNG) ** rungs)
+        self._tabulated_speeds = known
         return contact_tables(
             self.laws,
             march=MarchStep(step=self.step, speeds=tuple(known.tolist())) if known.any() else None,
