@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources b8faf6d0
+# compiled from sources 2ea9fe65
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

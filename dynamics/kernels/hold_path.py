@@ -68,7 +68,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources b8faf6d0
+# compiled from sources 2ea9fe65
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

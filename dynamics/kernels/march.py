@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources b8faf6d0
+# compiled from sources 2ea9fe65
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -115,7 +115,9 @@ def _account(tables: ContactTables, carried: Carried, work: Workspace, step: flo
     for k in range(fresh.shape[0]):
         if 2 * n_meshes + n_slow <= k < 2 * n_meshes + n_inputs:
             continue
-        total[k] += step * (9.0 * fresh[k] + 19.0 * powers[0, k] - 5.0 * powers[1, k] + powers[2, k]) / 24.0
+        done = (9.0 * fresh[k] + 19.0 * powers[0, k] - 5.0 * powers[1, k] + powers[2, k]) / 24.0
+        # the first two steps know no more than two powers
+        total[k] += step * (done if powers[2, k] == powers[2, k] else 0.5 * (fresh[k] + powers[0, k]))
         powers[2, k], powers[1, k], powers[0, k] = powers[1, k], powers[0, k], fresh[k]
 
 

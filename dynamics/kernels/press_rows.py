@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources b8faf6d0
+# compiled from sources 2ea9fe65
 Array = NDArray[np.float64]
 
 

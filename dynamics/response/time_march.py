@@ -153,7 +153,7 @@ class TimeMarch:
         pinions, wheels = system.mesh_ports.T
         self._tables = self._tables_at(start.speeds[pinions])
         ports = np.zeros((n_meshes, kernels.N_PORTS))
-        powers = np.zeros((3, n_power))
+        powers = np.full((3, n_power), np.nan)
         for mesh, law in enumerate(self.laws):
             angles = start.angles[pinions[mesh]], start.angles[wheels[mesh]]
             turning = start.speeds[pinions[mesh]], start.speeds[wheels[mesh]]
@@ -167,8 +167,8 @@ class TimeMarch:
                     ports[mesh, 6:8] = x, now[0]
                     ports[mesh, 10:] = turning
                     ports[mesh, 8:10] = self._outer_given(mesh, x + law.offset, reaction)
-                if accounts:
-                    powers[back, 2 * mesh : 2 * mesh + 2] = (
+                if accounts and back == 0:
+                    powers[0, 2 * mesh : 2 * mesh + 2] = (
                         reaction.friction_power[0],
                         reaction.damping_power[0],
                     )
@@ -178,8 +178,8 @@ class TimeMarch:
         braking[self._places] = list(loads.drag_torques.values())
         speeds = columns.T @ start.speeds
         if accounts:
-            powers[:, 2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
-            powers[:, -1] = start.speeds @ system.damping @ start.speeds
+            powers[0, 2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
+            powers[0, -1] = start.speeds @ system.damping @ start.speeds
         self._carried = kernels.Carried(
             state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
