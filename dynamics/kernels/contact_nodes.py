@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SUMS = 7
+SUMS = 9
 """Sums at a node before those of friction."""
 FRICTION = 4
 """Sums of friction for each sharpness of its reversal."""
@@ -42,6 +42,10 @@ class NodeLaw(NamedTuple):
     """T1C and T2C [m]."""
     reversal: float
     """Path position where sliding reverses [m]."""
+    damp_time: float
+    """Damping of a contact over its stiffness [s]."""
+    path_speed: float
+    """Speed of the flank along its path at which its dampers act on the closing rate [m/s]; 0: on the rotation."""
     sharpness: Array
     """(n_sharpness,) of the reversals to sum for [1/m]."""
 
@@ -71,8 +75,9 @@ def _behind_body(
 def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array) -> None:
     """Fill ``sums`` (n_places, n_depths, SUMS + FRICTION n_sharpness) at ``approach`` (n_places, n_depths), rising [m].
 
-    Elastic energy, force, damper weight; tilting moment and its derivative over the approach; damper weight times
-    slope of the gap, times its square; then for each sharpness the force times direction of sliding, that times path
+    Elastic energy, force, damper weight; tilting moment and its derivative over the approach. Of dampers on the closing
+    rate, at no rate of the approach: force and its derivative over that rate, torque on the slope of the gap and its
+    derivative; contacts do not pull. Then for each sharpness the force times direction of sliding, that times path
     position, and what both lose per advance of the reversal.
     """
     stiffness, gap, slope, path = springs.stiffness, springs.gap, springs.slope, springs.path
@@ -105,8 +110,17 @@ def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array
                 at[2] += weight
                 at[3] += force * face[i]
                 at[4] += share * k * face[i]
-                at[5] += weight * slope[a, i]
-                at[6] += weight * slope[a, i] * slope[a, i]
+                if law.path_speed != 0.0:
+                    damping = law.damp_time * weight
+                    closing = -damping * slope[a, i] * law.path_speed
+                    if force + closing > 0.0:
+                        at[5] += closing
+                        at[6] += damping
+                        at[7] -= closing * slope[a, i]
+                        at[8] -= damping * slope[a, i]
+                    else:
+                        at[5] -= force
+                        at[7] += force * slope[a, i]
                 for q in range(sharpness.shape[0]):
                     first = SUMS + FRICTION * q
                     at[first] += force * direction[i, q]

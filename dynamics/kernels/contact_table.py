@@ -42,13 +42,14 @@ N_TABLE_VALUES = 26
     C_GENERAL,
 ) = range(26)  # fmt: skip
 N_TABLE_COUNTS = 26
-# places in a row: a cell (CELL), its slopes over the path (CELL), closing weights, tilting moment and its derivative
+# places in a row: a cell (CELL), its slopes over the path (CELL), closing dampers (2 LINES), tilting moment and its
+# derivative
 # over the tilt, second derivative of W over the path; levers of friction and what they gain by the reversal; the
 # approach at the start of the cell, slope and second derivative of the gap
 R_SLOPES, R_CLOSING, R_MOMENT, R_TILT, R_CURVES, R_FRICTION, R_GAIN, R_START, R_GAP_SLOPE, R_GAP_CURVE = (
-    8, 16, 20, 24, 28, 32, 36, 40, 41, 42,
+    8, 16, 24, 28, 32, 36, 40, 44, 45, 46,
 )  # fmt: skip
-N_SCALED, N_ROW = 32, 44
+N_SCALED, N_ROW = 36, 48
 SCRATCH = 2 * CELL + 4 * LINES
 """Numbers behind the rows that tilt needs."""
 
@@ -76,8 +77,8 @@ class ContactTables(NamedTuple):
     levels: Array
     """Flat, per mesh (n_levels,) sharpness of the reversal over the path at which they hold [1/m]."""
     closing: Array
-    """Flat, per flank (n_planes, n_cells, n_knots, LINES): damper weights times slope of the gap and times its square;
-    empty for dampers on the relative rotation."""
+    """Flat, per flank (n_planes, n_cells, n_knots, 2 LINES): of dampers on the closing rate at no rate of the approach,
+    force and its derivative over that rate, torque on the slope of the gap and its derivative; empty for others."""
     deviations: Array
     """Per flank, gear and tooth: spline coefficients over the path of the gap it adds, or one number [m]."""
     scales: Array

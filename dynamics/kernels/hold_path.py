@@ -68,7 +68,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 2ea9fe65
+# compiled from sources 994dfdc9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -120,8 +120,11 @@ def sliding_at(tables: ContactTables, m: int, omega_1: float, omega_2: float) ->
             while level < count - 2 and wanted > tables.levels[first + level + 1]:
                 level += 1
             begin, end = tables.levels[first + level], tables.levels[first + level + 1]
-            share = min((wanted - begin) / (end - begin), 1.0)
-            lower, upper = sign * (1.0 - share), sign * share
+            share = (wanted - begin) / (end - begin)
+            if share < 1.0:
+                lower, upper = sign * (1.0 - share), sign * share
+            else:
+                level += 1
     return Sliding(level, lower, upper)
 
 
@@ -225,7 +228,7 @@ def _cell_tables(tables: ContactTables, m: int, back: int, plane: int, level: in
         counts[m, C_CELLS_AT] + before * size * CELL,
         counts[m, C_MOMENTS_AT] + before * size * LINES,
         counts[m, C_FRICTION_AT] + 2 * (before * levels + level) * size * LINES,
-        counts[m, C_CLOSING_AT] + before * size * LINES,
+        counts[m, C_CLOSING_AT] + 2 * before * size * LINES,
         size,
         levels,
     )
@@ -245,7 +248,7 @@ def _add_friction(
     """Add ``share`` of the levers of friction to a row."""
     if tables.values[m, V_FRICTION] > 0.0:
         first = kinds.friction + 2 * LINES * (cell + kinds.levels * plane * kinds.plane)
-        for level in range(2 if kinds.levels > 1 else 1):
+        for level in range(2 if sliding.upper != 0.0 else 1):
             own = share_of(weights, share * (sliding.lower if level == 0 else sliding.upper))
             add_lines(tables.friction, first & POSITIVE, 2 * LINES, own, rows, row + R_FRICTION)
             add_lines(tables.friction, (first + LINES) & POSITIVE, 2 * LINES, own, rows, row + R_GAIN)
@@ -259,9 +262,10 @@ def _add_closing(
 ) -> None:  # fmt: skip
     """Add ``share`` of the closing weights to a row."""
     if tables.values[m, V_CLOSING] > 0.0:
-        first = kinds.closing + (cell + plane * kinds.plane) * LINES
+        first = (kinds.closing + 2 * (cell + plane * kinds.plane) * LINES) & POSITIVE
         own = share_of(weights, share)
-        add_lines(tables.closing, first & POSITIVE, LINES, own, rows, row + R_CLOSING)
+        add_lines(tables.closing, first, 2 * LINES, own, rows, row + R_CLOSING)
+        add_lines(tables.closing, first + LINES, 2 * LINES, own, rows, row + R_CLOSING + LINES)
 
 
 @inlined

@@ -44,7 +44,7 @@ from dynamics.kernels.hold_path import Held, Sliding, share_of, spline_curves, s
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 2ea9fe65
+# compiled from sources 994dfdc9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -109,13 +109,15 @@ def hold_phase(
         first, step, lower = first & POSITIVE, 2 * LINES, share_of(weights, sliding.lower)
         contract_first(tables.friction, first, step, lower, rows, row + R_FRICTION)
         contract_first(tables.friction, first + LINES, step, lower, rows, row + R_GAIN)
-        if levels > 1:
+        if sliding.upper != 0.0:
             first += 2 * LINES * size
             upper = share_of(weights, sliding.upper)
             add_lines(tables.friction, first, step, upper, rows, row + R_FRICTION)
             add_lines(tables.friction, first + LINES, step, upper, rows, row + R_GAIN)
     if values[m, V_CLOSING] > 0.0:
-        first = (counts[m, C_CLOSING_AT] + (back * size + one) * LINES) & POSITIVE
-        contract_first(tables.closing, first, LINES, share_of(weights, 1.0), rows, row + R_CLOSING)
+        first = (counts[m, C_CLOSING_AT] + 2 * (back * size + one) * LINES) & POSITIVE
+        own = share_of(weights, 1.0)
+        contract_first(tables.closing, first, 2 * LINES, own, rows, row + R_CLOSING)
+        contract_first(tables.closing, first + LINES, 2 * LINES, own, rows, row + R_CLOSING + LINES)
     rows[row + R_START], rows[row + R_GAP_SLOPE], rows[row + R_GAP_CURVE] = start, slope, curve
     return Held(1, start, end if cell < counts[m, C_CELLS] - 1 else np.inf)

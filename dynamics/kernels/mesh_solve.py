@@ -18,7 +18,6 @@ from dynamics.kernels.contact_table import (
     C_GENERAL,
     V_BACKLASH,
     V_BODY,
-    V_CLOSING,
     V_LEAST_GAP,
     V_PER_KNOT,
     V_R1,
@@ -69,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 2ea9fe65
+# compiled from sources 994dfdc9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -122,11 +121,10 @@ def look_ahead(space: Array, at: int, values: Array, m: int, step: float) -> Non
 def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressing:
     """Return how the gears press a flank at the approach of the teeth and the rate at the end of the step."""
     sign = 1.0 - 2.0 * side
-    path_speed = sign * values[m, V_R1] * space[at + SPEED] if values[m, V_CLOSING] > 0.0 else 0.0
     beside = sign * values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
     advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
     reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH]
-    return Pressing(sign, reach, sign * space[at + RATE], path_speed, beside, advance)
+    return Pressing(sign, reach, sign * space[at + RATE], beside, advance)
 
 
 @inlined

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 2ea9fe65
+# compiled from sources 994dfdc9
 Array = NDArray[np.float64]
 
 
@@ -46,8 +46,6 @@ class Pressing(NamedTuple):
     """Approach of the teeth less the play [m]."""
     rate: float
     """Rate of the approach of the gears [m/s]."""
-    path_speed: float
-    """Speed of the flank along its path [m/s]; 0 where the damper acts on the relative rotation."""
     beside: float
     """Path position less that at which the rows are held, a small part of a cell [m]."""
     advance: float
@@ -145,12 +143,13 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         damping, damping_x, turned, turned_x, turned_v = weight * rate, weight_x * rate, 0.0, 0.0, 0.0
         if values[m, V_CLOSING] > 0.0:
             q = r + R_CLOSING
-            h_1, h_2 = damp_time * (rows[q] + d * rows[q + 1]), damp_time * (rows[q + 2] + d * rows[q + 3])
-            damping -= h_1 * pressing.path_speed
-            damping_x -= damp_time * rows[q + 1] * pressing.path_speed
-            turned = h_2 * pressing.path_speed - h_1 * rate
-            turned_x = damp_time * (rows[q + 3] * pressing.path_speed - rows[q + 1] * rate)
-            turned_v = -h_1
+            weight_x = rows[q + 3]
+            weight = rows[q + 2] + d * weight_x
+            damping = rows[q] + d * rows[q + 1] + weight * rate
+            damping_x = rows[q + 1] + weight_x * rate
+            turned_v = rows[q + 6] + d * rows[q + 7]
+            turned = rows[q + 4] + d * rows[q + 5] + turned_v * rate
+            turned_x = rows[q + 5] + rows[q + 7] * rate
         normal, normal_x, normal_v = own + damping, k + damping_x, weight
         if normal < 0.0 and damping < 0.0:
             # the damper takes no more than the elastic force; a trace of pull is the potential's

@@ -11,7 +11,6 @@ from dynamics.kernels.contact_table import (
     SCRATCH,
     V_BACKLASH,
     V_BODY,
-    V_CLOSING,
     V_R1,
     V_R2,
     V_TABULATED_BODY,
@@ -21,7 +20,7 @@ from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_a
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 2ea9fe65
+# compiled from sources 994dfdc9
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -70,9 +69,7 @@ def _table_reactions(
                     sign = 1.0 - 2.0 * side
                     reach = sign * y - side * values[m, V_BACKLASH]
                     state = FlankState(side, states.theta_1[n], tilts[n, side])
-                    sums = _press_side(
-                        tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0, 0.0, 0.0), rows
-                    )
+                    sums = _press_side(tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0, 0.0), rows)
                     net += sign * sums.elastic
                     stiffness += sums.stiffness
                 off = y + values[m, V_BODY] * net - x
@@ -91,10 +88,7 @@ def _table_reactions(
         out[n] = 0.0
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            path_speed = sign * r_1 * omega_1 if values[m, V_CLOSING] > 0.0 else 0.0
-            pressing = Pressing(
-                sign, sign * y - side * values[m, V_BACKLASH], sign * rate, path_speed, 0.0, advance
-            )
+            pressing = Pressing(sign, sign * y - side * values[m, V_BACKLASH], sign * rate, 0.0, advance)
             state = FlankState(side, states.theta_1[n], tilts[n, side])
             sums = _press_side(tables, m, state, sliding, pressing, rows)
             friction, damping = powers(sums, values, m, pressing, omega_1, omega_2)

@@ -19,9 +19,10 @@ from dynamics.errors import DynamicsInputError
 from dynamics.kernels import contact_table as layout
 from dynamics.kernels.contact_nodes import NodeLaw
 from dynamics.kernels.contact_table import ContactTables
-from dynamics.mesh.contact_flank import FlankGrid, FlankTable, flank_table, splines
+from dynamics.mesh.contact_flank import FlankTable, flank_table, splines
+from dynamics.mesh.contact_samples import FlankGrid
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
-from dynamics.mesh.path_filter import PathFilter
+from dynamics.mesh.path_filter import KEPT, PathFilter
 from dynamics.mesh.tables import has_individual_teeth
 
 Array = NDArray[np.float64]
@@ -75,7 +76,10 @@ class TableGrid:
 
 @dataclass(frozen=True, kw_only=True)
 class MarchStep:
-    """Step of a march that tables are filtered for: step [s], speed of each pinion [rad/s]."""
+    """March that tables are made for: step [s], speed of each pinion [rad/s].
+
+    What the steps do not resolve is filtered out; dampers on the closing rate of contacts are those of this speed.
+    """
 
     step: float
     speeds: tuple[float, ...]
@@ -149,29 +153,27 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
     for mesh, law in enumerate(laws):
         check_mesh_law(law)
         depths = _depths(law, grid)
-        blunter = BLUNTER ** np.arange(LEVELS, dtype=float)[::-1]
-        levels: Array = np.asarray(grid.per_pitch / (SHARPEST * law.base_pitch) / blunter, float)
-        path_step, cell = 0.0, law.base_pitch / grid.per_pitch
-        if march is not None:
-            path_step = law.base_radius_1 * march.speeds[mesh] * march.step
-        if PathFilter(step=path_step).acts_on(cell):
-            levels = np.array([_sharpness(law, path_step / march.step)]) if march else levels
+        path_speed = 0.0 if march is None else law.base_radius_1 * march.speeds[mesh]
+        along = PathFilter(step=path_speed * march.step) if march else None
+        filtered = along is not None and along.acts_on(law.base_pitch / grid.per_pitch)
+        levels = _levels(law, grid, march if filtered else None)
+        closes = law.damping_acts_on == "contact_closing_rate"
+        # a helical flank lags the other way on the back, and what moves along its path moves backwards there
+        signs = (1.0, -1.0) if np.any(law.slice_shift) or filtered or (closes and path_speed) else (1.0,)
         flanks = [
             flank_table(
                 law,
-                _node_law(law, levels),
+                _node_law(law, levels, sign * path_speed if closes else 0.0),
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),
                     per_pitch=grid.per_pitch,
                     depths=depths,
                     tilts=grid.planes_at,
-                    path_filter=PathFilter(step=sign * path_step)
-                    if PathFilter(step=path_step).acts_on(cell)
-                    else None,
+                    path_filter=PathFilter(step=sign * along.step) if along and filtered else None,
                 ),
             )
-            for sign in ((1.0, -1.0) if np.any(law.slice_shift) or path_step else (1.0,))
+            for sign in signs
         ]
         part = _mesh_tables(law, flanks, depths, levels, grid)
         for name, column in FIRST_ENTRIES.items():
@@ -190,20 +192,36 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
     )
 
 
-def _node_law(law: MeshLaw, levels: Array) -> NodeLaw:
+def _node_law(law: MeshLaw, levels: Array, path_speed: float) -> NodeLaw:
     return NodeLaw(
         damping_depth=law.damping_depth,
         body=_tabulated_body(law),
         rolling_radii=(law.rolling_radius_1, law.rolling_radius_2),
         reversal=_reversal(law),
-        sharpness=levels,
+        damp_time=_damp_time(law),
+        path_speed=path_speed,
+        sharpness=levels if law.friction > 0.0 else np.zeros(0),
     )
 
 
-def _sharpness(law: MeshLaw, path_speed: float) -> float:
-    """Slope of the direction of sliding over the path at a speed of the flanks along it [1/m]."""
-    both = abs(path_speed) * (1.0 / law.base_radius_1 + 1.0 / law.base_radius_2)
-    return both / max(law.friction_reversal_speed, 1e-9)
+def _levels(law: MeshLaw, grid: TableGrid, march: MarchStep | None) -> Array:
+    """Slopes of the direction of sliding over the path at which friction is tabulated (n_levels,) [1/m].
+
+    Tables that are filtered for a march are of high speeds, and leave out what is for lower ones.
+    """
+    sharpest = grid.per_pitch / (SHARPEST * law.base_pitch)
+    found = sharpest / BLUNTER ** np.arange(LEVELS, dtype=float)[::-1]
+    if march is None:
+        return np.asarray(found)
+    slowest = 2.0 * KEPT * law.base_pitch / (grid.per_pitch * march.step)
+    both = slowest * (1.0 / law.base_radius_1 + 1.0 / law.base_radius_2)
+    least = both / max(law.friction_reversal_speed, 1e-9)
+    return np.asarray(found[max(0, min(int(np.searchsorted(found, least)), LEVELS - 1) - 1) :])
+
+
+def _damp_time(law: MeshLaw) -> float:
+    """Damping of the teeth over their stiffness, shared bodies left out [s]."""
+    return law.damping * (1.0 - law.body_compliance * law.mean_stiffness) / law.mean_stiffness
 
 
 def _tabulated_body(law: MeshLaw) -> float:
@@ -249,7 +267,6 @@ def _mesh_tables(
     law: MeshLaw, flanks: list[FlankTable], depths: Array, levels: Array, grid: TableGrid
 ) -> _MeshTables:
     finest = depths[0] + np.arange(round((depths[-1] - depths[0]) / grid.finest)) * grid.finest
-    closes = law.damping_acts_on == "contact_closing_rate"
     none = np.zeros(0)
     return _MeshTables(
         gaps=np.concatenate([flank.gaps for flank in flanks]),
@@ -259,7 +276,7 @@ def _mesh_tables(
         cell_of=(np.searchsorted(depths, finest + 0.5 * grid.finest) - 1).astype(np.int64),
         friction=np.concatenate([flank.friction.ravel() for flank in flanks]) if law.friction > 0.0 else none,
         levels=levels,
-        closing=np.concatenate([flank.closing.ravel() for flank in flanks]) if closes else none,
+        closing=np.concatenate([flank.closing.ravel() for flank in flanks]),
         deviations=_deviations(law, flanks).ravel() if has_individual_teeth(law) else none,
         scales=np.concatenate((law.scale_1, law.scale_2)).astype(float),
     )
@@ -304,21 +321,20 @@ def _fill_counts(
 def _fill_values(
     values: Array, law: MeshLaw, flanks: list[FlankTable], grid: TableGrid, depths: Array
 ) -> None:
-    of_teeth = law.mean_stiffness / (1.0 - law.body_compliance * law.mean_stiffness)
     front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
     least = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
     body = law.body_compliance - _tabulated_body(law)
     for column, value in (
         (layout.V_R1, law.base_radius_1), (layout.V_R2, law.base_radius_2), (layout.V_PER_PITCH, 1.0 / law.base_pitch),
         (layout.V_ORIGIN, law.phase - flanks[0].start), (layout.V_BACK_ORIGIN, law.back_phase - flanks[-1].start),
-        (layout.V_BACKLASH, law.backlash), (layout.V_DAMP_TIME, law.damping / of_teeth), (layout.V_BODY, body),
+        (layout.V_BACKLASH, law.backlash), (layout.V_DAMP_TIME, _damp_time(law)), (layout.V_BODY, body),
         (layout.V_PER_FINEST, 1.0 / grid.finest), (layout.V_LOWEST, depths[0]),
         # a body can bring both flanks into contact at once
         (layout.V_LEAST_GAP, -np.inf if body > 0.0 else least + depths[0]),
         (layout.V_PER_KNOT, grid.per_pitch / law.base_pitch), (layout.V_FRICTION, law.friction),
         (layout.V_ROLL_1, law.rolling_radius_1), (layout.V_ROLL_2, law.rolling_radius_2),
         (layout.V_PER_REVERSAL, 1.0 / max(law.friction_reversal_speed, 1e-9)),
-        (layout.V_CLOSING, float(law.damping_acts_on == "contact_closing_rate")),
+        (layout.V_CLOSING, float(flanks[0].closing.size > 0)),
         (layout.V_FLOOR, 1e-12 * law.mean_stiffness * law.base_radius_1),
         (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
         (layout.V_MU_1, law.friction / law.base_radius_1), (layout.V_MU_2, law.friction / law.base_radius_2),

@@ -38,6 +38,8 @@ SEGMENT = 1000
 """Samples after which the contact tables are those of the speed that has come."""
 RUNG = 0.06
 """Change of a speed after which its contact tables are made anew [-]."""
+CREEP = 0.1
+"""Speed below which dampers on the closing rate of contacts find no path speed [rad/s]."""
 NO_LOADS = DriveLoads()
 
 
@@ -139,8 +141,15 @@ class TimeMarch:
         self.unconverged = 0
         self._settings = settings
         self._tabulated_speeds: Array | None = None
-        filtered = [KEPT * law.base_pitch / law.base_radius_1 for law in self.laws]
-        self._slow_enough = 2.0 * np.array(filtered) / (self.step * DEFAULT_GRID.per_pitch)
+        # slower than this all tables are alike, unless dampers know the speed
+        self._slow_enough = np.array(
+            [
+                2.0 * KEPT * law.base_pitch / (law.base_radius_1 * self.step * DEFAULT_GRID.per_pitch)
+                if law.damping_acts_on == "relative_rotation"
+                else CREEP
+                for law in self.laws
+            ]
+        )
         self._marched = 0
         self._names = system.dofs
         self._record_all = settings.record_all

@@ -5,7 +5,7 @@ import pytest
 
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels.contact_table import ContactTables
-from dynamics.mesh.contact_table import TableGrid, contact_tables
+from dynamics.mesh.contact_table import MarchStep, TableGrid, contact_tables
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.table_force import evaluate_table
@@ -55,9 +55,9 @@ LAWS = {
 EVERY_LAW = pytest.mark.parametrize("name", LAWS)
 
 
-def tables_of(law: MeshLaw, grid: TableGrid | None = None) -> ContactTables:
-    """Tables of one law."""
-    return contact_tables([law], grid or TableGrid())
+def tables_of(law: MeshLaw, grid: TableGrid | None = None, speed: float = 0.0) -> ContactTables:
+    """Tables of one law at a speed of the pinion."""
+    return contact_tables([law], grid or TableGrid(), MarchStep(step=1e-9, speeds=(speed,)))
 
 
 @EVERY_LAW
@@ -120,8 +120,8 @@ def test_tangents_are_the_derivatives_of_the_torques(name: str, acts_on: str) ->
     speeds, h, rate = (100.0, 100.0 * BASE_RADIUS_1 / BASE_RADIUS_2 - 0.02), 1e-10, 1e-6
     # the direction of friction is held in the tangents
     for kind, step, tables in (
-        ("approach", (h, 0.0), tables_of(law)),
-        ("rate", (0.0, rate), tables_of(law._replace(friction=0.0))),
+        ("approach", (h, 0.0), tables_of(law, speed=speeds[0])),
+        ("rate", (0.0, rate), tables_of(law._replace(friction=0.0), speed=speeds[0])),
     ):
         here = evaluate_table(tables, THETA, X, *speeds)
         up, down = (
@@ -139,7 +139,7 @@ def test_tangents_are_the_derivatives_of_the_torques(name: str, acts_on: str) ->
 @pytest.mark.parametrize("name", ["spur", "helical", "single helical teeth", "without gaps"])
 def test_mesh_power_is_friction_damping_and_stored_energy(name: str, acts_on: str) -> None:
     law = LAWS[name]._replace(damping=1e3, friction=0.05, damping_acts_on=acts_on)
-    tables, w_1 = tables_of(law), np.full_like(THETA, 120.0)
+    tables, w_1 = tables_of(law, speed=120.0), np.full_like(THETA, 120.0)
     w_2 = w_1 * BASE_RADIUS_1 / BASE_RADIUS_2 + STATES.normal(size=len(THETA))
     rate = BASE_RADIUS_1 * w_1 - BASE_RADIUS_2 * w_2
     here, t = evaluate_table(tables, THETA, X, w_1, w_2), 1e-10
