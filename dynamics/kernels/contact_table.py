@@ -26,13 +26,14 @@ CELL = 8
 what the recorded force has beyond F, and its slope."""
 LINES = 4
 """Value and slope over the depth in a cell of two quantities; or four numbers of a moment, as of W."""
-# columns of ContactTables.values
+# columns of ContactTables.values; SPUR is 1 where all slices of a pair stand at one place and friction needs no table
 (
     V_R1, V_R2, V_PER_PITCH, V_ORIGIN, V_BACK_ORIGIN, V_BACKLASH, V_DAMP_TIME, V_BODY, V_PER_FINEST, V_LOWEST,
     V_LEAST_GAP, V_PER_KNOT, V_FRICTION, V_ROLL_1, V_ROLL_2, V_PER_REVERSAL, V_CLOSING, V_DERIVATIVE, V_FLOOR, V_TILT,
-    V_PER_TILT, V_TABULATED_BODY, V_REVERSAL, V_MU_1, V_MU_2, V_HALF_PITCH,
-) = range(26)  # fmt: skip
-N_TABLE_VALUES = 26
+    V_PER_TILT, V_TABULATED_BODY, V_REVERSAL, V_MU_1, V_MU_2, V_HALF_PITCH, V_START,
+    V_BACK_START, V_SPUR,
+) = range(29)  # fmt: skip
+N_TABLE_VALUES = 29
 # columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1; GENERAL is 0
 # where all teeth are alike and do not tilt
 (

@@ -62,13 +62,15 @@ from dynamics.kernels.contact_table import (
     V_PER_REVERSAL,
     V_PER_TILT,
     V_R1,
+    V_SPUR,
+    V_START,
     V_TILT,
     ContactTables,
 )
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 994dfdc9
+# compiled from sources 35e31319
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -246,7 +248,7 @@ def _add_friction(
     weights: tuple[float, ...], sliding: Sliding, rows: Array, row: int,
 ) -> None:  # fmt: skip
     """Add ``share`` of the levers of friction to a row."""
-    if tables.values[m, V_FRICTION] > 0.0:
+    if tables.values[m, V_FRICTION] > 0.0 and tables.values[m, V_SPUR] == 0.0:
         first = kinds.friction + 2 * LINES * (cell + kinds.levels * plane * kinds.plane)
         for level in range(2 if sliding.upper != 0.0 else 1):
             own = share_of(weights, share * (sliding.lower if level == 0 else sliding.upper))
@@ -391,6 +393,10 @@ def hold_path(
             row = (first + N_ROW * n) & POSITIVE
             _fill_row(tables, m, kinds, plane, cell * knots + knot, weights, curves, sliding, rows, row)
             rows[row + R_START], rows[row + R_GAP_SLOPE], rows[row + R_GAP_CURVE] = start, slope, curve
+            if values[m, V_SPUR] > 0.0:
+                rows[row + R_FRICTION] = (
+                    values[m, V_START + side] + (knot + place - np.floor(place)) / values[m, V_PER_KNOT]
+                )
             if scale != 1.0:
                 for i in range(N_SCALED):
                     rows[row + i] *= scale

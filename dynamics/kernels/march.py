@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 994dfdc9
+# compiled from sources 35e31319
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

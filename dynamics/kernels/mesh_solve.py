@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 994dfdc9
+# compiled from sources 35e31319
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -124,7 +124,9 @@ def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressi
     beside = sign * values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
     advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
     reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH]
-    return Pressing(sign, reach, sign * space[at + RATE], beside, advance)
+    return Pressing(
+        sign, reach, sign * space[at + RATE], beside, advance, space[at + SPEED], space[at + PORT + SPEED]
+    )
 
 
 @inlined

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import inlined
+from dynamics.kernels.contact import inlined, sliding_direction
 from dynamics.kernels.contact_table import (
     N_ROW,
     R_CLOSING,
@@ -30,10 +30,11 @@ from dynamics.kernels.contact_table import (
     V_REVERSAL,
     V_ROLL_1,
     V_ROLL_2,
+    V_SPUR,
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 994dfdc9
+# compiled from sources 35e31319
 Array = NDArray[np.float64]
 
 
@@ -50,6 +51,9 @@ class Pressing(NamedTuple):
     """Path position less that at which the rows are held, a small part of a cell [m]."""
     advance: float
     """By how much sliding reverses further along the path than without vibration [m]."""
+    omega_1: float
+    """Speeds of pinion and wheel [rad/s]."""
+    omega_2: float
 
 
 class Sums(NamedTuple):
@@ -162,6 +166,12 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         lever_2_x = mu_2 * (rows[q + 3] + pressing.advance * rows[g + 3])
         lever_1 = mu_1 * (rows[q] + pressing.advance * rows[g]) + d * lever_1_x
         lever_2 = mu_2 * (rows[q + 2] + pressing.advance * rows[g + 2]) + d * lever_2_x
+        if values[m, V_SPUR] > 0.0:
+            roll_1, roll_2 = values[m, V_ROLL_1] + rows[q], values[m, V_ROLL_2] - rows[q]
+            sliding = pressing.omega_1 * roll_1 - pressing.omega_2 * roll_2
+            direction = sliding_direction(sliding * values[m, V_PER_REVERSAL])
+            lever_1, lever_2 = mu_1 * direction * roll_1, mu_2 * direction * roll_2
+            lever_1_x, lever_2_x = 0.0, 0.0
         total += normal
         elastic += own
         stiffness += k

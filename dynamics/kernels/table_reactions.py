@@ -20,7 +20,7 @@ from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_a
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 994dfdc9
+# compiled from sources 35e31319
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -69,7 +69,9 @@ def _table_reactions(
                     sign = 1.0 - 2.0 * side
                     reach = sign * y - side * values[m, V_BACKLASH]
                     state = FlankState(side, states.theta_1[n], tilts[n, side])
-                    sums = _press_side(tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0, 0.0), rows)
+                    sums = _press_side(
+                        tables, m, state, sliding, Pressing(sign, reach, 0.0, 0.0, 0.0, 0.0, 0.0), rows
+                    )
                     net += sign * sums.elastic
                     stiffness += sums.stiffness
                 off = y + values[m, V_BODY] * net - x
@@ -88,7 +90,9 @@ def _table_reactions(
         out[n] = 0.0
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            pressing = Pressing(sign, sign * y - side * values[m, V_BACKLASH], sign * rate, 0.0, advance)
+            pressing = Pressing(
+                sign, sign * y - side * values[m, V_BACKLASH], sign * rate, 0.0, advance, omega_1, omega_2
+            )
             state = FlankState(side, states.theta_1[n], tilts[n, side])
             sums = _press_side(tables, m, state, sliding, pressing, rows)
             friction, damping = powers(sums, values, m, pressing, omega_1, omega_2)

@@ -9,7 +9,7 @@ whose steps do not resolve all of the path they are filtered (``dynamics.mesh.pa
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from dynamics.kernels.contact_table import ContactTables
 from dynamics.mesh.contact_flank import FlankTable, flank_table, splines
 from dynamics.mesh.contact_samples import FlankGrid
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
-from dynamics.mesh.path_filter import KEPT, PathFilter
+from dynamics.mesh.path_filter import RESOLVED, PathFilter
 from dynamics.mesh.tables import has_individual_teeth
 
 Array = NDArray[np.float64]
@@ -51,9 +51,9 @@ class TableGrid:
     planes : tilts that are tabulated between them, at least 2
     """
 
-    per_pitch: int = 64
+    per_pitch: int = 96
     finest: float = 0.125e-6
-    growth: float = 0.05
+    growth: float = 0.025
     tilts: tuple[float, float] | None = None
     planes: int = 5
 
@@ -155,11 +155,13 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
         depths = _depths(law, grid)
         path_speed = 0.0 if march is None else law.base_radius_1 * march.speeds[mesh]
         along = PathFilter(step=path_speed * march.step) if march else None
-        filtered = along is not None and along.acts_on(law.base_pitch / grid.per_pitch)
-        levels = _levels(law, grid, march if filtered else None)
+        if along is not None and not along.acts_on(law.base_pitch):
+            along = None
+        own = grid if along is None else replace(grid, per_pitch=along.cells(law.base_pitch, grid.per_pitch))
+        levels = _levels(law, own, march if along else None)
         closes = law.damping_acts_on == "contact_closing_rate"
         # a helical flank lags the other way on the back, and what moves along its path moves backwards there
-        signs = (1.0, -1.0) if np.any(law.slice_shift) or filtered or (closes and path_speed) else (1.0,)
+        signs = (1.0, -1.0) if np.any(law.slice_shift) or along or (closes and path_speed) else (1.0,)
         flanks = [
             flank_table(
                 law,
@@ -167,10 +169,10 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),
-                    per_pitch=grid.per_pitch,
+                    per_pitch=own.per_pitch,
                     depths=depths,
                     tilts=grid.planes_at,
-                    path_filter=PathFilter(step=sign * along.step) if along and filtered else None,
+                    path_filter=PathFilter(step=sign * along.step) if along else None,
                 ),
             )
             for sign in signs
@@ -178,8 +180,8 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
         part = _mesh_tables(law, flanks, depths, levels, grid)
         for name, column in FIRST_ENTRIES.items():
             counts[mesh, column] = sum(getattr(before, name).size for before in parts)
-        _fill_counts(counts[mesh], law, flanks, grid, part)
-        _fill_values(values[mesh], law, flanks, grid, depths)
+        _fill_counts(counts[mesh], law, flanks, own, part)
+        _fill_values(values[mesh], law, flanks, own, depths)
         parts.append(part)
     return ContactTables(
         values=values,
@@ -200,7 +202,7 @@ def _node_law(law: MeshLaw, levels: Array, path_speed: float) -> NodeLaw:
         reversal=_reversal(law),
         damp_time=_damp_time(law),
         path_speed=path_speed,
-        sharpness=levels if law.friction > 0.0 else np.zeros(0),
+        sharpness=levels if law.friction > 0.0 and not _is_spur(law) else np.zeros(0),
     )
 
 
@@ -213,10 +215,15 @@ def _levels(law: MeshLaw, grid: TableGrid, march: MarchStep | None) -> Array:
     found = sharpest / BLUNTER ** np.arange(LEVELS, dtype=float)[::-1]
     if march is None:
         return np.asarray(found)
-    slowest = 2.0 * KEPT * law.base_pitch / (grid.per_pitch * march.step)
+    slowest = law.base_pitch / (RESOLVED * march.step)
     both = slowest * (1.0 / law.base_radius_1 + 1.0 / law.base_radius_2)
     least = both / max(law.friction_reversal_speed, 1e-9)
     return np.asarray(found[max(0, min(int(np.searchsorted(found, least)), LEVELS - 1) - 1) :])
+
+
+def _is_spur(law: MeshLaw) -> bool:
+    """Whether the law has single teeth whose slices all stand at the same place on the path."""
+    return has_individual_teeth(law) and not np.any(law.slice_shift)
 
 
 def _damp_time(law: MeshLaw) -> float:
@@ -274,7 +281,7 @@ def _mesh_tables(
         moments=np.concatenate([flank.moments.ravel() for flank in flanks]),
         depths=depths,
         cell_of=(np.searchsorted(depths, finest + 0.5 * grid.finest) - 1).astype(np.int64),
-        friction=np.concatenate([flank.friction.ravel() for flank in flanks]) if law.friction > 0.0 else none,
+        friction=np.concatenate([flank.friction.ravel() for flank in flanks]),
         levels=levels,
         closing=np.concatenate([flank.closing.ravel() for flank in flanks]),
         deviations=_deviations(law, flanks).ravel() if has_individual_teeth(law) else none,
@@ -339,7 +346,8 @@ def _fill_values(
         (layout.V_TILT, 0.0 if grid.tilts is None else grid.tilts[0]),
         (layout.V_MU_1, law.friction / law.base_radius_1), (layout.V_MU_2, law.friction / law.base_radius_2),
         (layout.V_HALF_PITCH, 0.5 * law.base_pitch), (layout.V_REVERSAL, _reversal(law)),
-        (layout.V_TABULATED_BODY, law.body_compliance - body),
+        (layout.V_START, flanks[0].start), (layout.V_BACK_START, flanks[-1].start),
+        (layout.V_SPUR, float(_is_spur(law))), (layout.V_TABULATED_BODY, law.body_compliance - body),
         (layout.V_PER_TILT, 0.0 if grid.tilts is None else (grid.planes - 1) / (grid.tilts[1] - grid.tilts[0])),
     ):  # fmt: skip
         values[column] = value

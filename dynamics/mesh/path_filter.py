@@ -12,6 +12,7 @@ Source: Shannon 1949; the response of an interpolation as in Unser, IEEE Signal 
 """
 
 from dataclasses import dataclass
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,10 @@ ComplexArray = NDArray[np.complex128]
 
 KEPT, LOST = 0.3, 0.7
 """Cycles in a step up to which all is kept, and from which all is lost."""
+RESOLVED = 128
+"""Steps in a base pitch with which a march needs no filter: what is left of the next harmonics does not matter."""
+LEAST_CELLS = 64
+"""Cells of a filtered base pitch, for the force that is recorded."""
 TAIL = 4.0
 """Steps that a filtered pair reaches beyond its path."""
 HOLD = (-2.0, -1.0, 0.0, 1.0)
@@ -44,9 +49,14 @@ class PathFilter:
         shares = np.cos(0.5 * np.pi * kept) ** 2
         return np.asarray(shares / hold_response(np.clip(per_step, -0.5, 0.5)))
 
-    def acts_on(self, cell: float) -> bool:
-        """Whether it takes anything of what a grid with cells of this length can hold [m]."""
-        return abs(self.step) * 0.5 / cell > KEPT
+    def acts_on(self, pitch: float) -> bool:
+        """Whether teeth with this base pitch come in and out faster than the steps resolve [m]."""
+        return abs(self.step) * RESOLVED > pitch
+
+    def cells(self, pitch: float, most: int) -> int:
+        """Cells of a base pitch [m] that hold what is left, three to its shortest wave, at ``most``."""
+        wanted = 8 * ceil(3.0 * LOST * pitch / abs(self.step) / 8.0)
+        return min(max(wanted, LEAST_CELLS), most)
 
 
 def hold_response(cycles: Array) -> ComplexArray:

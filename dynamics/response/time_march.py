@@ -14,9 +14,9 @@ from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
 from dynamics.kernels.contact_table import V_BODY, ContactTables
-from dynamics.mesh.contact_table import DEFAULT_GRID, MarchStep, contact_tables
+from dynamics.mesh.contact_table import MarchStep, contact_tables
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.path_filter import KEPT
+from dynamics.mesh.path_filter import RESOLVED
 from dynamics.mesh.table_force import TableReaction, evaluate_table
 from dynamics.response.march_inputs import (
     DragTables,
@@ -36,7 +36,7 @@ CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
 SEGMENT = 1000
 """Samples after which the contact tables are those of the speed that has come."""
-RUNG = 0.06
+RUNG = 0.1
 """Change of a speed after which its contact tables are made anew [-]."""
 CREEP = 0.1
 """Speed below which dampers on the closing rate of contacts find no path speed [rad/s]."""
@@ -144,7 +144,7 @@ class TimeMarch:
         # slower than this all tables are alike, unless dampers know the speed
         self._slow_enough = np.array(
             [
-                2.0 * KEPT * law.base_pitch / (law.base_radius_1 * self.step * DEFAULT_GRID.per_pitch)
+                law.base_pitch / (RESOLVED * law.base_radius_1 * self.step)
                 if law.damping_acts_on == "relative_rotation"
                 else CREEP
                 for law in self.laws
@@ -341,7 +341,10 @@ class TimeMarch:
             if np.all(np.abs(speeds - known) <= near):
                 return self._tables
         rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
-        known = np.where(np.abs(speeds) < self._slow_enough, 0.0, np.sign(speeds) * (1.0 + RUNG) ** rungs)
+        # dampers on the closing rate work as the speed, which other marches hardly meet again
+        shared = np.array([law.damping_acts_on == "relative_rotation" for law in self.laws])
+        known = np.where(shared, np.sign(speeds) * (1.0 + RUNG) ** rungs, speeds)
+        known = np.where(np.abs(speeds) < self._slow_enough, 0.0, known)
         self._tabulated_speeds = known
         return contact_tables(
             self.laws,
