@@ -22,7 +22,7 @@ from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, OLDER, PORT, RATE, REACH, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

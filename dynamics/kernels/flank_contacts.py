@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -17,7 +17,7 @@ from dynamics.kernels.mesh_workspace import OLD, OLDER, OLDEST, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

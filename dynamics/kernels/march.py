@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dynamics.kernels.aligned import aligned, aligned_zeros
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_FLOOR, V_R1, V_R2, ContactTables
 from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
@@ -68,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -135,7 +136,7 @@ def march(
     work = Workspace(
         record=record,
         held=HeldRows(
-            rows=np.zeros(int(room.sum()) + SCRATCH),
+            rows=aligned_zeros(int(room.sum()) + SCRATCH),
             counts=np.zeros((n_meshes, 2), np.int64),
             first=(np.cumsum(room) - room).reshape(n_meshes, 2),
             levels=np.zeros(n_meshes, np.int64),
@@ -143,7 +144,7 @@ def march(
             sides=np.zeros(n_meshes, np.int64),
             knots=np.zeros(n_meshes, np.int64),
         ),
-        bank=modes.bank.copy(),
+        bank=aligned(modes.bank),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
         torques=np.zeros(2 * HELD * n_meshes + 2 * n_drags),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 4
 """Numbers in a vector."""

@@ -34,7 +34,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 35e31319
+# compiled from sources 03055a6c
 Array = NDArray[np.float64]
 
 

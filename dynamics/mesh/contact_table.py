@@ -10,6 +10,7 @@ whose steps do not resolve all of the path they are filtered (``dynamics.mesh.pa
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from scipy.interpolate import PchipInterpolator
 
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels import contact_table as layout
+from dynamics.kernels.aligned import aligned
 from dynamics.kernels.contact_nodes import NodeLaw
 from dynamics.kernels.contact_table import ContactTables
 from dynamics.mesh.contact_flank import FlankTable, flank_table, splines
@@ -188,10 +190,15 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
         counts=counts,
         offsets=np.array([law.offset for law in laws], float),
         **{
-            field.name: np.concatenate([getattr(part, field.name) for part in parts])
+            field.name: _joined([getattr(part, field.name) for part in parts])
             for field in fields(_MeshTables)
         },
     )
+
+
+def _joined(tables: list[Any]) -> Any:
+    whole = np.concatenate(tables)
+    return aligned(whole) if whole.dtype == np.float64 else whole
 
 
 def _node_law(law: MeshLaw, levels: Array, path_speed: float) -> NodeLaw:
