@@ -14,6 +14,9 @@ from scipy.linalg import eig, eigh, solve_triangular
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+SLOWEST = 1.0
+"""Least frequency that scales a displacement [rad/s]: films may leave a motion without stiffness of its own."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ModalForm:
@@ -69,7 +72,8 @@ def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -
     frequency = modes.frequencies[n_rigid:]
     state = np.zeros((n_elastic + n, n_elastic + n))
     state[:n_elastic, n_elastic : 2 * n_elastic] = np.diag(frequency)
-    state[n_elastic : 2 * n_elastic, :n_elastic] = -np.diag(frequency)
+    squared = modes.squared[n_rigid:]
+    state[n_elastic : 2 * n_elastic, :n_elastic] = -np.diag(squared / frequency)
     state[n_elastic:, n_elastic:] = -shapes.T @ damping @ shapes
     skew = 0.5 * (stiffness - stiffness.T)
     if skew.any():
@@ -90,10 +94,14 @@ def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -
 class RealModes:
     """Mass-normalised real modes of the symmetric part of the stiffness, undamped.
 
-    shapes : (n, n), the rigid ones first; frequencies : (n,) [rad/s], exactly 0 for these
+    shapes : (n, n), the rigid ones first
+    squared : (n,) omega^2, exactly 0 for these [1/s2]; below 0 where the symmetric part of a film pushes
+    frequencies : (n,) [rad/s] that scale the displacements, 0 for the rigid ones, else sqrt(|omega^2|), not below
+        `SLOWEST`
     """
 
     shapes: Array
+    squared: Array
     frequencies: Array
     n_rigid: int
 
@@ -112,7 +120,8 @@ def real_modes(inertia: Array, stiffness: Array, rigid: Array) -> RealModes:
     basis = np.hstack([whole[:, :n_rigid], rest @ vectors])
     return RealModes(
         shapes=np.asarray(solve_triangular(root, basis, lower=True, trans="T"), float),
-        frequencies=np.concatenate([np.zeros(n_rigid), np.sqrt(np.maximum(squares, 0.0))]),
+        squared=np.concatenate([np.zeros(n_rigid), squares]),
+        frequencies=np.concatenate([np.zeros(n_rigid), np.maximum(np.sqrt(np.abs(squares)), SLOWEST)]),
         n_rigid=n_rigid,
     )
 

@@ -5,7 +5,7 @@ mesh order meets a natural frequency, how many samples a recording has per mesh.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,21 +64,49 @@ class LoopMode:
     largest: str = ""
 
 
+@dataclass(frozen=True, kw_only=True)
+class ModeShape:
+    """What a mode shape shows: where it is largest, its name, and share of strain energy by part [-]."""
+
+    largest: str
+    name: str
+    energy: dict[str, float]
+
+
+Describe = Callable[[NDArray[np.complex128], Array], ModeShape]
+"""Describes the shape (n,) of a mode, with the strain energy of every mesh in it (n_meshes,)."""
+
+
 def loop_modes(
     drivetrain: Drivetrain, laws: Sequence[MeshLaw], highest_frequency: float = 20e3
+) -> tuple[LoopMode, ...]:
+    """Rigid mode (0 Hz) and all oscillating modes of a torsional loop up to a frequency [Hz], see `modes_of_loop`."""
+    system = assemble(drivetrain)
+    parts = joints(drivetrain)
+    for ports, mesh in zip(system.mesh_ports, drivetrain.meshes):
+        parts = (*parts, TorsionalJoint(f"mesh {mesh.name}", "mesh", int(ports[0]), int(ports[1]), 0.0, 0.0))
+
+    def describe(shape: NDArray[np.complex128], mesh_energy: Array) -> ModeShape:
+        energy = _strain_energy(parts, shape, mesh_energy)
+        return ModeShape(
+            largest=system.dofs[int(np.argmax(np.abs(shape)))], name=shape_name(energy), energy=energy
+        )
+
+    return modes_of_loop(system, laws, highest_frequency, describe)
+
+
+def modes_of_loop(
+    system: LinearSystem, laws: Sequence[MeshLaw], highest_frequency: float, describe: Describe
 ) -> tuple[LoopMode, ...]:
     """Rigid mode (0 Hz) and all oscillating modes up to a frequency [Hz], meshes at their mean stiffness.
 
     Overdamped pairs have no frequency and are left out.
     """
-    system = assemble(drivetrain)
     inertia, damping, stiffness = closed_matrices(system, laws)
     form = modal_form(inertia, damping, stiffness, system.rigid)
     approach = np.zeros((len(laws), len(inertia)))
-    parts = joints(drivetrain)
-    for m, (law, ports, mesh) in enumerate(zip(laws, system.mesh_ports, drivetrain.meshes)):
+    for m, (law, ports) in enumerate(zip(laws, system.mesh_ports)):
         approach[m, ports] = law.base_radius_1, -law.base_radius_2
-        parts = (*parts, TorsionalJoint(f"mesh {mesh.name}", "mesh", int(ports[0]), int(ports[1]), 0.0, 0.0))
     mean = np.array([law.mean_stiffness for law in laws])
     found = [
         LoopMode(
@@ -95,15 +123,15 @@ def loop_modes(
         reach = approach @ shape
         damping = max(abs(pole.real), LEAST_DAMPING * abs(pole))
         gain = np.abs(reach * (form.loads[i] @ approach.T)) * mean / (damping * abs(pole))
-        energy = _strain_energy(parts, shape, mean * np.abs(reach) ** 2)
+        seen = describe(shape, mean * np.abs(reach) ** 2)
         found.append(
             LoopMode(
                 frequency=float(frequency),
                 damping_ratio=float(-pole.real / abs(pole)),
-                name=_shape_name(energy),
-                energy=energy,
+                name=seen.name,
+                energy=seen.energy,
                 mesh_gain=gain,
-                largest=system.dofs[int(np.argmax(np.abs(shape)))],
+                largest=seen.largest,
             )
         )
     return tuple(found)
@@ -136,11 +164,16 @@ def _strain_energy(
         else:
             value = joint.stiffness * float(np.abs(shape[joint.dof_a] - shape[joint.dof_b]) ** 2)
         share[joint.name] = share.get(joint.name, 0.0) + value
-    total = math.fsum(share.values()) or 1.0
-    return {name: value / total for name, value in sorted(share.items(), key=lambda item: -item[1])}
+    return energy_shares(share)
 
 
-def _shape_name(energy: Mapping[str, float]) -> str:
+def energy_shares(energy: Mapping[str, float]) -> dict[str, float]:
+    """Energies of parts as shares of their sum [-], the largest first."""
+    total = math.fsum(energy.values()) or 1.0
+    return {name: value / total for name, value in sorted(energy.items(), key=lambda item: -item[1])}
+
+
+def shape_name(energy: Mapping[str, float]) -> str:
     """Up to three parts that hold most of the strain energy: ``test_pinion 62 %, mesh test 21 %``."""
     named, held = [], 0.0
     for part, share in energy.items():

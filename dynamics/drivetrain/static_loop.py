@@ -116,7 +116,7 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         )
     inner = np.setdiff1d(np.arange(len(system.inertia)), kept)
     coupling = system.stiffness[np.ix_(kept, inner)]
-    carry = np.linalg.solve(system.stiffness[np.ix_(inner, inner)], coupling.T).T
+    carry = np.linalg.solve(system.stiffness[np.ix_(inner, inner)].T, coupling.T).T
     ratios = line_ratios(system, laws)
 
     def reduce(load: Array) -> Array:
@@ -130,7 +130,7 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         dofs=kept,
         pinions=pinions,
         wheels=wheels,
-        stiffness=system.stiffness[np.ix_(kept, kept)] - carry @ coupling.T,
+        stiffness=system.stiffness[np.ix_(kept, kept)] - carry @ system.stiffness[np.ix_(inner, kept)],
         twist=reduce(system.twist_load),
         drag_per_speed=reduce(-system.damping @ ratios),
         drags={name: reduce(load) for name, load in system.drag_loads.items()},
@@ -232,7 +232,7 @@ def solve_static(
     step: tuple[Array, Array, float] = (np.zeros_like(u), np.zeros(where.size), 0.0)
     for _ in range(80):
         tau, tangents, own, transmitted = _reactions(model, u, where, speed)
-        residual = u @ model.stiffness - tau - model.twist * phi - drag - drive[:, None] * unit
+        residual = u @ model.stiffness.T - tau - model.twist * phi - drag - drive[:, None] * unit
         miss = 0.0 if torque is None else torque - float(transmitted[:, control_mesh].mean())
         error = max(float(np.max(np.abs(residual))), abs(miss)) / scale
         if error < 1e-10:

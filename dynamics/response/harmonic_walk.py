@@ -15,16 +15,33 @@ from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
 from dynamics.response.periodic_response import Period
 
-LEAST_HARMONICS, MOST_HARMONICS = 24, 136
+LEAST_HARMONICS, MOST_HARMONICS = 24, 320
 """Harmonics of the mesh frequency that are used at least and at most."""
+LEAST_DAMPING = 1e-9
+"""Damping ratio taken for a mode that no damper reaches [-]."""
 LEAST_SAMPLES = 256
 """Samples per mesh that are used at least."""
 
 
-def highest_mode(form: ModalForm, cutoff: float) -> float:
-    """Frequency [Hz] of the highest oscillating mode below the cutoff [Hz]; 0 if there is none."""
-    frequency = np.abs(form.poles[form.poles.imag > 1e-3 * np.abs(form.poles)]) / (2.0 * math.pi)
-    return float(np.max(frequency[frequency <= cutoff], initial=0.0))
+SEEN = 1e-3
+"""Approach of a mode at its resonance, per static approach of a mesh under the same force, from which it counts [-]."""
+
+
+def highest_mode(model: PortModel, form: ModalForm, cutoff: float) -> float:
+    """Frequency [Hz] of the highest mode below the cutoff [Hz] that a mesh moves by `SEEN` or more; 0 if there is none.
+
+    Lateral and axial modes that a mesh hardly moves need no harmonics.
+    """
+    bodies = model.dofs[:-1]
+    approach = model.approach[:, :-1]
+    moved = (approach @ form.velocity_shapes[bodies]) * (approach @ form.loads[:, bodies].T)
+    stiffness = np.array([law.mean_stiffness for law in model.laws])[:, None]
+    oscillates = form.poles.imag > 1e-3 * np.abs(form.poles)
+    poles = form.poles[oscillates]
+    damping = np.maximum(-poles.real, LEAST_DAMPING * np.abs(poles))
+    gain = (np.abs(moved[:, oscillates]) * stiffness / (damping * np.abs(poles))).max(axis=0, initial=0.0)
+    frequency = np.abs(poles) / (2.0 * math.pi)
+    return float(np.max(frequency[(frequency <= cutoff) & (gain >= SEEN)], initial=0.0))
 
 
 class HarmonicWalk:
@@ -39,7 +56,7 @@ class HarmonicWalk:
     def take(self, problem: BalanceProblem) -> None:
         """Go on with the matrices of another speed band."""
         self.problem = problem
-        self.highest = highest_mode(problem.form, self.cutoff)
+        self.highest = highest_mode(problem.model, problem.form, self.cutoff)
 
     def grid(self, speed: float) -> HarmonicGrid:
         """Grid whose harmonics reach 1.5 times the highest mode; DynamicsNotConverged if that takes too many."""

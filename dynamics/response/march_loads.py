@@ -34,7 +34,7 @@ def slow_loads(system: LinearSystem) -> Array:
 
 
 def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]:
-    """Return (n_drags,) the columns of named drags in ``drag_loads``: every branch begins a new four of them.
+    """Return (n_drags,) the columns of named drags in ``drag_loads``: every line begins a new four of them.
 
     Raises DynamicsInputError for unknown names.
     """
@@ -43,11 +43,11 @@ def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]
         raise DynamicsInputError(
             f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
         )
-    branches = [system.branches[np.argmax(np.abs(system.drag_loads[name]))] for name in drags]
+    lines = [int(np.argmax(np.abs(system.drag_loads[name] @ system.rigid))) for name in drags]
     places = np.empty(len(drags), np.int64)
     first = 0
-    for branch in np.unique(branches):
-        own = np.flatnonzero(branches == branch)
+    for line in np.unique(lines):
+        own = np.flatnonzero(np.array(lines) == line)
         places[own] = first + np.arange(len(own))
         first += -(-len(own) // kernels.FOUR) * kernels.FOUR
     return places

@@ -110,13 +110,13 @@ def modal_model(
     slow_and_drags = np.column_stack((loads, drags))
     _check(system, laws, slow_and_drags)
     inner = system.coordinates
-    own, frequencies, n_lines = _branch_shapes(system)
+    own, squared, frequencies, n_lines = _branch_shapes(system)
     damping = own.T @ inner.damping @ own
     damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
     m = n - n_lines
     matrix = np.zeros((n + m, n + m))
     matrix[:n, :n] = -damping
-    matrix[n_lines:n, n:] = -np.diag(frequencies[n_lines:])
+    matrix[n_lines:n, n:] = -np.diag(squared[n_lines:] / frequencies[n_lines:])
     matrix[n:, n_lines:n] = np.diag(frequencies[n_lines:])
     skew = 0.5 * (inner.stiffness - inner.stiffness.T)
     if skew.any():
@@ -140,15 +140,19 @@ def modal_model(
     modal_forcing = inverse @ forcing
     velocity = _velocity_rows(system, slow_and_drags) @ shapes
     seen = (velocity @ vectors[:n]) * weights
-    keep = np.abs(values) <= 2.0 * np.pi * cutoff
+    # branches that no load moves at all stand still
+    pushed = np.bincount(branches, weights=np.abs(modal_forcing).max(axis=1))[branches] > 0.0
+    keep = (np.abs(values) <= 2.0 * np.pi * cutoff) & pushed
+    left = np.unique(branches[keep])
     lost, lost_forcing = values[~keep], modal_forcing[~keep]
+    lost = np.where(np.abs(lost_forcing).max(axis=1) > 0.0, lost, 1.0)
     static = -lost_forcing / lost[:, None]
     delayed = -lost_forcing / lost[:, None] ** 2
     ports = system.mesh_ports.ravel()
     return ModalModel(
         eigenvalues=values[keep],
-        branches=branches[keep],
-        port_branches=np.array([branch_of[np.argmax(np.abs(shapes[port]))] for port in ports], np.int64),
+        branches=np.searchsorted(left, branches[keep]),
+        port_branches=np.searchsorted(left, [branch_of[np.argmax(np.abs(shapes[port]))] for port in ports]),
         inputs=modal_forcing[keep],
         outputs=seen[:, keep],
         through=(seen[:, ~keep] @ static).real,
@@ -164,7 +168,7 @@ def modal_model(
         n_meshes=len(laws),
         n_slow=loads.shape[1],
         n_drags=drags.shape[1],
-        drag_branches=_drag_branches(shapes, branch_of, drags),
+        drag_branches=np.searchsorted(left, _drag_branches(shapes, branch_of, drags)),
         dropped=int(np.count_nonzero(~keep)),
     )
 
@@ -193,19 +197,21 @@ def _check(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> None:
             )
 
 
-def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, int]:
-    """Return mass-normalised modes of every branch in the coordinates of the system, exact rigid ones first, and their
-    circular frequencies."""
+def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, Array, int]:
+    """Return mass-normalised modes of every branch in the coordinates of the system, exact rigid ones first, their
+    omega^2, the circular frequencies that scale them, and the number of rigid ones."""
     inner = system.coordinates
     n = len(inner.inertia)
     rigid: list[Array] = []
     elastic: list[Array] = []
+    squared: list[Array] = []
     frequencies: list[Array] = []
     for branch in np.unique(inner.branches):
         members = np.flatnonzero(inner.branches == branch)
         own = np.ix_(members, members)
-        modes = real_modes(inner.inertia[own], inner.stiffness[own], inner.rigid[members])
-        if np.any(modes.frequencies[modes.n_rigid :] <= 0.0):
+        stiffness = inner.stiffness[own]
+        modes = real_modes(inner.inertia[own], stiffness, inner.rigid[members])
+        if np.array_equal(stiffness, stiffness.T) and np.any(modes.squared[modes.n_rigid :] <= 0.0):
             raise DynamicsInputError(
                 f"the line of {_named(system, members[0])} is torn: a part of it is held by no stiffness; join it or "
                 "make it a line"
@@ -214,9 +220,16 @@ def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, int]:
         block[members] = modes.shapes
         rigid.append(block[:, : modes.n_rigid])
         elastic.append(block[:, modes.n_rigid :])
+        squared.append(modes.squared[modes.n_rigid :])
         frequencies.append(modes.frequencies[modes.n_rigid :])
     n_rigid = sum(block.shape[1] for block in rigid)
-    return np.hstack((*rigid, *elastic)), np.concatenate((np.zeros(n_rigid), *frequencies)), n_rigid
+    none = np.zeros(n_rigid)
+    return (
+        np.hstack((*rigid, *elastic)),
+        np.concatenate((none, *squared)),
+        np.concatenate((none, *frequencies)),
+        n_rigid,
+    )
 
 
 def _groups(moved: Array, branch_of: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -13,6 +13,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
+from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.inputs import InputRow, input_rows
@@ -129,7 +130,8 @@ class Case(Part):
             if mark.assumed is not None
         )
         heat = self.rig_heat.assumptions(self.ambient.temperature)
-        return (*marked, *implied_assumptions(self.gearboxes), *heat)
+        shafts = elastic_assumptions(self.drivetrain, self.gearboxes)
+        return (*marked, *shafts, *implied_assumptions(self.gearboxes), *heat)
 
     @property
     def inputs(self) -> tuple[InputRow, ...]:

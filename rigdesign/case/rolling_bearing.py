@@ -39,6 +39,9 @@ SHAFT_INTERFERENCE = (0.3e-3, 0.0, 0.7e-3)
 """Effective interference on the shaft over the bore: usual, least, most (k6 with normal tolerances, 30 to 100 mm)."""
 HOUSING_INTERFERENCE = (-0.2e-3, -0.4e-3, 0.0)
 """Effective interference in the housing over the outside diameter: usual, least, most (H7, loose)."""
+ROLLING_DAMPING_TIME = 1.25e-5
+"""Damping over stiffness of a rolling bearing [s]: middle of 0.25e-5 to 2.5e-5 s (E. Kraemer, Dynamics of Rotors and
+Foundations, 1993)."""
 
 Cleanliness = Literal[
     "extreme cleanliness",

@@ -56,9 +56,27 @@ def _filled(case: Case, part: str) -> list[str]:
     if "{dry}" in part:
         wet = any(machine.coolant in case.oil_circuits for machine in case.rig_heat.machines.values())
         return [] if wet else [part.replace("{dry}", "")]
+    if "{torsional}" in part:
+        bends = case.drivetrain is not None and case.drivetrain.shaft_model == "elastic"
+        return [] if bends else _filled(case, part.replace("{torsional}", ""))
+    if "{film}" in part:
+        return [part.replace("{film}", name) for name in _computed_films(case)]
     if "{bare}" in part:
         return [part.replace("{bare}", name) for name, box in case.gearboxes.items() if box.housing is None]
     return [part]
+
+
+def _computed_films(case: Case) -> list[str]:
+    """Plain bearings whose lateral coefficients the case does not take as stated, as ``gearbox.bearings.name``."""
+    train = case.drivetrain
+    if train is not None and train.shaft_model == "elastic" and train.bearing_coefficients == "stated":
+        return []
+    return [
+        f"{box_name}.bearings.{name}"
+        for box_name, box in case.gearboxes.items()
+        for name, bearing in box.bearings.items()
+        if bearing.has_film
+    ]
 
 
 def is_under(path: str, part: str) -> bool:

@@ -34,10 +34,10 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
         "gearboxes.*.seals.*.axial_travel",
         "drivetrain.couplings.*.radial_offset_maximum",
         "drivetrain.couplings.*.angle_maximum",
-        "gearboxes.*.bearings.*.radial_stiffness",
-        "gearboxes.*.bearings.*.radial_damping",
+        "gearboxes.{film}.radial_stiffness",
+        "gearboxes.{film}.radial_damping",
         "gearboxes.{bare}.heat_split",
-        "gearboxes.{bare}.bearings.*.locating",
+        "gearboxes.{bare}.bearings.*.locating{torsional}",
     ): (),
     ("drivetrain.couplings.*.cold_offset_lateral", "drivetrain.couplings.*.cold_offset_vertical"): (
         "coupling offset",
@@ -58,8 +58,9 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("rig_heat.room", "rig_heat{dry}"): ("rig heat",),
 }  # fmt: skip
 """Inputs -> what they move; the first entry that holds a path counts. ``*`` stands for any name, ``{bare}`` for a
-gearbox without a housing; an entry with ``{dry}`` counts where no machine heats an oil circuit, which feeds
-gearboxes."""
+gearbox without a housing, ``{film}`` for a plain bearing whose coefficients are computed; an entry with ``{dry}``
+counts where no machine heats an oil circuit, which feeds gearboxes, one with ``{torsional}`` where they only
+twist."""
 OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
 """Influences of an input that stay in its gearbox: the place of a check begins with it."""
 SPEEDS = ("schedule", "gearboxes.*.gears", "gearboxes.*.meshes")

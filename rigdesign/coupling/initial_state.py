@@ -1,8 +1,12 @@
 """Where the coupling loop starts: all of the rig at room temperature, its oil as it is fed."""
 
+from dataclasses import replace
+
+from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_seats import initial_seats
 from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.loads import first_torques
+from rigdesign.coupling.shaft_positions import axis_tilt, flank_approach, mesh_placements
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import meant_supplies
@@ -12,7 +16,10 @@ FIRST_SUMP_RISE = 40.0
 
 
 def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
-    """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses."""
+    """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses.
+
+    Elastic shafts already stand in their turning bearings.
+    """
     case = rig.case
     names = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
     streams = {}
@@ -21,7 +28,7 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
         fed = box.fed_bearings
         streams[f"{name}.gear_oil"] = gears
         streams[f"{name}.bearing_oil"] = gears if fed is None else fed.inlet_temperature
-    return CouplingState(
+    state = CouplingState(
         gear_temperature=dict.fromkeys(names, case.ambient.temperature),
         centre_distance={
             mesh: distance
@@ -36,4 +43,15 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
         mesh_torque=first_torques(rig, point),
         axial_expansion=dict.fromkeys(rig.pairs, 0.0),
         seat_temperature=initial_seats(rig, case.ambient.temperature),
+    )
+    if rig.shaft_model == "torsional":
+        return state
+    placements = mesh_placements(rig, point, state, solve_bearings(rig, point, state))
+    return replace(
+        state,
+        centre_distance={
+            name: distance + placements[name].apart for name, distance in state.centre_distance.items()
+        },
+        flank_approach=flank_approach(placements),
+        axis_tilt=axis_tilt(placements),
     )

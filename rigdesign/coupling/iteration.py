@@ -85,7 +85,10 @@ class PointProblem:
         """The problem of a rig that is braced in its initial state."""
         initial = initial_state(rig, point)
         bracing = None
-        if rig.case.drivetrain is not None:
+        power = rig.case.drivetrain
+        if power is not None and power.bracing.mode == "torque_controlled":
+            bracing = BracingState(mode="torque_controlled")
+        elif power is not None:
             system = parts.system(rig, point, initial, parts.bearings(rig, point, initial))
             bracing = brace_initial(rig, point, initial, parts.models(rig, point, initial), system)
         return cls(rig=rig, point=point, initial=initial, bracing=bracing, parts=parts, freeze=freeze)

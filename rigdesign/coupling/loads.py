@@ -33,7 +33,7 @@ from dynamics.mesh.stiffness import PairStiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
-from rigdesign.coupling.mesh_axes import axes_as_made
+from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -94,16 +94,16 @@ def mesh_model(
 ) -> MeshModel:
     """One warm mesh and its law; ``stiffness`` as in `mesh_models`.
 
-    The flanks that carry the mean torque see the axes as made, ``axis_inclination`` and ``axis_skew``. Not in the law:
-    what the expansion of the warm housing adds to them, which the loaded contact at the held points has
-    (`rigdesign.records.contact_gap`), clearances of the bearings and bending of the shafts.
+    The flanks that carry the mean torque see the axes as made, ``axis_inclination`` and ``axis_skew``, and as bending
+    shafts and journals tilt them. Not in the law: what the expansion of the warm housing adds to them, which the loaded
+    contact at the held points has (`rigdesign.records.contact_gap`).
     """
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     pair = warm_pair(rig, name, point.speed, coupling_state)
     friction = mesh_friction(rig, name, pair, point, coupling_state)
-    micro, axes = mesh_microgeometry(rig, name, pair), axes_as_made(rig, name)
+    micro, axes = mesh_microgeometry(rig, name, pair), axes_in_mesh(rig, name, coupling_state)
     warm = WarmMesh(
         name=name,
         pair=pair,
@@ -112,7 +112,8 @@ def mesh_model(
         cold_micro=mesh_microgeometry(rig, name, rig.pairs[name]),
         position=MeshPosition(
             offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
-            + flank_expansion(rig.pairs[name], pair),
+            + flank_expansion(rig.pairs[name], pair)
+            + coupling_state.flank_approach.get(name, 0.0),
             axes=axes,
             flank="back" if coupling_state.mesh_torque[name] < 0.0 else "front",
             phase=mesh_phase(rig, name),

@@ -15,6 +15,8 @@ WIDTH = 1.25
 """Ratio of the speeds of neighbouring bands: over one, a film changes its stiffness by a tenth."""
 SLOWEST = 0.02
 """Share of the highest speed below which the bearings stay as they are there."""
+TOP = 0.98
+"""Share of the highest speed from which the bearings are those at that speed."""
 LIGHTEST = 0.02
 """Share of the held torque below which the bearings stay as they are under it."""
 
@@ -34,9 +36,10 @@ def loop_over_speed(
     low = max(min(speeds), SLOWEST * high)
     count = max(1, math.ceil(math.log(high / low) / math.log(WIDTH)))
     edges = [low * (high / low) ** (i / count) for i in range(count + 1)]
+    edges.insert(-1, TOP * high)  # the speed that is held in the end has a band of its own
     systems = []
     for first, last in pairwise(edges):
-        point = replace(warm.point, speed=math.sqrt(first * last))
+        point = replace(warm.point, speed=high if last == high else math.sqrt(first * last))
         share = torque_share(point.speed)
         share = math.copysign(max(abs(share), LIGHTEST), share)
         torque = {name: share * value for name, value in warm.coupling_state.mesh_torque.items()}

@@ -7,15 +7,12 @@ from dynamics.bearing.lateral import LateralCoefficients, constant_coefficients
 from dynamics.bearing.protocol import BearingState, LateralOperation
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
 Sense = Literal[1, -1]
-
-ROLLING_DAMPING_TIME = 1.25e-5
-"""Damping over stiffness of a rolling bearing [s]: middle of 0.25e-5 to 2.5e-5 s (E. Kraemer, Dynamics of Rotors and
-Foundations, 1993)."""
 
 
 def loop_system(
@@ -28,12 +25,17 @@ def loop_system(
     if rig.shaft_model == "torsional":
         assert rig.system is not None
         return rig.system
+    return rig.elastic.seen.system(running_state(rig, point, coupling_state, bearings))
+
+
+def running_state(
+    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bearings: Mapping[str, BearingState]
+) -> RunningState:
+    """Speed and bearings of the elastic rig at an operating point."""
     coefficients = bearing_coefficients(rig, coupling_state, bearings)
-    return rig.elastic.seen.system(
-        RunningState(
-            speed=rig.drive_speed(point.speed),
-            bearings={name: _at_seat(one) for name, one in coefficients.items()},
-        )
+    return RunningState(
+        speed=rig.drive_speed(point.speed),
+        bearings={name: at_seat(one) for name, one in coefficients.items()},
     )
 
 
@@ -63,7 +65,7 @@ def bearing_coefficients(
     return found
 
 
-def _at_seat(coefficients: LateralCoefficients) -> BearingCoefficients:
+def at_seat(coefficients: LateralCoefficients) -> BearingCoefficients:
     """Lateral and tilting part in the order of the elastic rig; what locates a shaft is a spring of its own."""
     order = [1, 2, 0, 3, 4]
     stiffness = coefficients.node_stiffness[order][:, order]

@@ -18,7 +18,9 @@ from dynamics.flank.axes import AxisMisalignment
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.rotation import last_end, pinion_sense
 from rigdesign.coupling.alignment import AxisAngles, axis_angles
+from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig
+from thermal.expansion.expansion import Expansion
 
 
 def misalignment(box: Gearbox, mesh: str, axes: AxisAngles) -> AxisMisalignment:
@@ -30,7 +32,18 @@ def misalignment(box: Gearbox, mesh: str, axes: AxisAngles) -> AxisMisalignment:
     )
 
 
-def axes_as_made(rig: Rig, name: str) -> AxisMisalignment:
-    """Misalignment of mesh ``gearbox.mesh`` by ``axis_inclination`` and ``axis_skew``, without thermal expansion."""
+def axes_in_mesh(
+    rig: Rig, name: str, coupling_state: CouplingState, shape: Expansion | None = None
+) -> AxisMisalignment:
+    """Misalignment of mesh ``gearbox.mesh``: as made, by the tilt of its shafts, and of a housing of this shape."""
     box, mesh = rig.mesh(name)
-    return misalignment(box, mesh, axis_angles(rig, name.split(".")[0], mesh, None))
+    made = axis_angles(rig, name.split(".")[0], mesh, shape)
+    tilt = coupling_state.axis_tilt
+    return misalignment(
+        box,
+        mesh,
+        AxisAngles(
+            inclination=made.inclination + tilt.get(f"{name}.inclination", 0.0),
+            skew=made.skew + tilt.get(f"{name}.skew", 0.0),
+        ),
+    )

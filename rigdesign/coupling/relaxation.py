@@ -7,6 +7,7 @@ from rigdesign.coupling.bearing_seats import bearing_temperatures
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult, PointProblem
 from rigdesign.coupling.oil_circuits import circuit_balances, supplies
+from rigdesign.coupling.shaft_positions import axis_tilt, flank_approach, mesh_placements
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.temperatures import seat_temperatures
 from rigdesign.rig.model import Rig
@@ -39,13 +40,17 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
     clearance |= hot_clearances(
         rig, done.point.speed, done.expansion, bearing_temperatures(done.bearings, seats)
     )
+    placements = mesh_placements(rig, done.point, old, done.bearings)
     torque = old.mesh_torque
     if done.response is not None:
         signed = done.response.flank * done.response.mean
         torque = dict(zip(rig.mesh_names, map(float, signed)))
     return CouplingState(
         gear_temperature=gear_temperature,
-        centre_distance=centre_distance,
+        centre_distance={
+            name: distance + (placements[name].apart if name in placements else 0.0)
+            for name, distance in centre_distance.items()
+        },
         bearing_clearance=clearance,
         bearing_heat={
             name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_gain(rig, done, name))
@@ -62,6 +67,8 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         mesh_torque=torque,
         axial_expansion=axial_expansion,
         seat_temperature=seats,
+        flank_approach=flank_approach(placements),
+        axis_tilt=axis_tilt(placements),
     )
 
 

@@ -26,7 +26,7 @@ class CouplingState:
     gear_temperature: Values
     """Bulk temperature of each gear [K]: its expansion enters backlash and mesh."""
     centre_distance: Values
-    """Hot centre distance of each mesh [m]."""
+    """Hot centre distance of each mesh under load [m]: of the housing, and of the shafts in their bearings."""
     bearing_clearance: Values
     """Hot diametral clearance of each bearing, centrifugal expansion included [m]."""
     bearing_heat: Values
@@ -45,6 +45,13 @@ class CouplingState:
     """Mean temperature of every seat that takes heat of a rolling bearing, ``gearbox.bearing.shaft`` and
     ``gearbox.bearing.housing`` [K]: it warms the bearing."""
 
+    flank_approach: Values = field(default_factory=dict)
+    """How far the journals bring the flanks of each mesh together beyond bending and the springs of the bearings [m]:
+    it changes the bracing. Empty for shafts that only twist."""
+    axis_tilt: Values = field(default_factory=dict)
+    """Angles of the wheel axis against that of the pinion that bending shafts and journals add, ``mesh.inclination``
+    and ``mesh.skew`` [rad] over x: they open the flanks over the face. Empty for shafts that only twist."""
+
     def freeze(self, arrows: frozenset[str], initial: "CouplingState") -> "CouplingState":
         """This coupling state with the named arrows cut: those fields stay as in ``initial``.
 
@@ -62,7 +69,7 @@ class CouplingState:
 
 
 TEMPERATURES = ("gear_temperature", "oil_outlet", "seat_temperature", "oil_supply")
-LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion")
+LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion", "flank_approach")
 
 
 def temperature_change(old: CouplingState, new: CouplingState) -> float:

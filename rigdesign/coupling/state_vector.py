@@ -20,8 +20,10 @@ SCALES = {
     "wall_heat": 10.0,
     "mesh_torque": 1.0,
     "seat_temperature": 1.0,
+    "flank_approach": 1e-6,
+    "axis_tilt": 1e-6,
 }
-"""Unit of each field of the coupling state in the vector [K, m, W, N m]."""
+"""Unit of each field of the coupling state in the vector [K, m, W, N m, rad]."""
 
 
 def scaled(state: CouplingState) -> FloatArray:

@@ -21,6 +21,7 @@ from rigdesign.coupling.loads import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.rig.drivetrain import mesh_frequency
 from rigdesign.rig.model import Rig
 
 KINDS: Mapping[str, Kind] = {
@@ -36,6 +37,8 @@ LEAST_TORQUE = 1.0
 """Bracing torque [N m] that is kept at standstill: the flanks just touch."""
 QUICK_CUTOFF = 20e3
 """Highest mode of the time run at quick fidelity [Hz]."""
+ELASTIC_CUTOFF, MESH_ORDERS = 20e3, 1.25
+"""Highest mode of the time run of elastic shafts at least [Hz], and per mesh frequency of the test speed."""
 DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
 RPM = np.pi / 30.0
@@ -100,16 +103,27 @@ def run_ramp(
             window=WINDOW,
             keep_channels=False,
             keep_accounts=False,
-            cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+            cutoff=_cutoff(rig),
         ),
     )
     require_speeds(rig, schedule, response)
     return response
 
 
+def _cutoff(rig: Rig) -> float:
+    """Highest mode of the time run [Hz]; those above keep their static effect."""
+    if rig.fidelity == "quick":
+        return QUICK_CUTOFF
+    if rig.shaft_model == "torsional":
+        return DEFAULT_CUTOFF
+    return min(max(ELASTIC_CUTOFF, MESH_ORDERS * mesh_frequency(rig.case) / (2.0 * np.pi)), DEFAULT_CUTOFF)
+
+
 def torque_share_at(rig: Rig, warm: IterationResult, speed: float) -> float:
-    """Torque under which the schedule first reaches a speed [rad/s], per that of the warm point."""
-    for stage in rig.case.schedule.resolved():
+    """Torque at which the schedule holds a speed [rad/s], else under which it first reaches it, per that of the warm
+    point."""
+    stages = rig.case.schedule.resolved()
+    for stage in (*(stage for stage in stages if stage.held), *stages):
         low, high = sorted((stage.speed_start, stage.speed_end))
         if low <= speed <= high and warm.point.torque:
             return stage.torque_end / warm.point.torque

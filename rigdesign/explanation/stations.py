@@ -34,13 +34,22 @@ _GREY = "emission and reflection of the surfaces of a chamber"
 _SHEET = "properties of the oil at every temperature, from its data sheet"
 _BOX = "geometry of the housing that is meshed"
 _WARM = "flank of the loaded contact: load distribution, transmission error, mesh stiffness"
+_SUPPORT = "housing under the bearing: mass on a spring and damper in series with it"
+_BENDING = "spring and damper between the ends of two shafts that bend"
 _LIMIT = "limit that a result is held against"
 
 STATIONS: Mapping[str, tuple[Station, ...]] = {
     "": _at(run__main="names the case in results and report"),
     "schema_version": _at(case__model="tells the reader which keys to expect"),
     "drivetrain": _at(
-        rig__drivetrain="shafts, couplings and motor of the torsional model; without it no loads are computed"
+        rig__drivetrain="shafts, couplings and motor of the power circuit; without it no loads are computed"
+    ),
+    "drivetrain.shaft_model": _at(
+        rig__model="shafts that bend or only twist, at the fidelity of the run",
+        coupling__loop_system="matrices of the loop: elastic with bearings, or torsional",
+    ),
+    "drivetrain.bearing_coefficients": _at(
+        coupling__loop_system="stiffness and damping under the shafts: of each operating point, or as stated"
     ),
     "ambient": _at(coupling__boundary="fluid of the films to room air"),
     "ambient.surroundings_temperature": _at(coupling__boundary="walls that surfaces radiate to"),
@@ -271,8 +280,18 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.bearings.*.torsional_damping": _at(
         coupling__bearing_films="drag torque where losses.bearing_drag is constant"
     ),
-    "gearboxes.*.bearings.*.radial_stiffness": _at(case__bearings="kept for the record, enters nothing"),
-    "gearboxes.*.bearings.*.radial_damping": _at(case__bearings="kept for the record, enters nothing"),
+    "gearboxes.*.bearings.*.radial_stiffness": _at(
+        coupling__loop_system="spring under the shaft, where drivetrain.bearing_coefficients is stated"
+    ),
+    "gearboxes.*.bearings.*.radial_damping": _at(
+        coupling__loop_system="damper under the shaft, where drivetrain.bearing_coefficients is stated"
+    ),
+    "gearboxes.*.bearings.*.axial_stiffness": _at(
+        rig__elastic_rig="axial spring of a locating bearing between shaft and housing"
+    ),
+    "gearboxes.*.bearings.*.support_stiffness": _at(rig__elastic_rig=_SUPPORT),
+    "gearboxes.*.bearings.*.support_damping": _at(rig__elastic_rig=_SUPPORT),
+    "gearboxes.*.bearings.*.support_mass": _at(rig__elastic_rig=_SUPPORT),
     **{
         f"oil_circuits.*{table}": _at(
             case__oil_circuits="part of the circuit that feeds its consumers",
@@ -393,14 +412,22 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.housing.boundary.*.taken_from": _at(
         coupling__boundary="doubt of a printed coefficient: warns where the field differs from what was assumed"
     ),
-    "drivetrain.shafts.*": _at(rig__drivetrain="shaft of the torsional model"),
+    "drivetrain.shafts.*": _at(rig__drivetrain="shaft of the power circuit"),
     "drivetrain.shafts.*.material_damping": _at(rig__drivetrain="dampers of the shaft elements"),
     "drivetrain.shafts.*.sections.*": _at(
-        rig__drivetrain="torsional stiffness and inertia of the shaft",
+        rig__drivetrain="stiffness and inertia of the shaft in torsion and bending",
         rig__shaft_torsion="torsional stress of the shaft",
     ),
     "drivetrain.shafts.*.discs.*": _at(rig__drivetrain="inertia on the shaft"),
+    "drivetrain.shafts.*.discs.*.mass": _at(rig__drivetrain="mass on a shaft that bends"),
+    "drivetrain.shafts.*.discs.*.diametral_inertia": _at(
+        rig__drivetrain="inertia against the tilt of a shaft that bends"
+    ),
     "drivetrain.couplings.*": _at(rig__drivetrain="spring and damper between two shafts"),
+    **{
+        f"drivetrain.couplings.*.{key}": _at(rig__drivetrain=_BENDING)
+        for key in ("radial_stiffness", "axial_stiffness", "angular_stiffness", "lateral_damping_time")
+    },
     "drivetrain.couplings.*.excitation.*": _at(rig__drivetrain="alternating torque between two shafts"),
     "drivetrain.couplings.*.radial_offset_maximum": _at(checks__alignment=_LIMIT),
     "drivetrain.couplings.*.angle_maximum": _at(checks__alignment=_LIMIT),

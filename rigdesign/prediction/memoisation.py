@@ -32,7 +32,7 @@ from rigdesign.coupling.loads import (
     shifted_laws,
     signed_torque,
 )
-from rigdesign.coupling.mesh_axes import axes_as_made
+from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -157,12 +157,13 @@ def shape_key(
         tuple((gear.teeth, gear.flank, rig.materials[gear.material].expansion_coefficient) for gear in gears),
         (mesh.application_factor, mesh.low_load_factor, mesh.stiffness_factor, mesh.tooth_offset),
         mesh_phase(rig, name),
-        axes_as_made(rig, name),
+        axes_in_mesh(rig, name, coupling_state),
         rig.shaft_speed(gears[0].shaft, point.speed),
         coupling_state.gear_temperature[pinion],
         coupling_state.gear_temperature[wheel],
         coupling_state.centre_distance[name],
         coupling_state.axial_expansion[name],
+        coupling_state.flank_approach.get(name, 0.0),
         coupling_state.mesh_torque[name],
     )
 

@@ -1,8 +1,8 @@
 """Flanks and axes of a mesh at a held point, as its loaded contact sees them: the flanks that carry, and what the
 expansion of the warm housing makes of the axes over the face.
 
-The axes stand as made (``axis_inclination``, ``axis_skew``) and are moved by the bores of the warm housing; clearances
-of the bearings and bending of the shafts are not in it. Signs: `rigdesign.coupling.mesh_axes`.
+The axes stand as made (``axis_inclination``, ``axis_skew``), are moved by the bores of the warm housing and, where
+shafts bend, tilted by them and by the journals in their clearance. Signs: `rigdesign.coupling.mesh_axes`.
 """
 
 from dataclasses import dataclass
@@ -14,10 +14,9 @@ from dynamics.flank.field import Flank
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.pair_gap import PairGap
-from rigdesign.coupling.alignment import axis_angles
 from rigdesign.coupling.loads import mesh_microgeometry
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.mesh_axes import misalignment
+from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.rig.model import Rig
 
 
@@ -61,8 +60,8 @@ def held_flanks(rig: Rig, point: PointResult, mesh: int) -> HeldFlanks:
 
 
 def warm_axes(rig: Rig, point: PointResult, mesh: int) -> AxisMisalignment:
-    """Misalignment of a mesh as made and by the expansion of its housing, where that is computed."""
-    box, own = rig.mesh_names[mesh].split(".")
-    expansion = point.last.expansion.get(box)
+    """Misalignment of a mesh as made, by its shafts and by the expansion of its housing, where these are computed."""
+    name = rig.mesh_names[mesh]
+    expansion = point.last.expansion.get(name.split(".")[0])
     shape = None if expansion is None else expansion.deformed
-    return misalignment(rig.case.gearboxes[box], own, axis_angles(rig, box, own, shape))
+    return axes_in_mesh(rig, name, point.last.coupling_state, shape)

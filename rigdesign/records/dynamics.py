@@ -7,15 +7,15 @@ from dynamics.contact.root_field import PairForces
 from dynamics.drivetrain.bracing import BracingDrift, LoopBracing, drift
 from dynamics.drivetrain.loop_crossings import loop_crossings
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modes import LoopMode, damping_audit, loop_modes
+from dynamics.drivetrain.modes import LoopMode, damping_audit
 from dynamics.drivetrain.static_loop import port_model, solve_static
-from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import laws_of, mesh_models, shifted_gear, signed_torque
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.records import root
 from rigdesign.records.curves import Curves, own_ratio
+from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.resonances import HARMONICS, LEAST_GAIN, mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
 from rigdesign.records.tooth_history import tooth_histories
@@ -56,7 +56,7 @@ def dynamic_loads(rig: Rig, run: DynamicRun, *, checks_only: bool = False) -> Dy
     """
     assert rig.drivetrain is not None
     laws = laws_of(run.test.last.models)
-    modes = loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)
+    modes = held_modes(rig, run.test)
     return DynamicLoads(
         meshes={
             rig.mesh_labels[name]: mesh_loads(rig, run, mesh, modes, checks_only=checks_only)

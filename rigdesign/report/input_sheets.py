@@ -1,4 +1,4 @@
-"""The data sheets of the report: gears, materials, oils and drivetrain as the case states them."""
+"""The data sheets of the report: gears, materials and oils as the case states them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -148,7 +148,7 @@ def _circuits(case: CaseSheet) -> Iterator[tuple[str, CaseSheet]]:
 def _oil_cells(case: CaseSheet, circuit: CaseSheet) -> list[str]:
     oil = _oil(case, circuit.raw("oil"))
     held = "sump_temperature" if circuit.raw("sump_temperature") else "inlet_temperature"
-    inlet = _stated(circuit.raw(held), "temperature")
+    inlet = stated_number(circuit.raw(held), "temperature")
     viscosities = ["–"] * 4
     if oil is not None:
         at = [ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0, *([] if inlet is None else [inlet])]
@@ -161,7 +161,8 @@ def _oil_cells(case: CaseSheet, circuit: CaseSheet) -> list[str]:
     return [circuit.raw("oil"), forty, hundred, circuit.value(held), warm, density, *others]
 
 
-def _stated(text: str, kind: str) -> float | None:
+def stated_number(text: str, kind: str) -> float | None:
+    """A value of the case in SI; None where it is left out."""
     try:
         return parse(text, kind)
     except QuantityError:
@@ -173,9 +174,9 @@ def _oil(case: CaseSheet, name: str) -> Oil | None:
     if name in OILS:
         return OILS[name]
     own = case.table(f"oils.{name}")
-    first = _stated(own.raw("kinematic_viscosity_40"), "kinematic_viscosity")
-    second = _stated(own.raw("kinematic_viscosity_100"), "kinematic_viscosity")
-    density = _stated(own.raw("density_15"), "density")
+    first = stated_number(own.raw("kinematic_viscosity_40"), "kinematic_viscosity")
+    second = stated_number(own.raw("kinematic_viscosity_100"), "kinematic_viscosity")
+    density = stated_number(own.raw("density_15"), "density")
     if first is None or second is None or density is None:
         return None
     return Oil.from_viscosities(
@@ -224,62 +225,3 @@ def _material_cells(case: CaseSheet, name: str) -> list[str]:
         "–" if steel.root_strength is None else f"{number_text(1e-6 * steel.root_strength)} N/mm²",
         "–" if tempering is None else f"{number_text(tempering - ZERO_CELSIUS)} °C",
     ]
-
-
-def shaft_sheet(result: RunResult) -> Sheet | None:
-    """Shafts of the drivetrain: length, diameters, discs."""
-    case = CaseSheet.of(result.inputs)
-    shafts = list(case.tables("drivetrain.shafts"))
-    if not shafts:
-        return None
-    rows = [(name.replace("_", " "), _shaft_cells(shaft)) for name, shaft in shafts]
-    return Sheet(title="Shafts", columns=["length", "outer diameters", "discs", "material"], rows=rows)
-
-
-def _shaft_cells(shaft: CaseSheet) -> list[str]:
-    sections = [section for _, section in shaft.tables("sections")]
-    lengths = [_stated(section.raw("length"), "length") for section in sections]
-    total = sum(length for length in lengths if length is not None)
-    diameters = [section.value("outer_diameter").removesuffix(" mm") for section in sections]
-    discs = [f"{name.replace('_', ' ')} {disc.value('inertia')}" for name, disc in shaft.tables("discs")]
-    return [
-        f"{number_text(1e3 * total)} mm",
-        f"{', '.join(diameters)} mm",
-        ", ".join(discs) or "–",
-        shaft.raw("material").replace("_", " "),
-    ]
-
-
-def joint_sheet(result: RunResult) -> Sheet | None:
-    """Couplings, splines and motor: stiffness, damping, inertia."""
-    case = CaseSheet.of(result.inputs)
-    rows: list[Row] = [
-        (
-            f"coupling {name.replace('_', ' ')}",
-            [
-                coupling.raw("shafts").replace("_", " "),
-                coupling.value("torsional_stiffness"),
-                coupling.value("torsional_damping"),
-                "–",
-            ],
-        )
-        for name, coupling in case.tables("drivetrain.couplings")
-    ]
-    for box_name, box in case.tables("gearboxes"):
-        for name, gear in box.tables("gears"):
-            spline = gear.table("spline")
-            cells = [
-                gear.raw("shaft").replace("_", " "),
-                spline.value("torsional_stiffness"),
-                spline.value("torsional_damping"),
-                gear.value("inertia"),
-            ]
-            rows.append((f"gear {box_name}.{name}", cells))
-    motor = case.table("drivetrain.motor")
-    if motor.entries:
-        limit = f"torque limit {motor.value('torque_limit')}"
-        rows.append(
-            (f"motor, {limit}", [motor.raw("shaft").replace("_", " "), "–", "–", motor.value("inertia")])
-        )
-    columns = ["on", "torsional stiffness", "torsional damping", "inertia"]
-    return Sheet(title="Couplings, splines, motor", columns=columns, rows=rows) if rows else None

@@ -39,7 +39,8 @@ class SeatedBearing:
     """A bearing with its place in the case.
 
     locating : whether it holds its shaft, by the file or because one has to
-    diameter : of the shaft section there [m]
+    diameter : of the shaft section there [m]; has_to_hold : no bearing of the shaft carries axial load by the file,
+    this one is taken to
     """
 
     name: str
@@ -49,6 +50,7 @@ class SeatedBearing:
     position: float | None
     locating: Literal["stated", "assumed", ""]
     diameter: float | None
+    has_to_hold: bool = False
 
 
 def bearing_tables(origins: Origins, stage: GearStage) -> Iterator[CaseTable]:
@@ -81,6 +83,7 @@ def _seats(seated: SeatedGear, helical: bool) -> Iterator[SeatedBearing]:
     holds = _locating(seated.bearings)
     able = [number for number, bearing in enumerate(seated.bearings) if can_hold(bearing)]
     wanted = able[-1] if helical and holds is None and able else None
+    last = None if able or helical or not seated.bearings else len(seated.bearings) - 1
     for number, bearing in enumerate(seated.bearings):
         yield SeatedBearing(
             name=f"{seated.name}_{SIDES[number]}",
@@ -90,6 +93,7 @@ def _seats(seated: SeatedGear, helical: bool) -> Iterator[SeatedBearing]:
             position=places[number] if known else None,
             diameter=_section_diameter(seated, places[number]),
             locating="stated" if number == holds else "assumed" if number == wanted else "",
+            has_to_hold=number == last,
         )
 
 
@@ -152,7 +156,7 @@ def _rolling(origins: Origins, seat: SeatedBearing, path: str, title: str) -> It
             origins.stated("designation", quoted(tabled.designation), f"{at}.catalogue.designation")
         )
     elif sibling is not None and has_own_numbers(bearing):
-        numbers = tuple(_catalogue(origins, bearing, sibling))
+        numbers = tuple(_catalogue(origins, bearing, sibling, has_to_hold=seat.has_to_hold))
     elif sibling is not None and same_bore(bearing, sibling):
         written = bearing.catalogue.designation or bearing.name or "a bearing without designation"
         reason = f"in place of {written}, which is not tabled: the nearest one in bore and outside diameter"
@@ -192,7 +196,9 @@ def _condition(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:
         yield origins.stated("contamination_factor", f"{factor:.9g}", f"{at}.catalogue.contamination_factor")
 
 
-def _catalogue(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing") -> Iterator[Entry]:
+def _catalogue(
+    origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing", *, has_to_hold: bool
+) -> Iterator[Entry]:
     """Numbers of the file, and what it lacks from a tabled bearing of the kind, scaled by its diameters."""
     at, data = f"bearings[{bearing.id}]", bearing.catalogue
     bore, outside = bearing.inner_diameter or 0.0, bearing.outer_diameter or 0.0
@@ -223,6 +229,14 @@ def _catalogue(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearin
             value = of_sibling * scale / RPM
             ends = (f'"{0.7 * value:.3g} rpm"', f'"{1.3 * value:.3g} rpm"')
             yield assumed(key, f'"{value:.3g} rpm"', f"{like}: same speed times mean diameter", *ends)
+    if has_to_hold and sibling.kind == "cylindrical_roller":
+        reason = (
+            "the file has no bearing that holds this shaft axially: lips, or a thrust washer, at the rear"
+        )
+        yield assumed("carries_axial_load", "true", reason)
+    elif sibling.kind == "cylindrical_roller" and bearing.axial_force is not None:
+        carries = "false" if bearing.axial_force == "no_direction" else "true"
+        yield origins.stated("carries_axial_load", carries, f"{at}.axial_force")
     yield from _of_kind(origins, bearing, sibling, like)
 
 
@@ -240,9 +254,6 @@ def _of_kind(
         ):
             value = bore + (raceway - sibling.bore) / section * (outside - bore)
             yield assumed(key, millimetres(round(value, 5)), f"{like}: same share of the section height")
-        if bearing.axial_force is not None:
-            carries = "false" if bearing.axial_force == "no_direction" else "true"
-            yield origins.stated("carries_axial_load", carries, f"{at}.axial_force")
     if sibling.kind in ("tapered_roller", "angular_contact_ball"):
         yield _contact_angle(origins, bearing, sibling, like)
         for key, stated, of_sibling, field in (

@@ -14,11 +14,12 @@ from dynamics.drivetrain.parts import (
     MeshConnection,
     Motor,
 )
-from dynamics.drivetrain.shaft import STEEL_DENSITY, Disc, DrivetrainError, Section, Shaft
+from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
 from dynamics.drivetrain.shaft_torque import ShaftTorque
 from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
+from rigdesign.case.elastic_shafts import disc_mass
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.case.rotation import has_hands, helix_hands
@@ -156,12 +157,6 @@ def gear_mass(
     part = case.gearboxes[box].gears[gear]
     tip, bore = 2.0 * _toothing(gear, box, case, pairs).reference_radius, part.bore_diameter
     return gear_inertia(case, box, gear, pairs, materials) * 8.0 / (tip**2 + bore**2)
-
-
-def disc_mass(inertia: float) -> float:
-    """Mass of a steel disc a third as thick as its radius [kg], from its polar inertia [kg m2]."""
-    radius = (6.0 * inertia / (math.pi * STEEL_DENSITY)) ** 0.2
-    return float(2.0 * inertia / radius**2)
 
 
 def _flexibility(coupling: CouplingInput) -> JointStiffness:

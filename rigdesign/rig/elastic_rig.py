@@ -29,14 +29,14 @@ from dynamics.elastic_rig.running_state import isotropic_bearing
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS
 from rigdesign.case.model import Case
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.rig.shaft_axes import ShaftAxis
 
 Array = NDArray[np.float64]
 Face = Literal["front", "back"]
 
-AXIAL_STIFFNESS = 1e8
-"""Of a thrust face or of the rings of a bearing that locates its shaft, where the case states none [N/m]."""
 REFERENCE_STIFFNESS = 1e8
 """Of every bearing in the state whose modes span the reduced rig [N/m]; any other stiffness is exact at rest."""
 NOMINAL_TORQUE = 100.0
@@ -130,8 +130,11 @@ def _locations(case: Case) -> Iterator[AxialLocation]:
     for box_name, box in case.gearboxes.items():
         for name, bearing in box.bearings.items():
             if bearing.locating:
+                stiffness = bearing.axial_stiffness or AXIAL_STIFFNESS
                 yield AxialLocation(
-                    bearing=f"{box_name}.{name}", stiffness=bearing.axial_stiffness or AXIAL_STIFFNESS
+                    bearing=f"{box_name}.{name}",
+                    stiffness=stiffness,
+                    damping=ROLLING_DAMPING_TIME * stiffness,
                 )
 
 

@@ -2,7 +2,8 @@
 
 x runs along the shafts, from the front to the rear of the gearbox whose torque is stated, y across and z up. The axes
 of one gearbox stand as its housing says, else side by side at their centre distances; shafts that a coupling joins
-are on one axis. Along x, gears that mesh stand at one place and coupled ends meet.
+are on one axis. Along x, gears that mesh stand at one place; coupled ends meet where that leaves them free to, else
+the coupling is as long as the way between them.
 """
 
 import math
@@ -95,9 +96,23 @@ def _coupled(case: Case, found: Mapping[str, ShaftAxis]) -> Iterator[tuple[str, 
             if known in found and other not in found:
                 axis, ends = found[known], coupling.ends
                 direction = axis.direction * (-1.0 if ends[0] == ends[1] else 1.0)
-                meeting = axis.place(_end(case, known, ends[here]))
-                start = meeting - direction * _end(case, other, ends[there])
+                start = _beside_partner(case, other, direction, found)
+                if start is None:
+                    meeting = axis.place(_end(case, known, ends[here]))
+                    start = meeting - direction * _end(case, other, ends[there])
                 yield other, replace(axis, start=start, direction=direction)
+
+
+def _beside_partner(case: Case, shaft: str, direction: float, found: Mapping[str, ShaftAxis]) -> float | None:
+    """x of the start of a shaft [m] with its gear beside one on a known shaft that it meshes with; None without one."""
+    for box in case.gearboxes.values():
+        for mesh in box.meshes.values():
+            gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
+            for own, partner in (gears, gears[::-1]):
+                if own.shaft == shaft and partner.shaft in found:
+                    x = found[partner.shaft].place(partner.position or 0.0)
+                    return x - direction * (own.position or 0.0)
+    return None
 
 
 def _meshing(

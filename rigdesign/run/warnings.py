@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from dynamics.drivetrain.modes import loop_modes, modes_above_samples, sampling_audit
+from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.checks.omissions import thrust
@@ -18,6 +17,7 @@ from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
+from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
@@ -234,7 +234,13 @@ def _sampling(solved: SolvedRig) -> Iterator[str]:
         speed = solved.rig.drive_speed(solved.test.point.speed)
         audits = sampling_audit(drivetrain, speed, solved.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
-        modes = loop_modes(drivetrain, laws_of(solved.test.last.models), DEFAULT_CUTOFF)
+        modes = held_modes(solved.rig, solved.test)
+        yield from (
+            f"mode of {mode.frequency:.0f} Hz ({mode.name}): damping ratio = {mode.damping_ratio:.3g}, limit 0: it is "
+            f"unstable at stage {solved.test.point.stage}, the shaft whirls; load its bearings more or change them"
+            for mode in modes
+            if mode.damping_ratio < -1e-6
+        )
         yield from modes_above_samples(modes, solved.case.numerics.sample_rate)
 
 
@@ -322,12 +328,23 @@ def _fields(solved: SolvedRig) -> Iterable[HousingField]:
         yield from point.last.fields.values()
 
 
+def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
+    if solved.rig.shaft_model == "torsional":
+        yield "bending and tilting of shafts: they only twist, journal stiffness does not enter the loads"
+        yield "static position of the journals in their films: axes run through the middle of the hot bores"
+        return
+    yield "unbalance, bow of shafts and offset of coupled axes as lateral excitation"
+    yield (
+        "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the "
+        "line of action; the mean tilt of the axes is in the gap of the flanks"
+    )
+
+
 def not_modelled(solved: SolvedRig) -> list[str]:
     """What the verdict knows nothing of."""
     items = [
-        "bending and tilting of shafts: the drivetrain is torsional, journal stiffness does not enter the loads",
-        "static position of the journals in their films: axes run through the middle of the hot bores",
-        "helix slope deviations of manufacture, shaft bending and bearing clearance in tooth contact and K_Hbeta"
+        *_left_out_of_the_shafts(solved),
+        "helix slope deviations of manufacture in tooth contact and K_Hbeta"
         if solved.rig.mesh_stiffness == "influence_numbers"
         else "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
         "temperature over time: steady states at the held stages only",

@@ -33,10 +33,10 @@ class Prototype:
     def simulated(self) -> Rig:
         """The rig of P2's own simulation: constant bearing drag, no motor (run_up_simulation.toml).
 
-        Its tooth stiffness is that of ISO 6336-1, as in a multi-body program: the analytic teeth.
+        Its tooth stiffness is that of ISO 6336-1, as in a multi-body program: the analytic teeth; shafts only twist.
         """
         rig = build_rig(load_case(self.folder / "run_up_simulation.toml"))
-        return replace(rig, mesh_stiffness="iso_6336_scaled")
+        return replace(rig, mesh_stiffness="iso_6336_scaled", shaft_model="torsional")
 
     @cached_property
     def full_addendum(self) -> Case:

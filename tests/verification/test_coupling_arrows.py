@@ -10,18 +10,21 @@ mesh viscosity feel the heat clearly; nothing in the hand values depends on that
 """
 
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 from dynamics.bearing.rolling_state import RollingState
+from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import ToothPath
+from rigdesign.coupling.loads import LoadedCircuit, MeshModel, ToothPath, mesh_models, respond
 from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.loop_system import bearing_coefficients
+from rigdesign.coupling.shaft_positions import mesh_placements
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.dynamics import bracing_drift
@@ -521,3 +524,80 @@ def test_motor_pays_all_losses() -> None:
     power = base.last.response.drive_torque * rig.drive_speed(base.point.speed)
     lost = math.fsum(row.loss.power for row in base.last.losses)
     assert 0.0 <= power - lost < 0.03 * power
+
+
+@cache
+def elastic() -> tuple[Rig, PointResult]:
+    """The held loop on shafts that bend, journals with 160 um of clearance."""
+    case = held_rig().case.with_value("gearboxes.*.bearings.*.diametral_clearance", "160 um")
+    rig = replace(build_rig(case, "quick"), shaft_model="elastic")
+    return rig, solve_point(rig, held_points(rig)[-1])
+
+
+def loaded(
+    rig: Rig, result: PointResult, **changed: dict[str, float]
+) -> tuple[CurvePoint, tuple[MeshModel, ...]]:
+    """Response of the held loop at its warm state with some of its fields changed, and its meshes."""
+    last = result.last
+    state = replace(last.coupling_state, **changed)
+    models = mesh_models(rig, result.point, state)
+    assert result.setting is not None and last.system is not None
+    return respond(rig, LoadedCircuit(result.point, models, last.drags, result.setting, last.system)), models
+
+
+def test_flank_approach_winds_up_a_held_loop() -> None:
+    """Journals that bring the flanks of the test mesh together by s turn the loop by s / r_b against its stiffness."""
+    rig, result = elastic()
+    known = result.last.coupling_state.flank_approach
+    moved = known | {"test.main": known["test.main"] + 10e-6}
+    change = loaded(rig, result, flank_approach=moved)[0].mean[0] - loaded(rig, result)[0].mean[0]
+    stiffness = bracing_drift(rig, result).warm.loop_stiffness
+    assert change == pytest.approx(stiffness * 10e-6 / rig.pairs["test.main"].base_radii[0], rel=0.03)
+
+
+def test_centre_distance_is_that_of_the_journals_on_rigid_shafts() -> None:
+    """Shafts a thousand times as stiff carry the middle of the journals to the gears: by the lever rule.
+
+    All of the way along the centre line goes into the centre distance; as shipped, bending adds to it.
+    """
+    rig, result = elastic()
+    last = result.last
+    assert rig.drivetrain is not None
+    stiff = replace(rig)
+    stiff.__dict__["drivetrain"] = replace(
+        rig.drivetrain,
+        shafts=tuple(replace(s, shear_modulus=1e3 * s.shear_modulus) for s in rig.drivetrain.shafts),
+    )
+    bent = mesh_placements(rig, result.point, last.coupling_state, last.bearings)["test.main"]
+    found = mesh_placements(stiff, result.point, last.coupling_state, last.bearings)["test.main"]
+    places = bearing_coefficients(rig, last.coupling_state, last.bearings)
+    parts = {part.name: part.position for part in (*rig.drivetrain.gears, *rig.drivetrain.bearings)}
+    centre = {}
+    for gear in ("pinion", "wheel"):
+        front, rear = f"test.{gear}_front", f"test.{gear}_rear"
+        share = (parts[f"test.{gear}"] - parts[front]) / (parts[rear] - parts[front])
+        centre[gear] = (1.0 - share) * places[front].position + share * places[rear].position
+    by_hand = float(centre["wheel"][0] - centre["pinion"][0])
+    assert by_hand > CLEAR * LENGTH
+    assert found.apart == pytest.approx(by_hand, rel=0.01)
+    assert bent.apart > found.apart + CLEAR * LENGTH
+    warm_housing = float(last.expansion["test"].centre_distance["test.main"])
+    assert last.coupling_state.centre_distance["test.main"] - warm_housing == pytest.approx(
+        bent.apart, abs=LENGTH
+    )
+
+
+def test_axis_tilt_opens_the_flanks_over_the_face() -> None:
+    """Axes out of parallel by an angle open the gap by it times sin or cos of the pressure angle over the width."""
+    rig, result = elastic()
+    pair = result.last.models[0].pair
+    tilt = dict.fromkeys(result.last.coupling_state.axis_tilt, 0.0)
+    for angle, weight in (("inclination", math.sin), ("skew", math.cos)):
+        models = [
+            loaded(rig, result, axis_tilt=tilt | {f"test.main.{angle}": size})[1][0] for size in (0.0, 400e-6)
+        ]
+        opened = models[1].law.gap - models[0].law.gap
+        middle = opened[:, opened.shape[1] // 2]
+        slices = len(models[0].law.slice_shift)
+        by_hand = 400e-6 * weight(pair.working_pressure_angle) * pair.face_width * (1.0 - 1.0 / slices)
+        assert abs(middle[-1] - middle[0]) == pytest.approx(by_hand, rel=0.02)

@@ -143,6 +143,7 @@ def _discs(tree: RawTree, shaft: str) -> Filling:
                 millimetres(length if box == boxes[0] else 0.0), "end of the shaft at the coupling"
             ),
             "inertia": around(inertia, "kg m2", reason, (0.3, 4.0)),
+            "mass": assumed(f"{8.0 * inertia / outer**2:.3g} kg", reason),
         }
     }
 

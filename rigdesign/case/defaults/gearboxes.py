@@ -7,11 +7,13 @@ from rigdesign.case.defaults.parts import (
     only_mesh,
     section_diameter,
     shaft_diameter,
+    shaft_of,
     shafts_of,
     tabled,
 )
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 
 book = RuleBook()
 
@@ -161,7 +163,9 @@ def _locating(tree: RawTree, box: str, bearing: str) -> Filling:
     at = f"gearboxes.{box}.bearings"
     shaft = tree.text(f"{at}.{bearing}.shaft")
     mates = [name for name in tree.names(at) if tree.text(f"{at}.{name}.shaft") == shaft]
-    if not tree.has(f"gearboxes.{box}.housing") or any(tree.has(f"{at}.{name}.locating") for name in mates):
+    if any(tree.has(f"{at}.{name}.locating") for name in mates):
+        return None
+    if not tree.has(f"gearboxes.{box}.housing") and (not _bends(tree) or _held_by_teeth(tree, box, shaft)):
         return None
     able = [name for name in mates if _holds_axially(tree, box, name)]
     if len(able) == 1 < len(mates):
@@ -172,10 +176,49 @@ def _locating(tree: RawTree, box: str, bearing: str) -> Filling:
     return assumed(True, "the bearing on the side of the coupling holds the shaft")
 
 
+def _bends(tree: RawTree) -> bool:
+    """Whether the case has, or gets, a power circuit of elastic shafts: each of them has to be located."""
+    circuit = tree.has("drivetrain") or (
+        len(tree.names("gearboxes")) == 2 and tree.text("losses.basis") != "input"
+    )
+    return circuit and tree.text("drivetrain.shaft_model") != "torsional"
+
+
+def _held_by_teeth(tree: RawTree, box: str, shaft: str | None) -> bool:
+    """Whether a double-helical mesh ties the shaft to one that a bearing locates."""
+    at = f"gearboxes.{box}"
+    located = {
+        tree.text(f"{at}.bearings.{name}.shaft")
+        for name in tree.names(f"{at}.bearings")
+        if tree.at(f"{at}.bearings.{name}.locating") is True
+    }
+    for mesh in tree.names(f"{at}.meshes"):
+        gears = [tree.text(f"{at}.meshes.{mesh}.{side}") or "" for side in ("pinion", "wheel")]
+        shafts = [shaft_of(tree, box, "gears", gear) for gear in gears]
+        if tree.at(f"{at}.meshes.{mesh}.double_helical") is True and shaft in shafts:
+            return not located.isdisjoint(shafts)
+    return False
+
+
 def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
     """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
-    found = tabled(tree, box, bearing)
-    return found is None or found.locating
+    found, own = (
+        tabled(tree, box, bearing),
+        f"gearboxes.{box}.bearings.{bearing}.catalogue.carries_axial_load",
+    )
+    return tree.at(own) is not False if found is None else found.locating
+
+
+@book.default("gearboxes.*.bearings.*.radial_damping")
+def _rolling_damping(tree: RawTree, box: str, bearing: str) -> Filling:
+    """Of a rolling bearing whose stiffness the case states and uses."""
+    at = f"gearboxes.{box}.bearings.{bearing}"
+    stiffness = tree.si(f"{at}.radial_stiffness", "linear_stiffness")
+    stated = tree.text("drivetrain.bearing_coefficients") == "stated"
+    if stiffness is None or not stated or tree.text(f"{at}.type") != "rolling":
+        return None
+    damping = f"{ROLLING_DAMPING_TIME * stiffness:.4g} N s/m"
+    return assumed(damping, "1.25e-5 s of the stiffness, middle of 0.25e-5 to 2.5e-5 s (Kraemer 1993)")
 
 
 # ------------------------------------------------------------------ oil

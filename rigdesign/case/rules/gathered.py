@@ -12,6 +12,7 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.paths import known_paths, nearest_paths
 from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
+from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
 from rigdesign.case.rules.gears import gearbox_faults
 from rigdesign.case.rules.losses import loss_faults
 from rigdesign.case.rules.lubrication import lubrication_faults
@@ -42,6 +43,7 @@ def broken_rules(case: "Case") -> list[Fault]:
         gearbox_faults,
         bearing_faults,
         drivetrain_faults,
+        elastic_shaft_faults,
         loss_faults,
         lubrication_faults,
         oil_circuit_faults,

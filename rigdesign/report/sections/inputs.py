@@ -1,6 +1,6 @@
-"""The inputs echoed: gears, materials, oil, shafts and joints."""
+"""The inputs echoed: gears, materials, oil, shafts, joints and bearings."""
 
-from rigdesign.report import input_sheets
+from rigdesign.report import drivetrain_sheets, input_sheets
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
@@ -12,8 +12,9 @@ def _inputs(result: RunResult, draw: Draw) -> Values:
 def _drivetrain(result: RunResult, draw: Draw) -> Values:
     sheets = (
         input_sheets.material_sheet(result),
-        input_sheets.shaft_sheet(result),
-        input_sheets.joint_sheet(result),
+        drivetrain_sheets.shaft_sheet(result),
+        drivetrain_sheets.joint_sheet(result),
+        drivetrain_sheets.bearing_sheet(result),
     )
     return {"sheets": [sheet for sheet in sheets if sheet is not None]}
 

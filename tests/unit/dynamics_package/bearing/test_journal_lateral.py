@@ -170,7 +170,7 @@ def test_mixed_friction_ends_in_standstill() -> None:
 
 
 def test_standstill_is_contact_along_the_load() -> None:
-    """W / (0.01 c) along the load, W / c across it, no cross coupling; it rests on the bore."""
+    """W / (0.01 c) along the load, W / c across it, no cross coupling; it lies on the bore."""
     found = at((0.0, -2000.0), replace(FILM, omega=0.0))
     assert np.diag(found.stiffness) == pytest.approx([2000.0 / 40e-6, 2000.0 / 0.4e-6])
     assert found.stiffness[0, 1] == pytest.approx(0.0, abs=1.0)

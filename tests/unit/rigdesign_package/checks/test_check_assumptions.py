@@ -91,8 +91,9 @@ def test_a_foot_without_a_joint_is_an_assumption(tmp_path: Path) -> None:
         '[gearboxes.test.housing]\nremove = ["foot_contact"]\n'
     )
     bare = load_case(file)
-    foot = bare.assumptions[-1]
-    assert (foot.path, foot.value) == ("gearboxes.test.housing.foot_contact", "perfect")
+    path = "gearboxes.test.housing.foot_contact"
+    foot = next(entry for entry in bare.assumptions if entry.path == path)
+    assert foot.value == "perfect"
     assert "W/(m2 K)" in foot.reason
     hottest = with_assumptions(bare, check("temperature.housing", "limits.temperatures.housing_maximum"))
     assert foot.path in hottest.assumptions

@@ -12,7 +12,7 @@ from dynamics.mesh.pair_gap import PairGap
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_model
-from rigdesign.coupling.mesh_axes import axes_as_made
+from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 from tests.unit.rigdesign_package.coupling.test_tooth_springs import AnalyticTeeth
@@ -58,7 +58,7 @@ def test_axes_open_the_flanks_that_carry_over_the_slices(
     rig = rig_with(**values)
     found, parallel = model(rig, torque), model(rig_with(), torque)
     law, pair = found.law, found.pair
-    axes = axes_as_made(rig, MESH)
+    axes = axes_in_mesh(rig, MESH, cold_state())
     path = law.path_start + law.path_step * np.arange(law.gap.shape[1])
     face = face_of(law, pair.face_width)[:, None]
     gaps = [PairGap.of_pair(pair, axes=own).of_axes(path, face, flank) for own in (axes, PARALLEL)]  # type: ignore[arg-type]
@@ -96,6 +96,6 @@ def test_misaligned_spur_gears_get_slices_of_their_own() -> None:
     counts = [
         len(model(build_rig(CASE.with_values(values), "quick")).law.gap) for values in (flat, flat | tilt)
     ]
-    assert axes_as_made(rig_with(), MESH) == PARALLEL
+    assert axes_in_mesh(rig_with(), MESH, cold_state()) == PARALLEL
     assert counts[0] == 1
     assert counts[1] > 1

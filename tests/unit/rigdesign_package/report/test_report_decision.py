@@ -6,18 +6,26 @@ from datetime import date
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from rigdesign.case import load_case
 from rigdesign.report import flips, reasons
 from rigdesign.report.assumption_groups import assumption_groups, in_braces, most_influential
 from rigdesign.report.case_sheet import CaseSheet
+from rigdesign.report.drivetrain_sheets import bearing_sheet, joint_sheet, shaft_sheet
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.figures.schematic import phone_schematic_figure, rig_plan, schematic_figure
-from rigdesign.report.input_sheets import gear_sheets, joint_sheet, material_sheet, oil_sheet, shaft_sheet
+from rigdesign.report.input_sheets import gear_sheets, material_sheet, oil_sheet
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.pages.report import css_string, report_html
 from rigdesign.results.flips import Flip
+from tests.builders.paths import CASES
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs
 from tests.builders.report_ranges import ranges
+
+
+def prototype_inputs(file):
+    """Inputs of the shipped prototype, or of a variant of it."""
+    return load_case(CASES / "uhcf_prototype" / file).inputs
 
 
 def two_methods(iso, path, **more):
@@ -247,6 +255,19 @@ def test_data_sheets_echo_the_case():
     joints = dict(joint_sheet(result).rows)
     assert joints["gear test.pinion"][3] == "0.0005016 kg m²"
     assert joints["coupling upper"][1] == "138\u202f000 N m/rad"
+    assert joints["coupling upper"][4] == "–"
+
+
+def test_data_sheets_show_what_bends():
+    """Masses of discs, lateral stiffness of couplings; bearings where the case states a spring of them."""
+    result = make_result(inputs=prototype_inputs("table_1_bearings.toml"))
+    assert dict(shaft_sheet(result).rows)["test pinion"][2] == "coupling flange 0.000191 kg m², 0.312 kg"
+    joints = dict(joint_sheet(result).rows)
+    assert joints["coupling pinion side"][4] == "250\u202f000 N/m, 1400 N m/rad"
+    assert dict(bearing_sheet(result).rows)["test.pinion_rear"] == [
+        "test pinion", "1 × 10⁸ N/m, 40\u202f000 N s/m", "–", "–"
+    ]  # fmt: skip
+    assert bearing_sheet(make_result(inputs=prototype_inputs("case.toml"))) is None
 
 
 def test_the_gear_sheet_has_the_computed_sizes_drawn_and_warm():

@@ -128,6 +128,20 @@ def test_a_bearing_that_is_not_tabled_keeps_its_own_numbers(tmp_path: Path) -> N
     assert len(speeds) == 1
 
 
+def test_one_bearing_holds_a_shaft_that_the_file_leaves_free(tmp_path: Path) -> None:
+    """No bearing of the file takes up axial force: of each shaft the rear one is taken to, as an assumption."""
+    result = of_changed(tmp_path, (">NJ 406<", ">NJ 9999<"))
+    assumed = [item.path for item in result.assumed if item.path.endswith("carries_axial_load")]
+    assert assumed == [
+        f"gearboxes.test.bearings.{gear}_rear.catalogue.carries_axial_load" for gear in ("pinion", "wheel")
+    ]
+    for box in load_case(tmp_path / "case").gearboxes.values():
+        assert {name for name, bearing in box.bearings.items() if bearing.locating} == {
+            "pinion_rear",
+            "wheel_rear",
+        }
+
+
 @pytest.mark.parametrize(
     ("kind", "stated"), [("radial_tapered_roller_bearing", True), ("angular_contact_ball_bearing", False)]
 )

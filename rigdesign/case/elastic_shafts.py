@@ -1,0 +1,76 @@
+"""What takes the place of keys that a case with shafts that bend leaves out, and what a report says of it."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+from rigdesign.case.assumption_record import AssumptionRecord
+from rigdesign.case.bearings import BearingInput
+from rigdesign.case.drivetrain import DrivetrainInput
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+
+AXIAL_STIFFNESS = 1e8
+"""Of a thrust face or of the rings of a bearing that locates its shaft [N/m]."""
+STEEL_DENSITY = 7850.0
+"""Of a disc whose mass is not stated [kg/m3]."""
+
+
+def disc_mass(inertia: float) -> float:
+    """Mass of a steel disc a third as thick as its radius [kg], from its polar inertia [kg m2]."""
+    radius = (6.0 * inertia / (math.pi * STEEL_DENSITY)) ** 0.2
+    return float(2.0 * inertia / radius**2)
+
+
+def elastic_assumptions(
+    train: DrivetrainInput | None, gearboxes: Mapping[str, Gearbox]
+) -> Iterator[AssumptionRecord]:
+    """Masses, joints and bearings that the case leaves out; none where the shafts only twist."""
+    if train is None or train.shaft_model != "elastic":
+        return
+    for name, box in gearboxes.items():
+        for part, bearing in box.bearings.items():
+            yield from _bearing(f"gearboxes.{name}.bearings.{part}", bearing, train)
+    yield from _discs(train)
+    for name, coupling in train.couplings.items():
+        if coupling.radial_stiffness is None and coupling.angular_stiffness is None:
+            yield AssumptionRecord(
+                path=f"drivetrain.couplings.{name}.radial_stiffness",
+                value="none",
+                reason="not stated, nor angular_stiffness: the coupling passes torque only, its two shafts bend each "
+                "by itself; take both from its data sheet",
+            )
+
+
+def _bearing(at: str, bearing: BearingInput, train: DrivetrainInput) -> Iterator[AssumptionRecord]:
+    if bearing.locating and bearing.axial_stiffness is None:
+        yield AssumptionRecord(
+            path=f"{at}.axial_stiffness",
+            value=f"{1e-6 * AXIAL_STIFFNESS:g} N/um",
+            reason="not stated: order of a thrust face, or of rolling elements that carry axially; it sets the axial "
+            "frequency of the shaft",
+        )
+    if bearing.support_stiffness is None:
+        yield AssumptionRecord(
+            path=f"{at}.support_stiffness",
+            value="rigid",
+            reason="not stated: the housing under the bearing does not give; state it where its wall is thin or stands "
+            "far from the foot",
+        )
+    if not bearing.has_film and train.bearing_coefficients == "computed":
+        yield AssumptionRecord(
+            path=f"{at}.radial_damping",
+            value=f"{ROLLING_DAMPING_TIME:.3g} s of the stiffness",
+            reason="middle of 0.25e-5 to 2.5e-5 s (E. Kraemer, Dynamics of Rotors and Foundations, 1993); no theory "
+            "gives the damping of rolling elements",
+        )
+
+
+def _discs(train: DrivetrainInput) -> Iterator[AssumptionRecord]:
+    for shaft, part in train.shafts.items():
+        for name, disc in part.discs.items():
+            if disc.mass is None:
+                yield AssumptionRecord(
+                    path=f"drivetrain.shafts.{shaft}.discs.{name}.mass",
+                    value=f"{disc_mass(disc.inertia):.3g} kg",
+                    reason="not stated: steel disc of the stated inertia, a third as thick as its radius",
+                )

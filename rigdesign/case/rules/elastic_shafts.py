@@ -1,0 +1,193 @@
+"""Rules of shafts that bend: what holds each of them along its axis and sideways, and what its parts have to state.
+
+The same as `dynamics.elastic_rig.location` asks of the assembled rig, from the keys of the case alone.
+"""
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+
+if TYPE_CHECKING:
+    from rigdesign.case.bearings import BearingInput
+    from rigdesign.case.drivetrain import CouplingInput, DrivetrainInput
+    from rigdesign.case.gearbox import Gearbox
+    from rigdesign.case.model import Case
+
+FREE = 1e-9
+"""Sum of squared motions at bearings and couplings, each as a row of length 1, below which a lateral motion of rigid
+shafts counts as free; and the share of a shaft in such a motion below which it stands still."""
+LEAST_DIAMETRAL = 0.5
+"""Of a thin disc: its inertia about a diameter over the polar one; thickness adds to it."""
+
+
+def elastic_shaft_faults(case: "Case") -> Iterator[Fault]:
+    """What keeps the shafts from bending in their bearings; nothing where they only twist."""
+    train = case.drivetrain
+    if train is None or train.shaft_model != "elastic":
+        return
+    yield from _thin_discs(train)
+    yield from _stated_bearings(case)
+    couplings = [
+        one for one in train.couplings.values() if all(shaft in train.shafts for shaft in one.shafts)
+    ]
+    yield from _axial(case, train.shafts, couplings)
+    yield from _lateral(case, couplings)
+
+
+def _thin_discs(train: "DrivetrainInput") -> Iterator[Fault]:
+    for shaft, part in train.shafts.items():
+        for name, disc in part.discs.items():
+            least = LEAST_DIAMETRAL * disc.inertia
+            if disc.diametral_inertia is not None and disc.diametral_inertia < least * (1.0 - 1e-9):
+                yield Fault(
+                    f"drivetrain.shafts.{shaft}.discs.{name}.diametral_inertia",
+                    show(disc.diametral_inertia, "inertia"),
+                    f"is below {show(least, 'inertia')}, half of its polar inertia: no body is thinner than a disc",
+                    "write the inertia about a diameter, or leave it out for a thin disc",
+                )
+
+
+def _stated_bearings(case: "Case") -> Iterator[Fault]:
+    assert case.drivetrain is not None
+    if case.drivetrain.bearing_coefficients != "stated":
+        return
+    for box_name, box in case.gearboxes.items():
+        for name, bearing in box.bearings.items():
+            if bearing.radial_stiffness is None:
+                yield Fault(
+                    f"gearboxes.{box_name}.bearings.{name}.radial_stiffness",
+                    "",
+                    'drivetrain.bearing_coefficients = "stated" takes it from every bearing, this one states none',
+                    'add it, e.g. "1e8 N/m", or write bearing_coefficients = "computed"',
+                )
+
+
+def _axial(case: "Case", shafts: Collection[str], couplings: Iterable["CouplingInput"]) -> Iterator[Fault]:
+    """Shafts that neither a bearing, a helical mesh nor a coupling ties to one that a bearing locates."""
+    ties = [coupling.shafts for coupling in couplings if coupling.axial_stiffness]
+    ties += [pair for box in case.gearboxes.values() for pair in _helical(box) if set(pair) <= set(shafts)]
+    located = {
+        bearing.shaft
+        for box in case.gearboxes.values()
+        for bearing in box.bearings.values()
+        if bearing.locating
+    }
+    for group in _joined(shafts, ties):
+        if located.isdisjoint(group):
+            yield Fault(
+                f"drivetrain.shafts.{group[0]}", "",
+                f"nothing locates it{_and(group[1:])} axially: 0 of the bearings do, must be 1",
+                _locate(case, group),
+            )  # fmt: skip
+
+
+def _helical(box: "Gearbox") -> Iterator[tuple[str, str]]:
+    """Shafts whose gears hold each other axially: those of helical and double-helical meshes."""
+    for mesh in box.meshes.values():
+        if mesh.helix_angle and mesh.pinion in box.gears and mesh.wheel in box.gears:
+            yield box.gears[mesh.pinion].shaft, box.gears[mesh.wheel].shaft
+
+
+def _locate(case: "Case", group: Sequence[str]) -> str:
+    own = [
+        f"{box_name}.bearings.{name}"
+        for box_name, box in case.gearboxes.items()
+        for name, bearing in box.bearings.items()
+        if bearing.shaft in group
+    ]
+    at = f" at gearboxes.{' or gearboxes.'.join(own)}" if own else " at a bearing of it"
+    return f"write locating = true{at}, or axial_stiffness at a coupling to a located shaft"
+
+
+def _lateral(case: "Case", couplings: Sequence["CouplingInput"]) -> Iterator[Fault]:
+    """Shafts that can move sideways as rigid bodies while their bearings stand still."""
+    assert case.drivetrain is not None
+    shafts = case.drivetrain.shafts
+    lengths = {name: math.fsum(section.length for section in part.sections) for name, part in shafts.items()}
+    bearings = [bearing for box in case.gearboxes.values() for bearing in box.bearings.values()]
+    stiff = [
+        one
+        for one in couplings
+        if (one.radial_stiffness or one.angular_stiffness) and one.shafts[0] != one.shafts[1]
+    ]
+    for group in _joined(shafts, [coupling.shafts for coupling in stiff]):
+        columns = {shaft: 2 * number for number, shaft in enumerate(group)}
+        own = [bearing for bearing in bearings if bearing.shaft in columns]
+        if any(bearing.position is None for bearing in own):
+            continue  # a fault of its own
+        rows = [_bearing_row(bearing, columns, lengths) for bearing in own]
+        for coupling in stiff:
+            if coupling.shafts[0] in columns:
+                rows += _coupling_rows(coupling, columns, lengths)
+        free = _free_shares(rows, len(group))
+        if free.max() > FREE:
+            shaft = group[int(np.argmax(free))]
+            count = sum(bearing.shaft == shaft for bearing in own)
+            others = [name for name, share in zip(group, free, strict=True) if share > FREE and name != shaft]
+            yield Fault(
+                f"drivetrain.shafts.{shaft}", "",
+                f"has {count} bearing{'' if count == 1 else 's'} and can move sideways{_together(others)}: it needs "
+                "two bearings apart from each other, or one and a coupling with lateral stiffness to a held shaft",
+                "add a bearing, or radial_stiffness and angular_stiffness at a coupling to a held shaft",
+            )  # fmt: skip
+
+
+def _bearing_row(
+    bearing: "BearingInput", columns: Mapping[str, int], lengths: Mapping[str, float]
+) -> NDArray[np.float64]:
+    """Motion of a shaft at a bearing in a plane: its shift, and its tilt times the place, -1 at its start, 1 at its
+    end."""
+    row, column = np.zeros(2 * len(columns)), columns[bearing.shaft]
+    row[column : column + 2] = 1.0, 2.0 * (bearing.position or 0.0) / lengths[bearing.shaft] - 1.0
+    return row
+
+
+def _coupling_rows(
+    coupling: "CouplingInput", columns: Mapping[str, int], lengths: Mapping[str, float]
+) -> Iterator[NDArray[np.float64]]:
+    """Offset and angle between two ends in a plane; the shafts point away from it, on either side."""
+    outward = [1.0 if end == "end" else -1.0 for end in coupling.ends]
+    offset, angle = np.zeros((2, 2 * len(columns)))
+    for sign, shaft, end in zip((1.0, -1.0), coupling.shafts, outward, strict=True):
+        offset[columns[shaft] : columns[shaft] + 2] = sign, sign * end
+        angle[columns[shaft] + 1] = end / lengths[shaft]
+    if coupling.radial_stiffness:
+        yield offset
+    if coupling.angular_stiffness:
+        yield angle
+
+
+def _free_shares(rows: Sequence[NDArray[np.float64]], shafts: int) -> NDArray[np.float64]:
+    """(shafts,) share of each shaft in the motions that no row resists; zero where every motion is resisted."""
+    table = np.array([np.zeros(2 * shafts), *rows])
+    size = np.linalg.norm(table, axis=1, keepdims=True)
+    scaled = table / np.where(size > 0.0, size, 1.0)
+    values, vectors = np.linalg.eigh(scaled.T @ scaled)
+    free = vectors[:, values <= FREE]
+    return np.asarray((free**2).sum(axis=1).reshape(shafts, 2).sum(axis=1))
+
+
+def _joined(names: Collection[str], ties: Iterable[tuple[str, str]]) -> list[list[str]]:
+    """Groups of names that ties join, in the order of the names."""
+    group = {name: [name] for name in names}
+    for first, second in ties:
+        if group[first] is not group[second]:
+            for name in group[second]:
+                group[first].append(name)
+                group[name] = group[first]
+    order = {name: number for number, name in enumerate(names)}
+    return [sorted(one, key=order.__getitem__) for one in {id(one): one for one in group.values()}.values()]
+
+
+def _and(others: Sequence[str]) -> str:
+    return f" and {', '.join(others)}" if others else ""
+
+
+def _together(others: Sequence[str]) -> str:
+    return f" together with {', '.join(others)}" if others else ""
