@@ -12,7 +12,7 @@ its own file: a hash of all sources in each file that takes from another goes wi
 from pathlib import Path
 
 from dynamics.kernels.drag import DragLaws
-from dynamics.kernels.linear_step import FOUR, HELD, DiscreteModes, DragModes
+from dynamics.kernels.linear_step import FOUR, DiscreteModes, DragModes
 from dynamics.kernels.march import march
 from dynamics.kernels.march_state import N_PORTS, Carried, Commands, MarchRecord, Steps
 from dynamics.kernels.mesh_tables import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
@@ -23,7 +23,6 @@ from thermal.fe.kernel_cache import remove_outdated
 
 __all__ = [
     "FOUR",
-    "HELD",
     "N_COUNTS",
     "N_PHASE",
     "N_PORTS",

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
 from dynamics.kernels.contact_table import V_R1, V_R2
-from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, HELD, STATE_AT, DragModes
+from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, STATE_AT, DragModes
 from dynamics.kernels.mesh_tables import POSITIVE
-from dynamics.kernels.mesh_workspace import N_SPACE, OLD, OLDER, PORT, RATE, REACH, SPEED, TAU, TURN
+from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -192,17 +192,16 @@ def _speeds(
     ``by_slow`` holds from ``first`` on what the slow inputs give to the loads, which point against the motion.
     """
     n_drags = torque.shape[0]
-    n_ports = (drags.inputs.shape[0] - n_drags) // HELD
+    n_ports = (drags.inputs.shape[0] - n_drags) // 2
     for d in range(n_drags):
         speed[d] = by_slow[first + d]
     _add_modes(drags, blocks, bank, speed)
     for port in range(n_ports):
         at = (port // 2 * N_SPACE + port % 2 * PORT) & POSITIVE
-        _add_input(drags.inputs, port, space[at + TAU], speed)
-        _add_input(drags.inputs, n_ports + port, space[at + OLD], speed)
-        _add_input(drags.inputs, 2 * n_ports + port, space[at + OLDER], speed)
+        _add_input(drags.inputs, port, space[at + OLD], speed)
+        _add_input(drags.inputs, n_ports + port, space[at + TAU], speed)
     for d in range(n_drags):
-        _add_input(drags.inputs, HELD * n_ports + d, torque[d], speed)
+        _add_input(drags.inputs, 2 * n_ports + d, torque[d], speed)
     for d in range(n_drags):
         speed[d] = -speed[d]
 

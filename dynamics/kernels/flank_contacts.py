@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

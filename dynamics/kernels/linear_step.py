@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
-from dynamics.kernels.mesh_workspace import OLD, OLDER, OLDEST, SPEED, TAU, TURN
+from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -27,12 +27,8 @@ FOUR = 4
 STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
 # columns of DiscreteModes.links
 TO_A, TO_B, FROM_C, FROM_D, LINK_AT = range(5)
-# first entry of the outputs per torque at the end of the step, at its start, one and two steps before, in a link of
-# DiscreteModes.through
-AT_END, AT_START, AT_OLDER, AT_OLDEST = 0, 8, 16, 24
-N_THROUGH = 32
-HELD = 3
-"""Torques of a port that act on what is seen at the end of a step: at its end, at its start, one step before."""
+# first entry of the outputs per torque at the start and at the end of the step, in a link of DiscreteModes.through
+AT_START, AT_END = 0, 8
 
 
 class DragModes(NamedTuple):
@@ -48,8 +44,8 @@ class DragModes(NamedTuple):
     rows: Array
     """(n_drags, n_states) speed of the load of each drag over the states at the end of the step."""
     inputs: Array
-    """(HELD n_ports + n_drags, n_drags) speed of the load of each drag (second) per mesh torque at the end of the step,
-    at its start, one step before, and per drag torque that stays over the step."""
+    """(2 n_ports + n_drags, n_drags) speed of the load of each drag (second) per mesh torque at the start of the step,
+    at its end, and per drag torque that stays over the step."""
     each_other: Array
     """(n_drags, n_drags) speed of the load of a drag (second) per drag torque (first) at the end of the step."""
     ports_held: Array
@@ -61,11 +57,9 @@ class DragModes(NamedTuple):
 class DiscreteModes(NamedTuple):
     """Modes at one step length and number of steps per sample; see ``dynamics.response.propagator.discretise``.
 
-    Within a step a torque of a port is the cubic through its values at the end of the step, at its start, one and two
-    steps before. The modal state ``w`` leaves out what follows these values at once, so that ``w' = decay w + inputs
-    tau`` in each step, ``tau`` being the torques of the ports at its start; what the slow inputs give is added once per
-    sample, and to the outputs in each step. Per branch the
-    state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
+    The modal state ``w`` leaves out what follows the torques of the ports at once, so that ``w' = decay w + inputs
+    tau`` in each step, ``tau`` being these torques at its start; what the slow inputs give is added once per sample, and
+    to the outputs in each step. Per branch the state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
     pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for none. The outputs of port ``p`` are
     its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks and links name a port by its place in
     the space (``kernels.mesh_workspace``).
@@ -82,15 +76,16 @@ class DiscreteModes(NamedTuple):
     """(n_links, 5) two ports, two ports of the same branch that act on them, first entry in ``through``; ports that
     act on themselves first, in the order of ``blocks``."""
     through: Array
-    """Flat, per link: outputs (4) per torque (2) at the end of the step, at its start, one and two steps before."""
+    """Flat, per link: outputs (4) per torque (2) at the start of the step, then at its end."""
     port_new: Array
     """(n_ports, n_outputs) outputs of the ports per mesh torque at the end of the step."""
     rows: Array
     """(n_rows, n_states) speed of every slow input and drag, then joint rates whose squares are losses, over the
     states at the end of the step."""
-    through_ends: Array
-    """(HELD n_ports + 2 n_drags, n_rows) these per mesh torque at the end of the step, at its start, one step before,
-    and per drag torque at its end and its start."""
+    through_old: Array
+    """(n_ports + n_drags, n_rows) these per mesh and drag torque at the start of the step."""
+    through_new: Array
+    """The same at its end."""
     slow_outputs: Array
     """(2 n_slow, substeps * (n_outputs + n_rows)) what each slow input gives in every step of a sample, per value
     at its start, then per change in a step."""
@@ -224,12 +219,10 @@ def step_modes(
         t = blocks[block, THROUGH_AT] & POSITIVE
         now = _given(through, t + AT_END, space[a + TAU], space[b + TAU])
         start = _given(through, t + AT_START, space[a + OLD], space[b + OLD])
-        older = _given(through, t + AT_OLDER, space[a + OLDER], space[b + OLDER])
-        oldest = _given(through, t + AT_OLDEST, space[a + OLDEST], space[b + OLDEST])
-        space[b + SPEED] += (now[2] + start[2]) + (older[2] + oldest[2])
-        space[b + TURN] += (now[3] + start[3]) + (older[3] + oldest[3])
-        space[a + SPEED] += (now[0] + start[0]) + (older[0] + oldest[0])
-        space[a + TURN] += (now[1] + start[1]) + (older[1] + oldest[1])
+        space[b + SPEED] += now[2] + start[2]
+        space[b + TURN] += now[3] + start[3]
+        space[a + SPEED] += now[0] + start[0]
+        space[a + TURN] += now[1] + start[1]
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
         first = blocks[block, BANK_AT] & POSITIVE
@@ -243,10 +236,8 @@ def step_modes(
     for block in range(further.shape[0]):
         _push(further, block, bank, space)
     if links.shape[0] > blocks.shape[0]:
-        add_torques(links, blocks.shape[0], through, AT_END, space, TAU)
         add_torques(links, blocks.shape[0], through, AT_START, space, OLD)
-        add_torques(links, blocks.shape[0], through, AT_OLDER, space, OLDER)
-        add_torques(links, blocks.shape[0], through, AT_OLDEST, space, OLDEST)
+        add_torques(links, blocks.shape[0], through, AT_END, space, TAU)
 
 
 @njit(cache=True, fastmath=LOOSE)
@@ -255,13 +246,13 @@ def end_rows(
 ) -> None:
     """Fill the outputs that are no port's at the end of a step, ``state`` standing there.
 
-    ``torques`` in the order of ``DiscreteModes.through_ends``; ``slow`` holds from ``first`` on what the slow inputs
-    give.
+    ``torques`` (2, n_ports + n_drags) at start and end of the step; ``slow`` holds from ``first`` on what the slow
+    inputs give.
     """
     for r in range(values.shape[0]):
         total = slow[first + r]
         for i in range(state.shape[0]):
             total += modes.rows[r, i] * state[i]
-        for p in range(torques.shape[0]):
-            total += modes.through_ends[p, r] * torques[p]
+        for p in range(torques.shape[1]):
+            total += modes.through_old[p, r] * torques[0, p] + modes.through_new[p, r] * torques[1, p]
         values[r] = total

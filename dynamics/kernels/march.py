@@ -19,7 +19,6 @@ from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_FLOOR, V_R
 from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
 from dynamics.kernels.linear_step import (
     AT_END,
-    HELD,
     DiscreteModes,
     add_torques,
     end_rows,
@@ -69,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -147,7 +146,7 @@ def march(
         bank=aligned(modes.bank),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
-        torques=np.zeros(2 * HELD * n_meshes + 2 * n_drags),
+        torques=np.zeros((2, 2 * n_meshes + n_drags)),
         give=np.zeros(4 * n_meshes**2),
         space=np.zeros((n_meshes + 1) * N_SPACE),
         target=np.zeros(len(carried.slow)),
@@ -233,15 +232,13 @@ def _next_step(space: Array, n_meshes: int) -> None:
 
 @inlined
 def _keep_torques(space: Array, n_meshes: int, drags: Array, change: Array, torques: Array) -> None:
-    """Fill the torques that act on what is seen at the end of the step, see ``DiscreteModes.through_ends``."""
-    n_ports, n_drags = 2 * n_meshes, drags.shape[0]
+    """Fill the torques at start and end of the step, see ``end_rows``."""
+    n_ports = 2 * n_meshes
     for port in range(n_ports):
         at = port // 2 * N_SPACE + port % 2 * PORT
-        torques[port], torques[n_ports + port] = space[at + TAU], space[at + OLD]
-        torques[2 * n_ports + port] = space[at + OLDER]
-    for d in range(n_drags):
-        torques[HELD * n_ports + d] = drags[d]
-        torques[HELD * n_ports + n_drags + d] = drags[d] - change[d]
+        torques[0, port], torques[1, port] = space[at + OLD], space[at + TAU]
+    for d in range(drags.shape[0]):
+        torques[0, n_ports + d], torques[1, n_ports + d] = drags[d] - change[d], drags[d]
 
 
 @inlined

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -86,7 +86,7 @@ class Workspace(NamedTuple):
     ends: Array
     """(n_rows,) the outputs of no port; without accounts those of the slow inputs alone."""
     torques: Array
-    """Torques that act on what is seen at the end of a step, in the order of ``DiscreteModes.through_ends``."""
+    """(2, n_ports + n_drags) at start and end of the step."""
     give: Array
     """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
     then its rate."""

@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 4
 """Numbers in a vector."""

@@ -34,7 +34,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 03055a6c
+# compiled from sources bf4c5c55
 Array = NDArray[np.float64]
 
 

@@ -32,28 +32,18 @@ class ModalLayout(NamedTuple):
 
 
 class StepResponse(NamedTuple):
-    """How the modes and some outputs go over one step with inputs that are polynomials in it.
-
-    The polynomials go through values at some instants, the end of the step first and its start second.
-    """
+    """How the modes and some outputs go over one step with inputs that vary linearly."""
 
     decay: ComplexArray
     """(n_modes,) modal state at the end per state at the start."""
     driven: ComplexArray
-    """(n_modes, n_inputs) modal state at the end per input at the start."""
+    """(n_modes, n_inputs) modal state at the end per input."""
     rows: ComplexArray
     """(n_rows, n_modes) outputs per modal state."""
-    given: Array
-    """(n_instants, n_rows, n_inputs) outputs per input at each instant."""
-    follow: ComplexArray
-    """(n_instants - 1, n_modes, n_inputs) what the marched state leaves out per input now, one and more steps ago."""
-
-    def first(self, n_rows: int, n_inputs: int | None = None) -> "StepResponse":
-        """The first outputs to the first inputs."""
-        return StepResponse(
-            self.decay, self.driven[:, :n_inputs], self.rows[:n_rows], self.given[:, :n_rows, :n_inputs],
-            self.follow[..., :n_inputs],
-        )  # fmt: skip
+    old: Array
+    """(n_rows, n_inputs) outputs per input at the start of the step."""
+    new: Array
+    """(n_rows, n_inputs) outputs per input at its end."""
 
 
 class PortBlocks(NamedTuple):
@@ -82,12 +72,12 @@ def port_blocks(port_branches: Integers, layout: ModalLayout, response: StepResp
     port_branches : (n_ports,) branch of each mesh port
     response : to the torques at the ports, two outputs a port
     """
-    decay, driven, rows, given, _ = response
+    decay, driven, rows, old, new = response
     n_ports = driven.shape[1]
     # zeros for the port that stands for none
     fades, pushes = layout.lay(decay), np.pad(layout.lay(driven.T), ((0, 1), (0, 0)))
     seen = np.pad(layout.lay(rows.conj()), ((0, 2), (0, 0)))
-    through = np.pad(given, ((0, 0), (0, 2), (0, 1)))
+    through = np.pad(np.stack((old, new)), ((0, 0), (0, 2), (0, 1)))
     blocks: list[tuple[int, ...]] = []
     further: list[tuple[int, ...]] = []
     own: list[tuple[int, ...]] = []

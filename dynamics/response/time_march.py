@@ -433,5 +433,4 @@ class TimeMarch:
 
     def _inputs(self) -> Array:
         carried = self._carried
-        now, older, oldest = (carried.ports[:, first : first + 2].ravel() for first in (0, 2, 4))
-        return np.concatenate((now, carried.slow, carried.drags, older, oldest))
+        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
