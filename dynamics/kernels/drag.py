@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
 from dynamics.kernels.contact_table import V_R1, V_R2
-from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, STATE_AT, DragModes
+from dynamics.kernels.linear_step import BANK_AT, FOUR, STATE_AT, DragModes
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources bf4c5c55
+# compiled from sources 505b84f3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -140,7 +140,7 @@ def push_drags(drags: DragModes, blocks: Integers, torque: Array, bank: Array) -
     for four in range(drags.branches.shape[0]):
         block, d = drags.branches[four], (FOUR * four) & POSITIVE
         t_0, t_1, t_2, t_3 = torque[d], torque[d + 1], torque[d + 2], torque[d + 3]
-        for group in range(blocks[block, GROUPS]):
+        for group in range(drags.groups[four]):
             s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
             b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
             for i in range(2 * WIDTH):
@@ -159,7 +159,7 @@ def _add_modes(drags: DragModes, blocks: Integers, bank: Array, load_speed: Arra
     for four in range(drags.branches.shape[0]):
         block, d = drags.branches[four], (FOUR * four) & POSITIVE
         v_0, v_1, v_2, v_3 = 0.0, 0.0, 0.0, 0.0
-        for group in range(blocks[block, GROUPS]):
+        for group in range(drags.groups[four]):
             s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
             b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
             for i in range(2 * WIDTH):

@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources bf4c5c55
+# compiled from sources 505b84f3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

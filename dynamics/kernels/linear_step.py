@@ -17,7 +17,7 @@ from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources bf4c5c55
+# compiled from sources 505b84f3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -39,6 +39,8 @@ class DragModes(NamedTuple):
 
     branches: Integers
     """(n_drags / 4,) row of ``DiscreteModes.blocks`` with the modes of each four."""
+    groups: Integers
+    """(n_drags / 4,) first groups of these modes that each four acts on; the others do without drag."""
     push: Array
     """(n_drags, n_states) state after the step per drag torque at its start."""
     rows: Array
@@ -58,11 +60,11 @@ class DiscreteModes(NamedTuple):
     """Modes at one step length and number of steps per sample; see ``dynamics.response.propagator.discretise``.
 
     The modal state ``w`` leaves out what follows the torques of the ports at once, so that ``w' = decay w + inputs
-    tau`` in each step, ``tau`` being these torques at its start; what the slow inputs give is added once per sample, and
-    to the outputs in each step. Per branch the state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
-    pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for none. The outputs of port ``p`` are
-    its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks and links name a port by its place in
-    the space (``kernels.mesh_workspace``).
+    tau`` in each step, ``tau`` being these torques at its start; what the slow inputs give is added once per sample,
+    and to the outputs in each step. Per branch the state holds groups of WIDTH real parts and WIDTH imaginary parts,
+    filled up with zeros. Port ``2 m`` is the pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands
+    for none. The outputs of port ``p`` are its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks
+    and links name a port by its place in the space (``kernels.mesh_workspace``).
     """
 
     blocks: Integers
@@ -80,8 +82,10 @@ class DiscreteModes(NamedTuple):
     port_new: Array
     """(n_ports, n_outputs) outputs of the ports per mesh torque at the end of the step."""
     rows: Array
-    """(n_rows, n_states) speed of every slow input and drag, then joint rates whose squares are losses, over the
-    states at the end of the step."""
+    """(n_rows, n_states) speed of every slow input and drag, joint rates whose squares are losses, then what skew
+    stiffness takes, over the states at the end of the step."""
+    circulating: int
+    """Number of the last of these rows, in fours: a', b, b', a of a power a' b - b' a."""
     through_old: Array
     """(n_ports + n_drags, n_rows) these per mesh and drag torque at the start of the step."""
     through_new: Array

@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources bf4c5c55
+# compiled from sources 505b84f3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -79,10 +79,12 @@ MOST_SWEEPS = 50
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _account(tables: ContactTables, carried: Carried, work: Workspace, step: float, share: float) -> None:
+def _account(
+    tables: ContactTables, circulating: int, carried: Carried, work: Workspace, step: float, share: float
+) -> None:
     """Add the work of one step, which ends at ``share`` of the sample, to the accounts.
 
-    Powers are integrated as the torques are held, by the cubic through their last four values. A drag torque, which
+    Powers are integrated by the cubic through their last four values. A drag torque, which
     varies linearly over the step, works by its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
     smooth curve).
     """
@@ -101,10 +103,12 @@ def _account(tables: ContactTables, carried: Carried, work: Workspace, step: flo
     for k in range(n_slow):
         fresh[2 * n_meshes + k] = (slow[k] + share * (work.target[k] - slow[k])) * ends[k]
     n_inputs = n_slow + drags.shape[0]
-    joints = 0.0
-    for r in range(n_inputs, ends.shape[0]):
+    joints, taken, first = 0.0, 0.0, ends.shape[0] - circulating
+    for r in range(n_inputs, first):
         joints += ends[r] * ends[r]
-    fresh[2 * n_meshes + n_inputs] = joints
+    for r in range(first, ends.shape[0], 4):
+        taken += ends[r] * ends[r + 1] - ends[r + 2] * ends[r + 3]
+    fresh[2 * n_meshes + n_inputs], fresh[2 * n_meshes + n_inputs + 1] = joints, taken
     for d in range(drags.shape[0]):
         k = 2 * n_meshes + n_slow + d
         fresh[k] = drags[d] * ends[n_slow + d]
@@ -354,6 +358,12 @@ def _march(
                 converged = converged and braked
             if not converged:
                 unconverged += 1
+            if keeps_accounts or sub == substeps - 1:
+                _keep_torques(space, n_meshes, drags, work.drags.change, torques)
+                take_state(blocks, bank, state)
+                end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
+            if keeps_accounts:  # while the angles are those of the start of the step
+                _account(tables, modes.circulating, carried, work, step, (sub + 1.0) / substeps)
             for m in range(n_meshes):
                 at = (m * N_SPACE) & POSITIVE
                 space[at + OFFSET] += step * space[at + OFFSET_RATE]
@@ -368,12 +378,6 @@ def _march(
                     history[m, 5, now] = space[at + TAU]
             mean_torque += space[NET] * torque_share
             now += 1
-            if keeps_accounts or sub == substeps - 1:
-                _keep_torques(space, n_meshes, drags, work.drags.change, torques)
-                take_state(blocks, bank, state)
-                end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
-            if keeps_accounts:
-                _account(tables, carried, work, step, (sub + 1.0) / substeps)
             _next_step(space, n_meshes)
         hold_slow(modes.slow_states, slow, work.target, substeps, state)
         put_state(blocks, state, bank)

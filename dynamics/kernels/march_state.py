@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources bf4c5c55
+# compiled from sources 505b84f3
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -51,7 +51,7 @@ class Carried(NamedTuple):
     """(n_slow + n_drags,) speed of the load of every slow input and drag."""
     powers: Array
     """(3, n) powers at the end of the last three steps, the last first: friction and damping of each mesh, every slow
-    input, every drag, joints; NaN where there was no step; n = 0 without accounts."""
+    input, every drag, joints, skew stiffness; NaN where there was no step; n = 0 without accounts."""
     work: Array
     """(n,) their integrals."""
 

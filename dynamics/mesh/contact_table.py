@@ -34,7 +34,7 @@ LEAST_REACH = 20e-6
 """Least depth of a table [m]."""
 MOST_REACH = 200e-6
 """Greatest depth of a table; beyond it the last cell goes on [m]."""
-LEVELS = 7
+LEVELS = 8
 """Sharpnesses of the reversal of sliding at which friction is tabulated."""
 SHARPEST, BLUNTER = 1.5, 2.2
 """Cells over which friction reverses at the highest of them, and their ratio."""
@@ -53,9 +53,9 @@ class TableGrid:
     planes : tilts that are tabulated between them, at least 2
     """
 
-    per_pitch: int = 96
+    per_pitch: int = 128
     finest: float = 0.125e-6
-    growth: float = 0.025
+    growth: float = 0.0125
     tilts: tuple[float, float] | None = None
     planes: int = 5
 

@@ -25,7 +25,7 @@ KEPT, LOST = 0.3, 0.7
 """Cycles in a step up to which all is kept, and from which all is lost."""
 RESOLVED = 128
 """Steps in a base pitch with which a march needs no filter: what is left of the next harmonics does not matter."""
-LEAST_CELLS = 64
+LEAST_CELLS = 128
 """Cells of a filtered base pitch, for the force that is recorded."""
 TAIL = 4.0
 """Steps that a filtered pair reaches beyond its path."""

@@ -29,6 +29,8 @@ DEFAULT_CUTOFF = 50e3
 """Modes above this frequency [Hz] keep their static effect only."""
 
 
+UNBRAKED = 2e-3
+"""Share of the damping of a mode that drag torques add at most where they are left out of it [-]."""
 PARTING = 1e-9
 """Share by which the damping is raised where two modes coincide [-]."""
 
@@ -53,7 +55,10 @@ class ModalModel:
     scaled_through : (n_states, n_inputs) static part of the dropped modes
     shapes : (n, n) real modes, mass-normalised, rigid ones first
     frequencies : (n,) undamped circular frequencies of the lines [rad/s]
+    springs : (n - n_lines,) stiffness of each elastic mode over its squared frequency: 1, but for one that a film holds
     n_meshes, n_slow, n_drags : numbers of meshes, of slow loads and of drag torques
+    n_circulating : number of the last outputs, in fours: speeds and displacements a', b, b', a whose a' b - b' a is
+        what skew stiffness takes [W]
     drag_branches : (n_drags / 4,) branch of each four of drag torques
     dropped : number of eigenvalues left out
     """
@@ -70,12 +75,14 @@ class ModalModel:
     scaled_through: Array
     shapes: Array
     frequencies: Array
+    springs: Array
     inertia: Array
     mesh_ports: NDArray[np.int64]
     n_lines: int
     n_meshes: int
     n_slow: int
     n_drags: int
+    n_circulating: int
     drag_branches: NDArray[np.int64]
     dropped: int
 
@@ -87,6 +94,7 @@ def modal_model(
     drags: Array | None = None,
     *,
     cutoff: float = DEFAULT_CUTOFF,
+    drag_damping: Array | None = None,
 ) -> ModalModel:
     """Solve the complex eigenproblem of the drivetrain without its meshes.
 
@@ -96,6 +104,8 @@ def modal_model(
     loads : (n, n_slow) torque on each freedom per unit of each slow input [-]
     drags : (n, n_drags) the same of each drag torque, from ``drag_loads``; none when left out
     cutoff : modes above this frequency keep their static effect only [Hz]; ``inf`` keeps all
+    drag_damping : (n_drags,) steepest rise of each drag torque over the speed of a turning shaft [N m s/rad]: modes
+        whose own damping is far above what it adds neither feel the drags nor move them; all do when left out
 
     Raises
     ------
@@ -138,8 +148,24 @@ def modal_model(
     forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
     forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), slow_and_drags))
     modal_forcing = inverse @ forcing
-    velocity = _velocity_rows(system, slow_and_drags) @ shapes
+    velocity = np.vstack((_velocity_rows(system, slow_and_drags), _skew_rows(system))) @ shapes
     seen = (velocity @ vectors[:n]) * weights
+    circulating = len(_skew_rows(system))
+    moved = np.arange(len(seen) - circulating + 1, len(seen), 2)
+    seen[moved] /= np.where(values == 0.0, np.inf, values)
+    if drag_damping is not None and drags.shape[1]:
+        first = 2 * len(laws) + loads.shape[1]
+        of_drags = slice(first, first + drags.shape[1])
+        rows = slice(first + 2 * len(laws), first + 2 * len(laws) + drags.shape[1])
+        added = drag_damping @ np.abs(seen[rows] * modal_forcing[:, of_drags].T) / weights
+        free = added < UNBRAKED * np.abs(values.real)
+        modal_forcing[free, of_drags] = 0.0
+        seen[rows, free] = 0.0
+        # those that drags brake stand first in their branch: the march passes over the others
+        order = np.lexsort((np.arange(len(values)), free, branches))
+        values, branches, weights = values[order], branches[order], weights[order]
+        vectors, inverse = vectors[:, order], inverse[order]
+        modal_forcing, seen = modal_forcing[order], seen[:, order]
     # branches that no load moves at all stand still
     pushed = np.bincount(branches, weights=np.abs(modal_forcing).max(axis=1))[branches] > 0.0
     keep = (np.abs(values) <= 2.0 * np.pi * cutoff) & pushed
@@ -162,12 +188,14 @@ def modal_model(
         scaled_through=((vectors[:, ~keep] * weights[~keep]) @ static).real,
         shapes=shapes,
         frequencies=frequencies,
+        springs=squared[n_lines:] / frequencies[n_lines:] ** 2,
         inertia=np.asarray(system.inertia, float),
         mesh_ports=system.mesh_ports,
         n_lines=n_lines,
         n_meshes=len(laws),
         n_slow=loads.shape[1],
         n_drags=drags.shape[1],
+        n_circulating=circulating,
         drag_branches=np.searchsorted(left, _drag_branches(shapes, branch_of, drags)),
         dropped=int(np.count_nonzero(~keep)),
     )
@@ -311,3 +339,16 @@ def _velocity_rows(system: LinearSystem, loads: Array) -> Array:
     squares, vectors = scipy.linalg.eigh(0.5 * (system.damping + system.damping.T))
     lossy = squares > 1e-13 * max(float(squares.max()), 1e-300)
     return np.vstack((ports, loads.T, (vectors[:, lossy] * np.sqrt(squares[lossy])).T))
+
+
+def _skew_rows(system: LinearSystem) -> Array:
+    """Rows a, b, b, a over the freedoms in fours: the sum of a b' - b a' is the skew part of the stiffness."""
+    skew = 0.5 * (system.stiffness - system.stiffness.T)
+    scale = np.abs(system.stiffness).max(initial=0.0)
+    if np.abs(skew).max(initial=0.0) <= 1e-13 * scale:
+        return np.zeros((0, len(skew)))
+    # i S is Hermitian: its positive eigenvalues s with vectors b + i a give S = sum of 2 s (a b' - b a')
+    values, vectors = scipy.linalg.eigh(1j * skew)
+    acting = values > 1e-13 * scale
+    rows = vectors[:, acting].T * np.sqrt(2.0 * values[acting])[:, None]
+    return np.stack((rows.imag, rows.real, rows.real, rows.imag), axis=1).reshape(-1, len(skew))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.kernels import WIDTH, DiscreteModes, DragModes
+from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.response.modal_layout import ModalLayout, StepResponse, branch_layout, port_blocks
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.step_hold import numerov, phi, straight_line
@@ -96,12 +96,14 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
         **tables._asdict(),
         port_new=np.ascontiguousarray(through_new[:n_ports, :n_fast].T),
         rows=layout.lay(rows[n_ports:].conj()),
+        circulating=model.n_circulating if with_losses else 0,
         through_old=np.ascontiguousarray(through_old[n_ports:, fast].T),
         through_new=np.ascontiguousarray(through_new[n_ports:, fast].T),
         slow_outputs=slow_outputs,
         slow_states=layout.lay(slow_states),
         drags=DragModes(
             branches=model.drag_branches,
+            groups=_braked_groups(model, layout, driven[:, n_driven:]),
             push=layout.lay(driven[:, n_driven:].T),
             rows=layout.lay(rows[braked].conj()),
             inputs=np.ascontiguousarray(
@@ -139,6 +141,16 @@ def _slow_responses(response: StepResponse, n_ports: int, substeps: int) -> tupl
         outputs[:, :, step] += old.T[:, None] * start + new.T[:, None] * end
         modes = after
     return outputs.reshape(2 * n_slow, -1), modes.reshape(2 * n_slow, -1)
+
+
+def _braked_groups(model: ModalModel, layout: ModalLayout, driven: ComplexArray) -> NDArray[np.int64]:
+    """Return (n_drags / 4,) groups of modes from the start of its branch on that each four of drag torques drives."""
+    groups = np.zeros(len(model.drag_branches), np.int64)
+    for four, branch in enumerate(model.drag_branches):
+        driving = driven[:, FOUR * four : FOUR * (four + 1)]
+        braked = layout.modes[np.any(driving != 0.0, axis=1)]
+        groups[four] = (int(braked.max(initial=-1)) - int(layout.starts[branch])) // (2 * WIDTH) + 1
+    return groups
 
 
 def modal_state(

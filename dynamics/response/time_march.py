@@ -5,7 +5,6 @@ each slow input and the losses of meshes and joints, so that drive torque and lo
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +12,10 @@ from numpy.typing import NDArray
 from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
-from dynamics.kernels.contact_table import V_BODY, ContactTables
-from dynamics.mesh.contact_table import MarchStep, contact_tables
+from dynamics.kernels.contact_table import V_BODY
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.path_filter import RESOLVED
 from dynamics.mesh.table_force import TableReaction, evaluate_table
+from dynamics.response.band_change import fade, mean_shift
 from dynamics.response.march_inputs import (
     DragTables,
     DriveLoads,
@@ -27,6 +25,9 @@ from dynamics.response.march_inputs import (
     TorqueControl,
 )
 from dynamics.response.march_loads import drag_loads, drag_places, march_model, slow_loads
+from dynamics.response.march_record import Accounts as Accounts
+from dynamics.response.march_record import Block as Block
+from dynamics.response.march_tables import MarchTables
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import discretise, modal_state, scaled_state
 
@@ -36,64 +37,11 @@ CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
 SEGMENT = 1000
 """Samples after which the contact tables are those of the speed that has come."""
-RUNG = 0.1
-"""Change of a speed after which its contact tables are made anew [-]."""
-CREEP = 0.1
-"""Speed below which dampers on the closing rate of contacts find no path speed [rad/s]."""
 NO_LOADS = DriveLoads()
 
 
 class MarchDiverged(DynamicsNotConverged):
     """A march left the finite numbers; the message names mesh, time, speed and the slowest mode."""
-
-
-class Block(NamedTuple):
-    """One advance: internal steps and sample values."""
-
-    force: Array
-    """(n_meshes, n_steps) front minus back normal force in the transverse line of action [N]."""
-    approach: Array
-    """(n_meshes, n_steps) approach including offsets [m]; no columns unless everything is recorded."""
-    angle_1: Array
-    """(n_meshes, n_steps) pinion angle [rad]."""
-    rate: Array
-    """(n_meshes, n_steps) approach rate [m/s]."""
-    omega_1: Array
-    """(n_meshes, n_steps) pinion speed [rad/s]."""
-    torque_1: Array
-    """(n_meshes, n_steps) generalized torque on the pinion body, friction included [N m]."""
-    slow: Array
-    """(n_samples, n_slow) motor torque [N m], twist [rad] and alternating torques [N m] at the end of each sample."""
-    slow_speed: Array
-    """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
-    drags: Array
-    """(n_samples, n_drags) drag torques [N m] at the end of each sample."""
-    angle: Array
-    """(n_samples,) angle of the pinion of the first mesh at the end of each sample [rad]."""
-
-
-class Accounts(NamedTuple):
-    """Work since the start of a march [J]; losses are positive."""
-
-    friction: Array
-    """(n_meshes,) sliding friction of the teeth."""
-    mesh_damping: Array
-    """(n_meshes,)"""
-    slow_work: Array
-    """(n_slow,) work done on the drivetrain by motor, bracing and alternating torques."""
-    drag: Array
-    """(n_drags,)"""
-    joint_damping: float
-
-    def since(self, before: "Accounts") -> "Accounts":
-        """Work since an earlier account."""
-        return Accounts(
-            self.friction - before.friction,
-            self.mesh_damping - before.mesh_damping,
-            self.slow_work - before.slow_work,
-            self.drag - before.drag,
-            self.joint_damping - before.joint_damping,
-        )
 
 
 class TimeMarch:
@@ -140,17 +88,9 @@ class TimeMarch:
         self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
         self.unconverged = 0
         self._settings = settings
-        self._tabulated_speeds: Array | None = None
-        # slower than this all tables are alike, unless dampers know the speed
-        self._slow_enough = np.array(
-            [
-                law.base_pitch / (RESOLVED * law.base_radius_1 * self.step)
-                if law.damping_acts_on == "relative_rotation"
-                else CREEP
-                for law in self.laws
-            ]
-        )
+        self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
         self._marched = 0
+        self._apart, self._apart_since = np.zeros(len(self.laws)), 0
         self._names = system.dofs
         self._record_all = settings.record_all
         self._places = drag_places(system, drags)
@@ -158,9 +98,9 @@ class TimeMarch:
         columns = np.column_stack((slow_loads(system), braked))
         n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.shaft_torques), braked.shape[1]
         self._n_slow = n_slow
-        n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
+        n_power = 2 * n_meshes + n_slow + n_drags + 2 if accounts else 0
         pinions, wheels = system.mesh_ports.T
-        self._tables = self._tables_at(start.speeds[pinions])
+        self.tables = self._tables.at(start.speeds[pinions])
         ports = np.zeros((n_meshes, kernels.N_PORTS))
         powers = np.full((3, n_power), np.nan)
         for mesh, law in enumerate(self.laws):
@@ -187,8 +127,10 @@ class TimeMarch:
         braking[self._places] = list(loads.drag_torques.values())
         speeds = columns.T @ start.speeds
         if accounts:
-            powers[0, 2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
-            powers[0, -1] = start.speeds @ system.damping @ start.speeds
+            powers[0, 2 * n_meshes : -2] = np.concatenate((slow, braking)) * speeds
+            powers[0, -2] = start.speeds @ system.damping @ start.speeds
+            skew = 0.5 * (system.stiffness - system.stiffness.T)
+            powers[0, -1] = start.speeds @ skew @ start.angles
         self._carried = kernels.Carried(
             state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
@@ -248,11 +190,10 @@ class TimeMarch:
             tables[self._places] = drags.torque
             if drags.last_speed is not None:
                 ends[self._places] = drags.last_speed
-        held = (
-            np.tile(self._carried.offset, (n_samples, 1))
-            if offsets is None
-            else np.ascontiguousarray(offsets)
-        )
+        left = np.outer(fade(n_samples, self._apart_since, sample_time), self._apart)
+        past = fade(1, self._apart_since - 1, sample_time)[0] * self._apart
+        asked = np.tile(self._carried.offset - past, (n_samples, 1)) if offsets is None else offsets
+        held = np.ascontiguousarray(asked + left)
         drag_laws = kernels.DragLaws(
             torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
         )
@@ -263,9 +204,9 @@ class TimeMarch:
             count = part.stop - part.start
             histories.append(np.empty((n_meshes, 6 if self._record_all else 1, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
-            self._tables = self._tables_at(self._pinion_speeds())
+            self.tables = self._tables.at(self._pinion_speeds())
             self.unconverged += kernels.march(
-                self._tables,
+                self.tables,
                 self.propagator.modes,
                 kernels.Commands(given=given[part], offsets=held[part], control=control, drags=drag_laws),
                 self._carried,
@@ -277,6 +218,7 @@ class TimeMarch:
         if not np.all(np.isfinite(self._carried.ports)):
             raise MarchDiverged(self._diverged(history[:, 0], samples[:, : 2 * n_slow]))
         self._marched += n_samples
+        self._apart_since += n_samples
         none = np.empty((n_meshes, 0))
         force, approach, angle, rate, omega, torque = (
             (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
@@ -314,7 +256,7 @@ class TimeMarch:
 
     def _reaction(self, mesh: int, angle: float, reach: float, *speeds: float) -> TableReaction:
         """What a mesh answers at the angle of its pinion and an approach, imposed part included."""
-        return evaluate_table(self._tables, angle, reach, *speeds, mesh=mesh)
+        return evaluate_table(self.tables, angle, reach, *speeds, mesh=mesh)
 
     def _reaction_now(self, mesh: int) -> TableReaction:
         """What a mesh answers at rest at this instant."""
@@ -323,7 +265,7 @@ class TimeMarch:
 
     def _outer_given(self, mesh: int, reach: float, reaction: TableReaction) -> float:
         """Part of an approach that bodies outside the table give [m]."""
-        outside = self._tables.values[mesh, V_BODY] > 0.0
+        outside = self.tables.values[mesh, V_BODY] > 0.0
         return float(reach - reaction.tooth_approach[0]) if outside else 0.0
 
     def _pinion_speeds(self) -> Array:
@@ -333,44 +275,27 @@ class TimeMarch:
         rigid = model.n_lines
         return np.asarray(model.shapes[model.mesh_ports[:, 0], :rigid] @ scaled[:rigid])
 
-    def _tables_at(self, speeds: Array) -> ContactTables:
-        """Contact tables for these speeds of the pinions, those at hand as long as they are good."""
-        known = self._tabulated_speeds
-        if known is not None:
-            near = np.where(known == 0.0, self._slow_enough, RUNG * np.abs(known))
-            if np.all(np.abs(speeds - known) <= near):
-                return self._tables
-        rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
-        # dampers on the closing rate work as the speed, which other marches hardly meet again
-        shared = np.array([law.damping_acts_on == "relative_rotation" for law in self.laws])
-        known = np.where(shared, np.sign(speeds) * (1.0 + RUNG) ** rungs, speeds)
-        known = np.where(np.abs(speeds) < self._slow_enough, 0.0, known)
-        self._tabulated_speeds = known
-        return contact_tables(
-            self.laws,
-            march=MarchStep(step=self.step, speeds=tuple(known.tolist())) if known.any() else None,
-            derivative_torques=self._settings.derivative_torques,
-        )
-
     def accounts(self) -> Accounts:
         """Return work and losses since the start; zeros if the march keeps no accounts."""
         n = len(self.laws)
         if len(self._carried.work) == 0:
             return Accounts(np.zeros(n), np.zeros(n), np.zeros(self._n_slow), np.zeros(len(self.drags)), 0.0)
         work = self._carried.work
-        slow, drag = np.split(work[2 * n : -1], (self._n_slow,))
+        slow, drag = np.split(work[2 * n : -2], (self._n_slow,))
         return Accounts(
             work[0 : 2 * n : 2].copy(),
             work[1 : 2 * n : 2].copy(),
             slow.copy(),
             -drag[self._places],
+            float(work[-2]),
             float(work[-1]),
         )
 
     def energy(self) -> float:
         """Kinetic energy plus elastic energy of joints and tooth contacts at this instant [J]."""
         scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
-        stored = 0.5 * float(scaled @ scaled)
+        n = len(self.model.inertia)
+        stored = 0.5 * float(scaled[:n] @ scaled[:n] + self.model.springs @ scaled[n:] ** 2)
         return stored + sum(float(self._reaction_now(mesh).energy[0]) for mesh in range(len(self.laws)))
 
     def state(self) -> DriveState:
@@ -393,19 +318,54 @@ class TimeMarch:
                     placed.add(line)
         return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._carried.slow[1]))
 
-    def continued(self, system: LinearSystem, model: ModalModel) -> "TimeMarch":
+    def continued(
+        self, system: LinearSystem, model: ModalModel, mean_force: Array | None = None
+    ) -> "TimeMarch":
         """The same motion with other matrices of the same freedoms from this instant on: another speed band.
 
-        system : with the same ports and loads; model : its ``march_model`` for the laws and drags of this march
+        system : with the same ports and loads
+        model : its ``march_model`` for the laws and drags of this march
+        mean_force : (n_meshes,) mean of ``Block.force``, under which the mean position goes over to that of the new
+            bearings (see ``band_change``); it stays where it is when left out [N]
         """
         drags = dict(zip(self.drags, self._carried.drags[self._places].tolist()))
         loads = DriveLoads(drive_torque=float(self._carried.slow[0]), drag_torques=drags)
-        march = TimeMarch(system, self.laws, self.state(), self._settings, loads, model)
+        state = self.state()
+        march = TimeMarch(system, self.laws, state, self._settings, loads, model)
         march._marched, march.unconverged = self._marched, self.unconverged
+        march.tables, march._tables = self.tables, self._tables
+        march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried
         after.ports[:], after.slow[:], after.offset[:] = before.ports, before.slow, before.offset
-        after.controller[:], after.work[:] = before.controller, before.work
+        after.controller[:], after.work[:], after.powers[:] = before.controller, before.work, before.powers
+        angles = state.angles
+        if mean_force is not None:
+            shift = mean_shift(self.system, system, self._mean_load(mean_force))
+            angles = angles + shift
+            march._move_flanks(shift)
+        after.state[:] = modal_state(model, march.propagator, angles, state.speeds, march._inputs())
         return march
+
+    def _mean_load(self, mean_force: Array) -> Array:
+        """Loads (n,) on the freedoms under mean forces of the meshes, with motor, twist and drags of this instant."""
+        carried = self._carried
+        load = slow_loads(self.system) @ carried.slow + drag_loads(self.system, self.drags) @ carried.drags
+        for law, (pinion, wheel), force in zip(self.laws, self.system.mesh_ports, mean_force):
+            load[pinion] -= law.base_radius_1 * force
+            load[wheel] += law.base_radius_2 * force
+        return np.asarray(load)
+
+    def _move_flanks(self, shift: Array) -> None:
+        """Let the ports move by ``shift`` (n,) at once, and the approach that this gives come over a time."""
+        past = fade(1, self._apart_since - 1, self.step * self.substeps)[0]
+        ports = shift[self.system.mesh_ports]
+        for mesh, law in enumerate(self.laws):
+            moved = law.base_radius_1 * ports[mesh, 0] - law.base_radius_2 * ports[mesh, 1]
+            self._carried.ports[mesh, 6] += moved
+            self._carried.ports[mesh, 7] += ports[mesh, 0]
+            self._carried.offset[mesh] -= moved
+            self._apart[mesh] = past * self._apart[mesh] - moved
+        self._apart_since = 0
 
     def preset_speed_integral(self, torque: float) -> None:
         """Let the speed controller start from a motor torque [N m]."""
