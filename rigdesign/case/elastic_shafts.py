@@ -8,6 +8,7 @@ from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+from rigdesign.case.rotation import has_hands, helix_hands
 
 AXIAL_STIFFNESS = 1e8
 """Of a thrust face or of the rings of a bearing that locates its shaft [N/m]."""
@@ -30,6 +31,7 @@ def elastic_assumptions(
     for name, box in gearboxes.items():
         for part, bearing in box.bearings.items():
             yield from _bearing(f"gearboxes.{name}.bearings.{part}", bearing, train)
+        yield from _hands(f"gearboxes.{name}", box)
     yield from _discs(train)
     for name, coupling in train.couplings.items():
         if coupling.radial_stiffness is None and coupling.angular_stiffness is None:
@@ -38,6 +40,19 @@ def elastic_assumptions(
                 value="none",
                 reason="not stated, nor angular_stiffness: the coupling passes torque only, its two shafts bend each "
                 "by itself; take both from its data sheet",
+            )
+
+
+def _hands(at: str, box: Gearbox) -> Iterator[AssumptionRecord]:
+    """Hands that no key states, a record for every train of single-helical gears."""
+    hands = helix_hands(box)
+    for mesh in box.meshes.values():
+        if has_hands(mesh) and mesh.pinion not in hands:
+            yield AssumptionRecord(
+                path=f"{at}.gears.{mesh.pinion}.helix_hand",
+                value="right",
+                reason="not stated: it says which bearing the tilting moment of the axial force relieves; bearings are "
+                "rated for either hand, positions and stiffness are those of the right hand; write right or left",
             )
 
 

@@ -1,28 +1,73 @@
 """Senses of rotation, hands of the teeth and ends of the face in a gearbox, from what the case states of one gear."""
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from rigdesign.case.gearbox import Gearbox
     from rigdesign.case.gears import GearMesh
+    from rigdesign.case.model import Case
 
+Rotation = Literal["clockwise", "anticlockwise"]
 Hand = Literal["right", "left"]
 OTHER: dict[Hand, Hand] = {"right": "left", "left": "right"}
 
 
+Shafts = tuple[str, str]
+
+
+def shaft_senses(
+    known: Mapping[str, float], meshes: Sequence[Shafts], couplings: Sequence[tuple[Shafts, Shafts]] = ()
+) -> dict[str, float]:
+    """Senses of all shafts that meshes and couplings join to known ones, each about its own axis as it is drawn.
+
+    known : 1 clockwise seen from the start of the shaft, -1 the other way
+    couplings : names of the two shafts and the ends that meet; two like ends turn a shaft the other way as drawn
+    """
+    joints = [(pair, -1.0) for pair in meshes]
+    joints += [(pair, -1.0 if ends[0] == ends[1] else 1.0) for pair, ends in couplings]
+    senses = dict(known)
+    for _ in joints:
+        for (here, there), sign in joints:
+            if here in senses:
+                senses.setdefault(there, sign * senses[here])
+            elif there in senses:
+                senses[here] = sign * senses[there]
+    return senses
+
+
 def pinion_sense(box: "Gearbox", mesh: str) -> float:
     """Sense in which the pinion of a mesh turns about x: 1 clockwise seen from the front, -1 the other way."""
-    meshes = [(box.gears[entry.pinion].shaft, box.gears[entry.wheel].shaft) for entry in box.meshes.values()]
+    meshes = _meshing(box)
     first = 1.0 if box.rotation == "clockwise" else -1.0
-    senses = {meshes[0][0]: first}
-    for _ in meshes:
-        for pinion, wheel in meshes:
-            if pinion in senses:
-                senses.setdefault(wheel, -senses[pinion])
-            elif wheel in senses:
-                senses[pinion] = -senses[wheel]
+    senses = shaft_senses({meshes[0][0]: first}, meshes)
     return senses.get(box.gears[box.meshes[mesh].pinion].shaft, first)
+
+
+def contradicting_rotations(case: "Case") -> Iterator[tuple[str, str, Rotation]]:
+    """(gearbox, gearbox that turns it, rotation it then has) where what the case states does not fit its couplings."""
+    train = case.drivetrain
+    if train is None:
+        return
+    meshes = [pair for box in case.gearboxes.values() for pair in _meshing(box)]
+    couplings = [(one.shafts, one.ends) for one in train.couplings.values()]
+    firsts = {name: _meshing(box)[0][0] for name, box in case.gearboxes.items()}
+    settled: dict[str, str] = {}
+    senses: dict[str, float] = {}
+    for name, box in case.gearboxes.items():
+        first = 1.0 if box.rotation == "clockwise" else -1.0
+        if firsts[name] not in senses:
+            found = shaft_senses({firsts[name]: first}, meshes, couplings)
+            settled |= dict.fromkeys(found, name)
+            senses |= found
+        elif senses[firsts[name]] != first:
+            yield name, settled[firsts[name]], "anticlockwise" if first > 0.0 else "clockwise"
+
+
+def _meshing(box: "Gearbox") -> list[Shafts]:
+    """Shafts of pinion and wheel of every mesh."""
+    return [(box.gears[entry.pinion].shaft, box.gears[entry.wheel].shaft) for entry in box.meshes.values()]
 
 
 @dataclass(frozen=True)
@@ -50,6 +95,16 @@ def helix_hands(box: "Gearbox") -> dict[str, GearHand]:
                 if gear in hands and partner not in hands:
                     hands[partner] = GearHand(OTHER[hands[gear].hand], hands[gear].stated)
     return hands
+
+
+def pinion_hand(box: "Gearbox", mesh: str) -> float:
+    """1 for a right-hand pinion, and where the case states no hand; -1 for a left-hand one; 0 where axial forces
+    cancel."""
+    entry = box.meshes[mesh]
+    if not has_hands(entry):
+        return 0.0
+    found = helix_hands(box).get(entry.pinion)
+    return 1.0 if found is None or found.hand == "right" else -1.0
 
 
 def has_hands(mesh: "GearMesh") -> bool:

@@ -32,7 +32,13 @@ def running_state(
     rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bearings: Mapping[str, BearingState]
 ) -> RunningState:
     """Speed and bearings of the elastic rig at an operating point."""
-    coefficients = bearing_coefficients(rig, coupling_state, bearings)
+    return running_at(rig, point, bearing_coefficients(rig, coupling_state, bearings))
+
+
+def running_at(
+    rig: Rig, point: OperatingPoint, coefficients: Mapping[str, LateralCoefficients]
+) -> RunningState:
+    """Speed of the elastic rig at an operating point with these coefficients in its bearings."""
     return RunningState(
         speed=rig.drive_speed(point.speed),
         bearings={name: at_seat(one) for name, one in coefficients.items()},
@@ -52,14 +58,15 @@ def bearing_coefficients(
     found = {}
     for name, _, entry in rig.bearings():
         load = loads[name]
-        force = load.radial * load.direction[0], load.radial * load.direction[1]
         if power.bearing_coefficients == "stated":
             assert entry.radial_stiffness is not None
-            found[name] = constant_coefficients(entry.radial_stiffness, entry.radial_damping or 0.0, force)
+            found[name] = constant_coefficients(
+                entry.radial_stiffness, entry.radial_damping or 0.0, load.force
+            )
             continue
         sense: Sense = 1 if rig.axes[entry.shaft].sense > 0.0 else -1
         operation = LateralOperation(
-            force=force, axial_force=load.axial, sense=sense, structural_damping=ROLLING_DAMPING_TIME
+            force=load.force, axial_force=load.axial, sense=sense, structural_damping=ROLLING_DAMPING_TIME
         )
         found[name] = bearings[name].lateral_coefficients(operation)
     return found

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.bearing.protocol import BearingState
 from dynamics.elastic_rig.running_state import RunningState
-from rigdesign.coupling.loop_system import at_seat, bearing_coefficients
+from rigdesign.coupling.loop_system import bearing_coefficients, running_at
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
@@ -30,7 +30,8 @@ class MeshPlacement:
     apart : change of their centre distance [m]
     approach : by which the flanks come nearer that carry, beyond bending and springs at the bearings [m], in the sense
         of the front flanks; ``apart`` is not in it
-    inclination, skew : of the wheel axis against that of the pinion over x, along the centre line and across [rad]
+    inclination, skew : of the wheel axis against that of the pinion over the axis of the gearbox from its front to its
+        rear, along the centre line and across [rad]
     """
 
     apart: float
@@ -49,30 +50,32 @@ def mesh_placements(
     if rig.shaft_model == "torsional" or rig.drivetrain is None:
         return {}
     coefficients = bearing_coefficients(rig, coupling_state, bearings)
-    bent = _deflection(rig, point, coupling_state, coefficients)
-    rest = _rest_of_journals(rig, coefficients, bent)
+    moved = _displacements(rig, running_at(rig, point, coefficients), coefficients, coupling_state)
     model, found = rig.elastic.model, {}
     for name, pair in rig.pairs.items():
-        linear, beyond = [], []
-        for full in rig.mesh_gears(name):
-            rows = rig.elastic.reduced.rows(model.rows(full)[[1, 2, 4, 5]])
-            y, z, about_y, about_z = rows @ bent
-            linear.append(np.array([y, z, about_z, -about_y]))
-            shaft = rig.drivetrain.gear(full).shaft
-            beyond.append(_at(rest[shaft], rig.axes[shaft].place(rig.drivetrain.gear(full).position)))
-        spring, journal = linear[1] - linear[0], beyond[1] - beyond[0]
-        both = spring + journal
+        rows = [
+            rig.elastic.reduced.rows(model.rows(full)[[1, 2, 5, 4]]) * [[1.0], [1.0], [1.0], [-1.0]]
+            for full in rig.mesh_gears(name)
+        ]
+        spring, rest = ((rows[1] - rows[0]) @ moved).T  # y, z and their slopes over x
+        both = spring + rest
         line = rig.line_of_action(name)
         across = np.array([-line.centres[1], line.centres[0]])
         flank = math.copysign(1.0, coupling_state.mesh_torque[name])
         sine, cosine = math.sin(pair.working_pressure_angle), math.cos(pair.working_pressure_angle)
         found[name] = MeshPlacement(
             apart=float(line.centres @ both[:2]),
-            approach=float(-cosine * line.tangent @ journal[:2] + flank * sine * line.centres @ spring[:2]),
-            inclination=float(line.centres @ both[2:]),
+            approach=float(-cosine * line.tangent @ rest[:2] + flank * sine * line.centres @ spring[:2]),
+            inclination=float(line.centres @ both[2:]) * _towards_rear(rig, name),
             skew=float(across @ both[2:]),
         )
     return found
+
+
+def _towards_rear(rig: Rig, mesh: str) -> float:
+    """1 where the gearbox of a mesh stands in the rig front ahead, -1 the other way round; its skew is the same."""
+    box, own = rig.mesh(mesh)
+    return rig.axes[box.gears[box.meshes[own].pinion].shaft].direction
 
 
 def flank_approach(placements: Mapping[str, MeshPlacement]) -> dict[str, float]:
@@ -89,59 +92,37 @@ def axis_tilt(placements: Mapping[str, MeshPlacement]) -> dict[str, float]:
     }
 
 
-def _deflection(
+def _displacements(
     rig: Rig,
-    point: OperatingPoint,
-    coupling_state: CouplingState,
+    running: RunningState,
     coefficients: Mapping[str, LateralCoefficients],
+    coupling_state: CouplingState,
 ) -> Array:
-    """Mean deflection (n,) of the reduced rig under tooth forces and weight, bearings as springs; rigid motions 0."""
+    """(n, 2) mean displacement of the reduced rig, rigid motions 0: under tooth forces with bearings as springs, which
+    the dynamics have as well; and the rest, by weight and by what journals move beyond the springs of their bearings.
+
+    That part acts like a seat that is displaced: shafts on two bearings follow it straight, others bend.
+    """
     reduced, drivetrain = rig.elastic.reduced, rig.elastic.rig.drivetrain
-    load = reduced.rows(rig.elastic.model.weight())
+    teeth = np.zeros(reduced.size)
     for mesh in drivetrain.meshes:
-        torque = coupling_state.mesh_torque[mesh.name]
         pinion, wheel = reduced.rows(rig.elastic.port_rows[mesh.name])
         ratio = mesh.base_radii[1] / mesh.base_radii[0]
-        load -= torque * (pinion - ratio * wheel)
-    at = reduced.matrices(
-        RunningState(
-            speed=rig.drive_speed(point.speed),
-            bearings={name: at_seat(one) for name, one in coefficients.items()},
-        )
+        teeth -= coupling_state.mesh_torque[mesh.name] * (pinion - ratio * wheel)
+    stiffness = reduced.matrices(running).stiffness
+    springs = _elastic(
+        reduced.n_rigid, stiffness, np.column_stack([teeth, reduced.rows(rig.elastic.model.weight())])
     )
-    rigid = reduced.n_rigid
-    bent = np.zeros(reduced.size)
-    bent[rigid:] = np.linalg.solve(at.stiffness[rigid:, rigid:], load[rigid:])
-    return bent
+    rest = np.zeros(reduced.size)
+    for bearing in drivetrain.bearings:
+        ports = reduced.ports[bearing.name][:2]
+        beyond = coefficients[bearing.name].position - ports @ springs.sum(axis=1)
+        rest += ports.T @ (running.bearings[bearing.name].padded()[0][:2, :2] @ beyond)
+    return springs + np.outer(_elastic(reduced.n_rigid, stiffness, rest), [0.0, 1.0])
 
 
-def _rest_of_journals(
-    rig: Rig, coefficients: Mapping[str, LateralCoefficients], bent: Array
-) -> dict[str, tuple[Array, Array]]:
-    """Of every shaft: displacement (2,) [m] at x = 0 and slope (2,) over x [rad] through the places at which its
-    journals stand beyond the springs of their bearings, by least squares."""
-    assert rig.drivetrain is not None
-    places: dict[str, list[tuple[float, Array]]] = {shaft.name: [] for shaft in rig.drivetrain.shafts}
-    for bearing in rig.drivetrain.bearings:
-        spring = rig.elastic.reduced.ports[bearing.name][:2] @ bent
-        x = rig.axes[bearing.shaft].place(bearing.position)
-        places[bearing.shaft].append((x, coefficients[bearing.name].position - spring))
-    return {shaft: _straight(found) for shaft, found in places.items()}
-
-
-def _straight(places: list[tuple[float, Array]]) -> tuple[Array, Array]:
-    if not places:
-        return np.zeros(2), np.zeros(2)
-    x = np.array([place for place, _ in places])
-    moved = np.array([value for _, value in places])
-    middle = float(x.mean())
-    away = x - middle
-    spread = float(away @ away)
-    slope = away @ moved / spread if spread > 0.0 else np.zeros(2)
-    return moved.mean(axis=0) - middle * slope, slope
-
-
-def _at(line: tuple[Array, Array], x: float) -> Array:
-    """Displacement and slope over x (4,) of a shaft at a place."""
-    start, slope = line
-    return np.concatenate([start + x * slope, slope])
+def _elastic(rigid: int, stiffness: Array, load: Array) -> Array:
+    """Displacement under loads (n, ...), the first ``rigid`` coordinates 0."""
+    moved = np.zeros_like(load)
+    moved[rigid:] = np.linalg.solve(stiffness[rigid:, rigid:], load[rigid:])
+    return moved

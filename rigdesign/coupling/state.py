@@ -70,6 +70,8 @@ class CouplingState:
 
 TEMPERATURES = ("gear_temperature", "oil_outlet", "seat_temperature", "oil_supply")
 LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion", "flank_approach")
+TILT_ARM = 0.05
+"""Half of a wide face [m], at whose end a tilt of the axes counts as a length."""
 
 
 def temperature_change(old: CouplingState, new: CouplingState) -> float:
@@ -78,8 +80,9 @@ def temperature_change(old: CouplingState, new: CouplingState) -> float:
 
 
 def length_change(old: CouplingState, new: CouplingState) -> float:
-    """Largest change of a length between two iterations [m]."""
-    return _largest_change(old, new, LENGTHS)
+    """Largest change of a length between two iterations [m], tilts of the axes included."""
+    tilt = TILT_ARM * _largest_change(old, new, ("axis_tilt",))
+    return max(_largest_change(old, new, LENGTHS), tilt)
 
 
 def torque_change(old: CouplingState, new: CouplingState) -> float:

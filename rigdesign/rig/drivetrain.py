@@ -20,9 +20,8 @@ from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
 from rigdesign.case.elastic_shafts import disc_mass
-from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
-from rigdesign.case.rotation import has_hands, helix_hands
+from rigdesign.case.rotation import pinion_hand
 from rigdesign.properties.materials import Material
 
 ENDS: dict[str, End] = {"start": "left", "end": "right"}
@@ -152,11 +151,11 @@ def gear_inertia(
 def gear_mass(
     case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
 ) -> float:
-    """Mass of a gear body [kg]: of the bored disc whose inertia it has; of a stated inertia, at the same radius of
-    gyration."""
-    part = case.gearboxes[box].gears[gear]
-    tip, bore = 2.0 * _toothing(gear, box, case, pairs).reference_radius, part.bore_diameter
-    return gear_inertia(case, box, gear, pairs, materials) * 8.0 / (tip**2 + bore**2)
+    """Mass of a gear body [kg] that goes with its inertia: at the radius of gyration of its bored disc, or rim and
+    web."""
+    mesh, side = case.gearboxes[box].first_meshes()[gear]
+    pair = pairs[f"{box}.{mesh}"]
+    return gear_inertia(case, box, gear, pairs, materials) * pair.masses[side] / pair.inertias[side]
 
 
 def _flexibility(coupling: CouplingInput) -> JointStiffness:
@@ -198,20 +197,10 @@ def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[MeshConnection]:
                 base_radii=pair.base_radii,
                 teeth=pair.teeth,
                 centre_distance=pair.centre_distance,
-                base_helix_angle=_hand(case.gearboxes[box_name], name) * pair.base_helix_angle,
+                base_helix_angle=pinion_hand(case.gearboxes[box_name], name) * pair.base_helix_angle,
             )
         )
     return meshes
-
-
-def _hand(box: Gearbox, mesh: str) -> float:
-    """1 for a right-hand pinion, also where the case states no hand, -1 for a left-hand one; 0 where axial forces
-    cancel."""
-    entry = box.meshes[mesh]
-    if not has_hands(entry):
-        return 0.0
-    found = helix_hands(box).get(entry.pinion)
-    return 1.0 if found is None or found.hand == "right" else -1.0
 
 
 def _motor(case: Case) -> Motor:

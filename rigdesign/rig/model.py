@@ -1,6 +1,5 @@
 """The rig: a case turned into the inputs of the solvers, as drawn, SI. Nothing here changes during a run."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -321,18 +320,6 @@ class Rig:
         """The bearing ``gearbox.bearing`` of the case."""
         box, part = name.split(".")
         return self.case.gearboxes[box].bearings[part]
-
-    def shaft_mass(self, shaft: str) -> float:
-        """Mass of the sections of a shaft of the drivetrain [kg]; zero without a drivetrain."""
-        power = self.case.drivetrain
-        if power is None or shaft not in power.shafts:
-            return 0.0
-        entry = power.shafts[shaft]
-        density = self.materials[entry.material].density
-        return density * math.fsum(
-            0.25 * math.pi * (section.outer_diameter**2 - section.inner_diameter**2) * section.length
-            for section in entry.sections
-        )
 
     def _gear_diameters(self, name: str) -> dict[str, float]:
         """Mean tooth diameter (d_a + d_f)/2 of each gear of a gearbox [m]."""

@@ -56,6 +56,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
     from rigdesign.case.shipped import case_folder
     from rigdesign.validation import (
         benchmarks,
+        decomposition,
         films,
         fzg_losses,
         gears,
@@ -76,6 +77,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
         ("ISO ratings of the prototype's gears", partial(gears.gear_rows, prototype)),
         ("shafts, crossings, damping", partial(shafts.shaft_rows, prototype)),
         ("dynamic factor over speed", partial(response.response_rows, prototype)),
+        ("dynamic factor by its causes", partial(decomposition.decomposition_rows, prototype)),
         ("ramp", partial(ramp.ramp_rows, prototype)),
         ("film coefficients and oil", films.film_rows),
         ("thermal model of the main rig", partial(_main_rig, with_run)),

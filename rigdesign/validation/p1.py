@@ -7,6 +7,7 @@ between its own measured and computed curves cannot be compared: it prints the c
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rigdesign.validation.rows import (
@@ -90,13 +91,21 @@ def rows_without_run() -> Iterator[ValidationRow]:
 
 
 def speed_rows(rig: "Rig", curve: "GaugeCurve") -> Iterator[ValidationRow]:
-    """What speed and joints do at gauge II; ``curve`` : its quasi-static stress."""
+    """What speed and joints do at gauge II.
+
+    rig : with shafts that only twist; curve : quasi-static stress of the gauge
+    """
     from rigdesign.validation.p1_speed import speed_effect, with_feather_keys
 
-    stiff, keyed = (speed_effect(one, "test.main", curve) for one in (rig, with_feather_keys(rig)))
+    bending = replace(rig, shaft_model="elastic")
+    twisting, stiff, keyed = (
+        speed_effect(one, "test.main", curve) for one in (rig, bending, with_feather_keys(bending))
+    )
     assumed = (
-        "mesh force of the periodic response on the quasi-static curve; 100 rpm taken as quasi-static; quick fidelity; "
-        "shafts and couplings of P1's rig are not printed: those of the tool"
+        "mesh force of the periodic response on the quasi-static curve; 100 rpm taken as quasi-static; analytic teeth, "
+        "shafts that bend in rolling bearings; shafts and couplings of P1's rig are not printed: those of the tool; "
+        f"with shafts that only twist {100.0 * twisting.maximum:+.1f} % at the maximum, "
+        f"{100.0 * twisting.start:+.1f} % at the start"
     )
     yield compare(
         SPEED["P1-coupling"],

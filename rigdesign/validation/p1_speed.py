@@ -4,7 +4,7 @@ The mesh force of the periodic response goes onto the quasi-static curve of the 
 times dynamic over quasi-static root stress of the pinion. The 100 rpm of P1 are taken as quasi-static, as P1 does.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,4 +75,4 @@ def with_feather_keys(rig: Rig) -> Rig:
     gears = [f"{box}.gears.{gear}" for box, entry in rig.case.gearboxes.items() for gear in entry.gears]
     values: dict[str, object] = {f"gearboxes.{gear}.spline.torsional_stiffness": STIFFNESS for gear in gears}
     values |= {f"gearboxes.{gear}.spline.torsional_damping": DAMPING for gear in gears}
-    return build_rig(rig.case.with_values(values), rig.fidelity)
+    return replace(build_rig(rig.case.with_values(values), rig.fidelity), shaft_model=rig.shaft_model)

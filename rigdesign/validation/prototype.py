@@ -1,5 +1,6 @@
 """The shipped prototype case and its variants, as the rows of the UHCF paper (P2) need them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -8,6 +9,7 @@ from pathlib import Path
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions
 from rigdesign.case import Case, load_case
+from rigdesign.case.loader import changed_together
 from rigdesign.rig.gears import build_pair
 from rigdesign.rig.model import Rig, build_rig
 
@@ -35,8 +37,31 @@ class Prototype:
 
         Its tooth stiffness is that of ISO 6336-1, as in a multi-body program: the analytic teeth; shafts only twist.
         """
-        rig = build_rig(load_case(self.folder / "run_up_simulation.toml"))
-        return replace(rig, mesh_stiffness="iso_6336_scaled", shaft_model="torsional")
+        case = load_case(self.folder / "run_up_simulation.toml")
+        return replace(_as_simulated(case), shaft_model="torsional")
+
+    @cached_property
+    def bending(self) -> Rig:
+        """The same with shafts that bend in the bearings of Table 1.
+
+        As P2 models it: one half of the double-helical gears, single-helical, both of its shafts fixed axially.
+        """
+        return _as_simulated(self._table_1({
+            "gearboxes.reference.meshes.main.double_helical": False,
+            "gearboxes.reference.bearings.pinion_front.locating": True,
+        }))  # fmt: skip
+
+    @cached_property
+    def both_halves(self) -> Rig:
+        """The same with both halves of the double-helical gears in mass and inertia; their axial forces cancel."""
+        gears = ("pinion", "wheel")
+        return _as_simulated(
+            self._table_1({f"gearboxes.reference.gears.{gear}.inertia_factor": 2.0 for gear in gears})
+        )
+
+    def _table_1(self, values: Mapping[str, object]) -> Case:
+        stated = {"drivetrain.bearing_coefficients": "stated"}
+        return changed_together(load_case(self.folder / "run_up_simulation.toml"), {**stated, **values})
 
     @cached_property
     def full_addendum(self) -> Case:
@@ -77,6 +102,11 @@ class Prototype:
         pinion = box.gears[entry.pinion].model_copy(update={"profile_shift": first})
         changed = box.model_copy(update={"gears": {**box.gears, entry.pinion: pinion}})
         return _solid(build_pair(changed, mesh, self.rig.materials))
+
+
+def _as_simulated(case: Case) -> Rig:
+    """Rig with the tooth stiffness of a multi-body program, that of ISO 6336-1."""
+    return replace(build_rig(case), mesh_stiffness="iso_6336_scaled")
 
 
 def _solid(pair: GearPair) -> GearPair:

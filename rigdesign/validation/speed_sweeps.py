@@ -8,12 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.modes import LoopMode
+from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
+from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
+from dynamics.elastic_rig.running_state import RunningState
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.tip_contact import tip_separation
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_microgeometry, mesh_models, signed_torque
+from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
@@ -92,13 +99,21 @@ def _point(prototype: Prototype) -> tuple[Rig, OperatingPoint]:
 
 
 def speed_sweep(
-    prototype: Prototype, laws: Sequence[MeshLaw], speeds: Array, methods: tuple[Method, ...] = BOTH
+    prototype: Prototype,
+    laws: Sequence[MeshLaw],
+    speeds: Array,
+    methods: tuple[Method, ...] = BOTH,
+    drivetrain: DrivetrainOverSpeed | None = None,
 ) -> SpeedSweep:
-    """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m, without the speeds that find none."""
+    """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m, without the speeds that find none.
+
+    drivetrain : in place of the one whose shafts only twist
+    """
     rig, point = _point(prototype)
-    assert rig.system is not None
+    system = drivetrain or rig.system
+    assert system is not None
     curve = periodic_response(
-        rig.system,
+        system,
         laws,
         speeds * RPM,
         LoopLoad(torque=signed_torque(rig, point)),
@@ -113,6 +128,49 @@ def speed_sweep(
         drive=np.array([p.drive_torque for p in points]),
         missing=tuple(speed / RPM for speed, _ in curve.failed),
     )
+
+
+def bending_loop(rig: Rig) -> DrivetrainOverSpeed:
+    """Drivetrain of a rig with shafts that bend in bearings of stated stiffness, gyroscopic moments by speed."""
+    edges = np.geomspace(500.0, TOP_SPEED, 9)
+    middles = np.sqrt(edges[1:] * edges[:-1])
+    return SpeedBands(
+        limits=tuple(rig.pinion_speed(float(edge) * RPM) for edge in edges[1:-1]),
+        systems=tuple(rig.elastic.seen.system(_running(rig, float(speed))) for speed in middles),
+    )
+
+
+def loop_modes_at(rig: Rig, speed: float, laws: Sequence[MeshLaw]) -> tuple[LoopMode, ...]:
+    """Modes of the same closed loop at a speed [rpm]."""
+    return elastic_loop_modes(rig.elastic.seen, _running(rig, speed), laws, DEFAULT_CUTOFF)
+
+
+def _running(rig: Rig, speed: float) -> RunningState:
+    point = OperatingPoint(stage="P2", speed=speed * RPM, torque=TEST_TORQUE)
+    return running_state(rig, point, initial_state(rig, point), {})
+
+
+def corner_gaps(models: Sequence[MeshModel], factor: float) -> list[MeshLaw]:
+    """The laws with the gap at the tip corners beyond the active path times a factor."""
+    laws = []
+    for model in models:
+        law = model.law
+        path: Array = law.path_start + law.path_step * np.arange(law.gap.shape[1], dtype=np.float64)
+        laws.append(law._replace(gap=law.gap + (factor - 1.0) * tip_separation(model.pair, path)))
+    return laws
+
+
+def two_halves(laws: Sequence[MeshLaw]) -> list[MeshLaw]:
+    """The laws with a reference mesh of two halves: twice the springs and the damping of one."""
+    reference = laws[1]
+    return [
+        laws[0],
+        reference._replace(
+            stiffness=2.0 * reference.stiffness,
+            mean_stiffness=2.0 * reference.mean_stiffness,
+            damping=2.0 * reference.damping,
+        ),
+    ]
 
 
 def damped(laws: Sequence[MeshLaw], damping: float) -> list[MeshLaw]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from rigdesign.case.defaults.drivetrains import run_up_time
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import Filling, RuleBook, assumed, follows
+from rigdesign.case.rotation import shaft_senses
 
 book = RuleBook()
 RPM = math.tau / 60.0
@@ -22,6 +23,37 @@ def _title(tree: RawTree) -> Filling:
 @book.default("ambient.temperature")
 def _room(tree: RawTree) -> Filling:
     return assumed("20 degC", "test cell", "15 degC", "30 degC")
+
+
+@book.default("gearboxes.*.rotation")
+def _rotation(tree: RawTree, box: str) -> Filling:
+    """As its couplings turn a gearbox, where another one states its rotation or that is not the usual one."""
+    boxes = tree.names("gearboxes")
+    stated = next((name for name in boxes if tree.text(f"gearboxes.{name}.rotation")), None)
+    base = stated or boxes[0]
+    pairs = {name: _mesh_shafts(tree, name) for name in boxes}
+    if base == box or not pairs[base] or not pairs[box]:
+        return None
+    couplings = []
+    for name in tree.names("drivetrain.couplings"):
+        at = f"drivetrain.couplings.{name}"
+        ends = [tree.text(f"{at}.{key}.{i}") for key in ("shafts", "ends") for i in (0, 1)]
+        match ends:
+            case [str(), str(), str(), str()]:
+                couplings.append(((ends[0] or "", ends[1] or ""), (ends[2] or "", ends[3] or "")))
+    first = -1.0 if tree.text(f"gearboxes.{base}.rotation") == "anticlockwise" else 1.0
+    meshes = [pair for name in boxes for pair in pairs[name]]
+    sense = shaft_senses({pairs[base][0][0]: first}, meshes, couplings).get(pairs[box][0][0])
+    if sense is None or (stated is None and sense > 0.0):
+        return None
+    value, reason = "clockwise" if sense > 0.0 else "anticlockwise", f"its couplings to gearbox {base}"
+    return assumed(value, reason) if stated is None else follows(value, reason)
+
+
+def _mesh_shafts(tree: RawTree, box: str) -> list[tuple[str, str]]:
+    """Shafts of pinion and wheel of the meshes of a gearbox; none where one is unreadable."""
+    known = [_members(tree, box, mesh) for mesh in tree.names(f"gearboxes.{box}.meshes")]
+    return [one.shafts for one in known if one is not None] if None not in known else []
 
 
 @book.default("losses.squeeze_share")

@@ -10,6 +10,7 @@ from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import ROOM
 from rigdesign.case.housing import Housing
 from rigdesign.case.paths import known_paths, nearest_paths
+from rigdesign.case.rotation import contradicting_rotations
 from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
@@ -56,7 +57,18 @@ def broken_rules(case: "Case") -> list[Fault]:
     if faults:
         return faults
     faults = [fault for name, box in case.gearboxes.items() for fault in housing_faults(name, box)]
+    faults += _rotations(case)
     return faults or list(transient_faults(case))
+
+
+def _rotations(case: "Case") -> Iterator[Fault]:
+    """Shafts that are coupled turn together."""
+    for name, partner, needed in contradicting_rotations(case):
+        yield Fault(
+            f"gearboxes.{name}.rotation", case.gearboxes[name].rotation,
+            f"its shafts are coupled to gearbox {partner}, whose rotation makes it {needed}",
+            f"write {needed} or leave it out; correct the ends of the couplings if they meet otherwise",
+        )  # fmt: skip
 
 
 def _substances(case: "Case") -> Iterator[Fault]:

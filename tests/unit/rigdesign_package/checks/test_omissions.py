@@ -20,7 +20,6 @@ from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily
 from rigdesign.checks.rules import Omission, Rule, hold, with_omissions
 from rigdesign.checks.transient import EXTREMES
-from rigdesign.coupling.bearing_loads import GRAVITY
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.housing import housing_temperatures
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
@@ -28,6 +27,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import Rig
 from tests.builders.paths import CASES
+from tests.builders.shaft_weight import weight_on_bearing
 from tests.builders.warm_prototype import base, settled
 
 pytestmark = pytest.mark.whole_run
@@ -174,7 +174,8 @@ def test_the_tilting_moment_of_helical_gears_is_a_load_of_their_bearings() -> No
         0.4797 * torque / pair.base_radii[0] * part(pair.working_pressure_angle)
         for part in (math.cos, math.sin)
     )
-    weight = GRAVITY * (0.5 * rig.shaft_mass("reference_wheel") + 0.4797 * pair.masses[1])
+    assert rig.drivetrain is not None
+    weight = weight_on_bearing(rig, "reference.wheel_front", rig.drivetrain.gear("reference.wheel").mass)
     expected = math.hypot(tangential + weight, separating + tilting)
     assert last.bearings["reference.wheel_front"].load == pytest.approx(expected, rel=2e-3)
     assert last.bearings["reference.wheel_front"].load > 1.04 * math.hypot(tangential + weight, separating)

@@ -9,7 +9,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.bearing_loads import GRAVITY, bearing_loads
+from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import PointProblem, run_iteration
@@ -22,6 +22,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.loop_forces import loop_forces
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.idler_case import idler_case
+from tests.builders.shaft_weight import GRAVITY, shaft_weight
 
 TORQUE = 180.0
 
@@ -55,22 +56,23 @@ def test_tangential_forces_of_an_idler_add_and_separating_ones_cancel(
     built, _, coupling_state = boxed
     pair = built.pairs["test.left"]
     tangential = TORQUE / pair.working_radii[0]
-    weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
+    weight = _weight(built, "test.pinion")
     loads = bearing_loads(built, coupling_state)
     both = loads["test.pinion_front"].radial + loads["test.pinion_rear"].radial
     # clockwise, the wheel it drives to the right: the teeth press the pinion upwards against its weight
     assert both == pytest.approx(2.0 * tangential - weight, rel=1e-9)
     # a wheel feels one mesh, its separating force stays
     wheel = loads["test.left_front"].radial + loads["test.left_rear"].radial
-    alone = GRAVITY * (pair.masses[1] + built.shaft_mass("test_left"))
+    alone = _weight(built, "test.left")
     separating = tangential * math.tan(pair.working_pressure_angle)
     assert wheel == pytest.approx(math.hypot(tangential + alone, separating), rel=2e-3)
     # without a housing the first wheel stands to the left, the second where room is: pressed downwards
     loads = bearing_loads(bare[0], bare[2])
-    weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
+    weight = _weight(built, "test.pinion")
     both = loads["test.pinion_front"].radial + loads["test.pinion_rear"].radial
     assert both == pytest.approx(2.0 * tangential + weight, rel=1e-9)
-    assert loads["test.pinion_front"].direction == pytest.approx((0.0, -1.0), abs=1e-9)
+    y, z = loads["test.pinion_front"].force
+    assert z == -loads["test.pinion_front"].radial and abs(y) < 1e-9 * -z
 
 
 def test_wheels_that_both_drive_the_pinion_cancel_on_its_bearings(
@@ -80,8 +82,7 @@ def test_wheels_that_both_drive_the_pinion_cancel_on_its_bearings(
     torque = dict(coupling_state.mesh_torque) | {"test.left": 90.0, "test.right": 90.0}
     split = CouplingState(**{**vars(coupling_state), "mesh_torque": torque})
     loads = bearing_loads(built, split)
-    pair = built.pairs["test.left"]
-    weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
+    weight = _weight(built, "test.pinion")
     assert loads["test.pinion_front"].radial + loads["test.pinion_rear"].radial == pytest.approx(
         weight, rel=1e-9
     )
@@ -111,19 +112,19 @@ def test_heat_of_both_meshes_enters_the_rim_of_the_idler_once(
 
 
 def test_a_double_helical_gear_stirs_the_mist_with_both_halves(
-    boxed: tuple[Rig, OperatingPoint, CouplingState], monkeypatch: pytest.MonkeyPatch
+    boxed: tuple[Rig, OperatingPoint, CouplingState],
 ) -> None:
     built, point, coupling_state = boxed
-    # one half alone pushes axially; what its tilting moment loads is not the matter here
-    monkeypatch.setattr("rigdesign.coupling.bearing_loads._tilting", lambda *_: 0.0)
     single = built.case.with_value("gearboxes.reference.meshes.*.double_helical", False)
     one, two = (_windage(build_rig(case, "quick"), point, coupling_state) for case in (single, built.case))
     assert two > 1.6 * one
-    heavy, light = (bearing_loads(build_rig(c, "quick"), coupling_state) for c in (built.case, single))
-    name = "reference.pinion_front"
-    half = GRAVITY * built.pairs["reference.left"].masses[0] * (277.93 - 159.97) / (277.93 - 32.03)
-    # nearly along the load, which leans by the separating force
-    assert 0.9 * half < heavy[name].radial - light[name].radial < half
+
+
+def _weight(built: Rig, gear: str) -> float:
+    """Of a gear and its shaft [N]."""
+    assert built.drivetrain is not None
+    body = built.drivetrain.gear(gear)
+    return shaft_weight(built, body.shaft) + GRAVITY * body.mass
 
 
 def _windage(built: Rig, point: OperatingPoint, coupling_state: CouplingState) -> float:

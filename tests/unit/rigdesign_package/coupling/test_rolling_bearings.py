@@ -22,6 +22,7 @@ from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.shaft_loads import shaft_loads
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
     heat_into_films,
@@ -34,6 +35,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.transient.oil import oil_conditions
 from tests.builders.rolling_rig import FED, GREASE, SPLASH, rolling_case
+from tests.builders.shaft_weight import weight_on_bearing
 from thermal.conduction.steady import solve_steady
 
 OIL = OilSupply(
@@ -169,7 +171,8 @@ def test_axial_force_goes_to_the_locating_bearing_and_tilts_the_shaft(tmp_path: 
     axial = torque / pair.gears[0].reference_radius * math.tan(math.radians(15.0))
     assert loads["test.pinion_rear"].axial == pytest.approx(axial, rel=1e-9)
     assert loads["test.pinion_front"].axial == 0.0
-    weight = 9.81 * (0.5 * rig.shaft_mass("test_pinion") + 0.5 * pair.masses[0])
+    assert rig.drivetrain is not None
+    weight = weight_on_bearing(rig, "test.pinion_front", rig.drivetrain.gear("test.pinion").mass)
     force = 0.5 * torque / pair.base_radii[0]
     alpha = pair.working_pressure_angle
     by_hand = math.hypot(
@@ -198,7 +201,7 @@ def test_bearings_that_press_each_other_share_the_axial_force_of_the_gears(
     rig = build_rig(load_case(path), "quick")
     state = initial_state(rig, held_points(rig)[0])
     front, rear = (bearing_loads(rig, state)[name] for name in others)
-    gears = axial_force(rig, "test", "test_pinion", state)
+    gears = axial_force(shaft_loads(rig, "test", "test_pinion", state))
     own = [share * load.radial for share, load in zip(induced, (front, rear), strict=True)]
     assert gears > 0.0 and rear.axial - front.axial == pytest.approx(gears)
     assert rear.axial == pytest.approx(
