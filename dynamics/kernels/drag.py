@@ -22,7 +22,7 @@ from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 505b84f3
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -206,6 +206,34 @@ def _speeds(
         speed[d] = -speed[d]
 
 
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _follow_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, damping: Array) -> bool:
+    """Set the drag torques to those of the speeds at hand where all places turn; return whether that does.
+
+    It does if what the torques change of the speeds is too little for any of them.
+    """
+    n_drags = torque.shape[0]
+    last = laws.torque.shape[1] - 1
+    moved, turning = 0.0, True
+    for d in range(n_drags):
+        own, fast = through[d, d], abs(speed[d])
+        damping[d] = 0.0
+        if own != 0.0:
+            place = min(fast * laws.per_step[d], last - 1e-9)
+            j = max(0, min(int(place), last - 1))  # also for a run that left the finite numbers
+            rise = laws.torque[d, j + 1] - laws.torque[d, j]
+            value = laws.torque[d, j] + (place - j) * rise
+            value = value if speed[d] > 0.0 else -value
+            turning = turning and fast >= laws.creep[d]
+            damping[d] = abs(rise) * laws.per_step[d]
+            moved += own * abs(value - torque[d])
+            torque[d] = value
+    for d in range(n_drags):
+        if damping[d] * moved > TOLERANCE * abs(torque[d]):
+            turning = False
+    return turning
+
+
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _iterate_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, damping: Array) -> bool:
     """Iterate on all drag torques and their speeds; return whether they converged.
@@ -248,7 +276,11 @@ def brake(
     _speeds(drags, blocks, bank, space, torque, by_slow, first, speed)
     for d in range(torque.shape[0]):
         change[d] = -torque[d]
-    converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
+    converged = _follow_drags(laws, drags.each_other, torque, speed, work.damping)
+    if not converged:
+        for d in range(torque.shape[0]):
+            torque[d] = -change[d]
+        converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
     for d in range(torque.shape[0]):
         change[d] += torque[d]
     _move_ports(drags, change, work.outputs, values, space)

@@ -70,7 +70,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 505b84f3
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -346,10 +346,8 @@ def hold_path(
     lowest, per_finest = values[m, V_LOWEST], values[m, V_PER_FINEST]
     individual, per_tooth = counts[m, C_INDIVIDUAL] != 0, counts[m, C_PER_TOOTH]
     teeth_1, teeth_2, tooth_1, tooth_2, step = counts[m, C_TEETH_1], counts[m, C_TEETH_2], 0, 0, 2 * side - 1
-    deviations, scales = (
-        counts[m, C_DEVIATIONS_AT] + side * (teeth_1 + teeth_2) * per_tooth,
-        counts[m, C_SCALES_AT],
-    )
+    deviations = counts[m, C_DEVIATIONS_AT] + side * (teeth_1 + teeth_2) * per_tooth
+    scales = counts[m, C_SCALES_AT]
     if individual:
         tooth_1 = _tooth(sign * turn, teeth_1)
         tooth_2 = _tooth(sign * turn + counts[m, C_OFFSET_2] + side, teeth_2)
@@ -365,14 +363,8 @@ def hold_path(
         curve = curves[0] * g_0 + curves[1] * g_1 + curves[2] * g_2 + curves[3] * g_3
         scale = 1.0
         if individual:
-            more, steeper = _of_teeth(
-                tables,
-                m,
-                deviations + tooth_1 * per_tooth,
-                deviations + (teeth_1 + tooth_2) * per_tooth,
-                knot,
-                weights,
-            )
+            one, other = deviations + tooth_1 * per_tooth, deviations + (teeth_1 + tooth_2) * per_tooth
+            more, steeper = _of_teeth(tables, m, one, other, knot, weights)
             gap += more
             slope += steeper
             one = tooth_1 if counts[m, C_SCALED_1] > 1 else 0

@@ -34,7 +34,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 505b84f3
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 
 

@@ -92,8 +92,19 @@ def flank_samples(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankSamp
     response = grid.path_filter.response(cycles)
     known = np.flatnonzero(response)[-1] + 1
     response = response[:known, None, None]
-    sums = np.fft.irfft(spectrum[:, :known] * response, places, axis=1)[:, ::FINER]
+    used = _used(grid, node_law, spectrum.shape[-1])
+    sums = np.zeros((len(spectrum), len(range(0, places, FINER)), *spectrum.shape[2:]))
+    sums[..., used] = np.fft.irfft(spectrum[:, :known][..., used] * response, places, axis=1)[:, ::FINER]
     return unfiltered._replace(sums=sums)
+
+
+def _used(grid: FlankGrid, node_law: NodeLaw, count: int) -> NDArray[np.int64]:
+    """Which of the sums of ``slice_sums`` a table takes: those of tilt and of closing dampers only where there are
+    such."""
+    used = np.ones(count, bool)
+    used[3:5] = len(grid.tilts) > 1
+    used[5:SUMS] = node_law.path_speed != 0.0
+    return np.flatnonzero(used)
 
 
 def _sample(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid, finer: int, beyond: int) -> FlankSamples:

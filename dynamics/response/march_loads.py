@@ -25,7 +25,7 @@ def march_model(
 
     cutoff : modes above this frequency keep their static effect only [Hz]
     drag_damping : steepest rise of the drags over the speed of a turning shaft by name [N m s/rad]; modes that are
-        damped far more by themselves do without drag; all have it when left out
+        damped far more by themselves give way to drags statically alone; all move with them when left out
 
     Raises DynamicsInputError and DefectiveModes as ``modal_model``, DynamicsInputError for unknown names of drags.
     """

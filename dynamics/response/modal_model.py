@@ -105,7 +105,7 @@ def modal_model(
     drags : (n, n_drags) the same of each drag torque, from ``drag_loads``; none when left out
     cutoff : modes above this frequency keep their static effect only [Hz]; ``inf`` keeps all
     drag_damping : (n_drags,) steepest rise of each drag torque over the speed of a turning shaft [N m s/rad]: modes
-        whose own damping is far above what it adds neither feel the drags nor move them; all do when left out
+        whose own damping is far above what it adds give way to the drags statically alone; all move when left out
 
     Raises
     ------
@@ -148,44 +148,46 @@ def modal_model(
     forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
     forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), slow_and_drags))
     modal_forcing = inverse @ forcing
-    velocity = np.vstack((_velocity_rows(system, slow_and_drags), _skew_rows(system))) @ shapes
+    skew_rows = _skew_rows(system)
+    velocity = np.vstack((_velocity_rows(system, slow_and_drags), skew_rows)) @ shapes
     seen = (velocity @ vectors[:n]) * weights
-    circulating = len(_skew_rows(system))
-    moved = np.arange(len(seen) - circulating + 1, len(seen), 2)
+    moved = np.arange(len(seen) - len(skew_rows) + 1, len(seen), 2)
     seen[moved] /= np.where(values == 0.0, np.inf, values)
+    in_motion = np.ones(modal_forcing.shape, bool)
     if drag_damping is not None and drags.shape[1]:
         first = 2 * len(laws) + loads.shape[1]
         of_drags = slice(first, first + drags.shape[1])
         rows = slice(first + 2 * len(laws), first + 2 * len(laws) + drags.shape[1])
         added = drag_damping @ np.abs(seen[rows] * modal_forcing[:, of_drags].T) / weights
         free = added < UNBRAKED * np.abs(values.real)
-        modal_forcing[free, of_drags] = 0.0
+        in_motion[free, of_drags] = False
         seen[rows, free] = 0.0
         # those that drags brake stand first in their branch: the march passes over the others
         order = np.lexsort((np.arange(len(values)), free, branches))
         values, branches, weights = values[order], branches[order], weights[order]
         vectors, inverse = vectors[:, order], inverse[order]
-        modal_forcing, seen = modal_forcing[order], seen[:, order]
+        modal_forcing, in_motion, seen = modal_forcing[order], in_motion[order], seen[:, order]
     # branches that no load moves at all stand still
     pushed = np.bincount(branches, weights=np.abs(modal_forcing).max(axis=1))[branches] > 0.0
     keep = (np.abs(values) <= 2.0 * np.pi * cutoff) & pushed
     left = np.unique(branches[keep])
-    lost, lost_forcing = values[~keep], modal_forcing[~keep]
-    lost = np.where(np.abs(lost_forcing).max(axis=1) > 0.0, lost, 1.0)
-    static = -lost_forcing / lost[:, None]
-    delayed = -lost_forcing / lost[:, None] ** 2
+    in_motion[~keep] = False
+    # what modes that do not move with an input do of it statically, and with some delay
+    lost = np.where(in_motion, 0.0, modal_forcing)
+    static = -lost / np.where(np.abs(lost).max(axis=1) > 0.0, values, 1.0)[:, None]
+    delayed = static / np.where(np.abs(lost).max(axis=1) > 0.0, values, 1.0)[:, None]
     ports = system.mesh_ports.ravel()
     return ModalModel(
         eigenvalues=values[keep],
         branches=np.searchsorted(left, branches[keep]),
         port_branches=np.searchsorted(left, [branch_of[np.argmax(np.abs(shapes[port]))] for port in ports]),
-        inputs=modal_forcing[keep],
+        inputs=np.where(in_motion, modal_forcing, 0.0)[keep],
         outputs=seen[:, keep],
-        through=(seen[:, ~keep] @ static).real,
-        through_rate=(seen[:, ~keep] @ delayed).real,
+        through=(seen @ static).real,
+        through_rate=(seen @ delayed).real,
         to_modes=inverse[keep],
         to_scaled=vectors[:, keep] * weights[keep],
-        scaled_through=((vectors[:, ~keep] * weights[~keep]) @ static).real,
+        scaled_through=((vectors * weights) @ static).real,
         shapes=shapes,
         frequencies=frequencies,
         springs=squared[n_lines:] / frequencies[n_lines:] ** 2,
@@ -195,7 +197,7 @@ def modal_model(
         n_meshes=len(laws),
         n_slow=loads.shape[1],
         n_drags=drags.shape[1],
-        n_circulating=circulating,
+        n_circulating=len(skew_rows),
         drag_branches=np.searchsorted(left, _drag_branches(shapes, branch_of, drags)),
         dropped=int(np.count_nonzero(~keep)),
     )
@@ -291,7 +293,12 @@ def _branch_modes(
         parted = own.copy()
         parted[moving] *= 1.0 + more
         values, vectors = scipy.linalg.eig(parted)
-        condition = float(np.linalg.cond(vectors))
+        try:
+            inverse = np.linalg.inv(vectors)
+        except np.linalg.LinAlgError:
+            condition = np.inf
+            continue
+        condition = float(np.linalg.norm(vectors, 1) * np.linalg.norm(inverse, 1))
         if condition < 1e12:
             break
     else:
@@ -299,7 +306,6 @@ def _branch_modes(
             f"complex modes: condition number {condition:.1e} of the eigenvectors, limit 1e12; two modes coincide, "
             "change a joint damping by a part in 1e4"
         )
-    inverse = np.linalg.inv(vectors)
     half = np.flatnonzero(values.imag >= 0.0)
     half = half[np.lexsort((values[half].imag, np.abs(values[half])))]
     right = np.zeros((len(matrix), len(half)), complex)
