@@ -117,6 +117,11 @@ class JournalBearingInput(Part):
         """Its thrust face takes up what its partner induces, where it locates the shaft."""
         return self.locating
 
+    @property
+    def arrangement(self) -> None:
+        """It has no contact angle."""
+        return
+
     def induced_axial_load(self, radial: float) -> float:
         """None: a film pushes radially [N]."""
         return 0.0

@@ -19,6 +19,7 @@ PLACES: "dict[ResultQuantity, tuple[str, ...]]" = {
     "drive_torque": ("drivetrain.motor",),
     "drive_power": ("drivetrain.motor",),
     "actuator_force": ("drivetrain.bracing",),
+    "shift_travel": ("drivetrain.bracing",),
     "circulating_power": ("gearboxes.*", "drivetrain", "drivetrain.couplings.*", "drivetrain.shafts.*"),
     "seal_surface_velocity": HOUSED,
     "shaft_growth": HOUSED,

@@ -30,7 +30,8 @@ def elastic_assumptions(
         return
     for name, box in gearboxes.items():
         for part, bearing in box.bearings.items():
-            yield from _bearing(f"gearboxes.{name}.bearings.{part}", bearing, train)
+            condensed = box.housing is not None and box.housing.bearing_seats == "elastic"
+            yield from _bearing(f"gearboxes.{name}.bearings.{part}", bearing, train, condensed)
         yield from _hands(f"gearboxes.{name}", box)
     yield from _discs(train)
     for name, coupling in train.couplings.items():
@@ -56,20 +57,30 @@ def _hands(at: str, box: Gearbox) -> Iterator[AssumptionRecord]:
             )
 
 
-def _bearing(at: str, bearing: BearingInput, train: DrivetrainInput) -> Iterator[AssumptionRecord]:
-    if bearing.locating and bearing.axial_stiffness is None:
+def _bearing(
+    at: str, bearing: BearingInput, train: DrivetrainInput, condensed: bool
+) -> Iterator[AssumptionRecord]:
+    angled = bearing.induced_axial_load(1.0) > 0.0 and train.bearing_coefficients == "computed"
+    if angled and bearing.arrangement is None:
+        yield AssumptionRecord(
+            path=f"{at}.arrangement",
+            value="face_to_face",
+            reason="not stated here: said at the other end of the shaft, or usual in gearboxes; it says which way the "
+            "elements lean",
+        )
+    if bearing.locating and bearing.axial_stiffness is None and not angled:
         yield AssumptionRecord(
             path=f"{at}.axial_stiffness",
             value=f"{1e-6 * AXIAL_STIFFNESS:g} N/um",
             reason="not stated: order of a thrust face, or of rolling elements that carry axially; it sets the axial "
             "frequency of the shaft",
         )
-    if bearing.support_stiffness is None:
+    if bearing.support_stiffness is None and not condensed:
         yield AssumptionRecord(
             path=f"{at}.support_stiffness",
             value="rigid",
             reason="not stated: the housing under the bearing does not give; state it where its wall is thin or stands "
-            "far from the foot",
+            'far from the foot, or write bearing_seats = "elastic" at its housing',
         )
     if not bearing.has_film and train.bearing_coefficients == "computed":
         yield AssumptionRecord(

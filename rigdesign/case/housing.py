@@ -1,7 +1,7 @@
 """Geometry of a gearbox housing and what its surfaces exchange heat with."""
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -88,6 +88,9 @@ class Housing(Part):
     """Plate the gearbox stands on."""
     foot_contact: FootContact | None = None
     """Joint between foot and field; perfect contact when left out, which the report lists as an assumption."""
+    bearing_seats: Literal["rigid", "elastic"] = "rigid"
+    """elastic: the seats yield under shafts that bend, with stiffness and mass condensed from the mesh of the housing,
+    bolted down at its foot; rigid: they yield only where a bearing states its ``support_stiffness``."""
     mesh: HousingMesh = HousingMesh()
     """Element sizes by zone where the usual ones do not do."""
     mesh_file: Text | None = None

@@ -123,6 +123,9 @@ class RollingBearingInput(Part):
     """Numbers of a bearing that is not tabled."""
     locating: bool = False
     """Fixes its shaft axially and takes the axial force of its gears; one per shaft."""
+    arrangement: Literal["back_to_back", "face_to_face"] | None = None
+    """How a bearing with a contact angle stands to the one at the other end: back to back (O) or face to face (X). Left
+    out, both are rated for either, and shafts that bend have them face to face."""
     axial_play: Play = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn."""
     position: Gap | None = None

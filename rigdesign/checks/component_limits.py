@@ -141,6 +141,20 @@ def _actuator_force(solved: SolvedRig, part: str) -> Found:
     )
 
 
+def _shift_travel(solved: SolvedRig, part: str) -> Found:
+    """From the assembled position, cold or warm: what is left of the way to the end stop is the reserve of control."""
+    power = solved.case.drivetrain
+    if solved.loads is None or power is None:
+        return None, NO_LOADS
+    if power.bracing.mode == "twist_held" or power.bracing.shifted_gear is None:
+        return None, "the loop is braced by a twist: no gear is shifted"
+    return worst(
+        (abs(state.shift), f"stage {bracing.stage}, {heat}")
+        for bracing in solved.loads.bracing
+        for heat, state in (("cold", bracing.drift.initial), ("warm", bracing.drift.warm))
+    )
+
+
 def _circulating_power(solved: SolvedRig, part: str) -> Found:
     """Torque times speed: the same at every place of one loop."""
     return worst(
@@ -220,6 +234,7 @@ RESULTS: dict[ResultQuantity, Callable[[SolvedRig, str], Found]] = {
     "drive_torque": _drive_torque,
     "drive_power": _drive_power,
     "actuator_force": _actuator_force,
+    "shift_travel": _shift_travel,
     "circulating_power": _circulating_power,
     "seal_surface_velocity": _seal_velocity,
     "shaft_growth": _shaft_expansion,
@@ -304,6 +319,14 @@ FAMILIES = (
             "Axial force of the shifted gear at the held stages, warm, plus the friction of its seat.",
         ),
         moved_by=frozenset({"spline friction", "housing"}),
+    ),
+    replace(
+        _family(
+            "shift_travel",
+            "largest axial shift of the gear that braces the loop",
+            "Axial shift from the assembled position at the held stages, cold and warm.",
+        ),
+        moved_by=frozenset({"housing"}),
     ),
     replace(
         _family(

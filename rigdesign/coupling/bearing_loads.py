@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.rolling_pair import pair_axial_loads
+from dynamics.bearing.rolling_pair import force_on_first, pair_axial_loads
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.coupling.shaft_loads import ShaftLoad, shaft_loads
@@ -25,10 +25,12 @@ class BearingLoad:
     force : of the shaft on the bearing in the plane (y, z) [N]. Its size is ``radial`` unless the case states the
         radial load, or leaves the hand of helical teeth open: then ``radial`` is the largest that either hand makes
         and ``force`` that of a right-hand pinion.
+    axial_sense : 1 where the shaft presses the bearing towards +x, else -1
     """
 
     radial: float
     axial: float = 0.0
+    axial_sense: float = 1.0
     force: tuple[float, float] = (0.0, 0.0)
 
 
@@ -41,8 +43,9 @@ def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, BearingL
     carried by both bearings of the shaft as a couple over their distance; it is left out where the case does not state
     both positions (`tilt_counted`).
 
-    Where the radial load of a bearing induces an axial force, its partner takes that up as well (`pair_axial_loads`);
-    the locating bearing is the one that the gears press, whether the pair stands face to face or back to back.
+    Where the radial load of a bearing induces an axial force, its partner takes that up as well (`pair_axial_loads`).
+    The axial force of the gears presses the one that their hand and the stated arrangement say; where the case leaves
+    either open, the locating one, which is on the safe side for it.
     """
     loads: dict[str, BearingLoad] = {}
     for name, box in rig.case.gearboxes.items():
@@ -53,7 +56,7 @@ def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, BearingL
                 for part, entry in box.bearings.items()
                 if entry.shaft == shaft
             }
-            loads |= own | _axial_loads(rig, name, own, axial_force(acting))
+            loads |= own | _axial_loads(rig, name, own, acting)
     return {name: loads[name] for name, _, _ in rig.bearings()}
 
 
@@ -106,27 +109,37 @@ def _open_hands(acting: Sequence[ShaftLoad]) -> list[list[ShaftLoad]]:
 
 
 def _axial_loads(
-    rig: Rig, name: str, loads: dict[str, BearingLoad], external: float
+    rig: Rig, name: str, loads: dict[str, BearingLoad], acting: Sequence[ShaftLoad]
 ) -> dict[str, BearingLoad]:
-    """Loads of the bearings of a shaft that carry axial force.
-
-    external : of the gears [N]
-    """
+    """Loads of the bearings of a shaft that carry axial force."""
     box = rig.case.gearboxes[name]
     entries = {full: box.bearings[full.split(".")[1]] for full in loads}
-    first = next((full for full in loads if entries[full].locating), next(iter(loads)))
+    locating = next((full for full in loads if entries[full].locating), next(iter(loads)))
     induced = {full: entries[full].induced_axial_load(loads[full].radial) for full in loads}
-    axial = {first: external}
+    signed = math.fsum(load.axial for load in acting)
+    axial = {locating: axial_force(acting)}
+    senses = {full: math.copysign(1.0, signed) for full in loads}
     if len(loads) == 2 and max(induced.values()) > 0.0:
-        other = next(full for full in loads if full != first)
-        axial = dict(
-            zip((first, other), pair_axial_loads((induced[first], induced[other]), external), strict=True)
-        )
+        front, rear = sorted(loads, key=lambda full: _place(rig, entries[full]))
+        stated = next((entry.arrangement for entry in entries.values() if entry.arrangement), None)
+        senses = dict(zip((front, rear), (1.0, -1.0) if stated == "back_to_back" else (-1.0, 1.0)))
+        if stated is not None and all(load.sure for load in acting):
+            pair, force = (front, rear), force_on_first(stated, signed)
+        else:
+            pair, force = (locating, rear if locating == front else front), axial_force(acting)
+        axial = dict(zip(pair, pair_axial_loads((induced[pair[0]], induced[pair[1]]), force), strict=True))
     return {
-        full: replace(loads[full], axial=force)
+        full: replace(loads[full], axial=force, axial_sense=senses[full])
         for full, force in axial.items()
         if force > 0.0 and not entries[full].has_film  # a thrust face carries it, not the film
     }
+
+
+def _place(rig: Rig, entry: BearingInput) -> float:
+    """x of a bearing; of one without a stated position the end of the housing it sits in."""
+    if entry.position is None:
+        return 0.0 if entry.side == "front" else 1.0
+    return rig.axes[entry.shaft].place(entry.position)
 
 
 def _couple(rig: Rig, box: Gearbox, entry: BearingInput, load: ShaftLoad) -> Array:

@@ -41,7 +41,7 @@ def running_at(
     """Speed of the elastic rig at an operating point with these coefficients in its bearings."""
     return RunningState(
         speed=rig.drive_speed(point.speed),
-        bearings={name: at_seat(one) for name, one in coefficients.items()},
+        bearings={name: at_seat(one, name in rig.elastic.pressed) for name, one in coefficients.items()},
     )
 
 
@@ -66,18 +66,26 @@ def bearing_coefficients(
             continue
         sense: Sense = 1 if rig.axes[entry.shaft].sense > 0.0 else -1
         operation = LateralOperation(
-            force=load.force, axial_force=load.axial, sense=sense, structural_damping=ROLLING_DAMPING_TIME
+            force=load.force,
+            axial_force=load.axial_sense * load.axial,
+            sense=sense,
+            structural_damping=ROLLING_DAMPING_TIME,
         )
         found[name] = bearings[name].lateral_coefficients(operation)
     return found
 
 
-def at_seat(coefficients: LateralCoefficients) -> BearingCoefficients:
-    """Lateral and tilting part in the order of the elastic rig; what locates a shaft is a spring of its own."""
+def at_seat(coefficients: LateralCoefficients, pressed: bool = False) -> BearingCoefficients:
+    """Coefficients in the order of the elastic rig.
+
+    pressed : against another bearing of its shaft, so that its elements locate the shaft; where they do not, a spring
+        of its own does, and they hold it laterally and against tilting only
+    """
     order = [1, 2, 0, 3, 4]
     stiffness = coefficients.node_stiffness[order][:, order]
     damping = coefficients.node_damping[order][:, order]
-    for matrix in (stiffness, damping):
-        matrix[2] = 0.0
-        matrix[:, 2] = 0.0
+    if not pressed:
+        for matrix in (stiffness, damping):
+            matrix[2] = 0.0
+            matrix[:, 2] = 0.0
     return BearingCoefficients(stiffness=stiffness, damping=damping)

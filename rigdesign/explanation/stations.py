@@ -272,6 +272,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.bearings.*.diametral_clearance": _at(
         case__bearings="clearance that thermal expansion changes, film of the bearing"
     ),
+    "gearboxes.*.bearings.*.arrangement": _at(
+        coupling__bearing_loads="which of two bearings the axial force presses"
+    ),
     "gearboxes.*.bearings.*.locating": _at(case__geometry="point from which the shaft expands axially"),
     "gearboxes.*.bearings.*.axial_play": _at(
         records__warm_gearbox="axial play that thermal expansion uses up"
@@ -290,6 +293,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__elastic_rig="axial spring of a locating bearing between shaft and housing"
     ),
     "gearboxes.*.bearings.*.support_stiffness": _at(rig__elastic_rig=_SUPPORT),
+    "gearboxes.*.housing.bearing_seats": _at(rig__housing_seats=_SUPPORT),
     "gearboxes.*.bearings.*.support_damping": _at(rig__elastic_rig=_SUPPORT),
     "gearboxes.*.bearings.*.support_mass": _at(rig__elastic_rig=_SUPPORT),
     **{

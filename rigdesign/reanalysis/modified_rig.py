@@ -19,7 +19,7 @@ from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 
-ACTUATOR = ("actuator_force",)
+ACTUATOR = ("actuator_force", "shift_travel")
 """Quantities of bought parts that follow the setting of the bracing, hot."""
 LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "axial_expansion": 2e-6}
 """Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a

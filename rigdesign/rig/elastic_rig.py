@@ -3,7 +3,7 @@
 The reduced rig is made once: one basis for all speeds, stages and iterations, whatever the bearings do.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -25,7 +25,7 @@ from dynamics.elastic_rig.layout import (
 )
 from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import ReducedElasticRig, port_rows_of, reduce_rig
-from dynamics.elastic_rig.running_state import isotropic_bearing
+from dynamics.elastic_rig.running_state import BearingCoefficients, isotropic_bearing
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
@@ -48,11 +48,13 @@ class ElasticDrivetrain:
     """The elastic rig of a case and what of it is seen from outside.
 
     faces : flank of the pinion that carries in each mesh; cutoff : highest mode that is kept [Hz]
+    pressed : bearings, ``gearbox.bearing``, whose rolling elements locate their shaft (`pressed_bearings`)
     """
 
     rig: ElasticRig
     faces: Mapping[str, Face]
     cutoff: float
+    pressed: frozenset[str] = frozenset()
 
     @cached_property
     def model(self) -> ElasticModel:
@@ -63,7 +65,7 @@ class ElasticDrivetrain:
     def reduced(self) -> ReducedElasticRig:
         """Modes up to the cutoff with static shapes of all ports."""
         reference = {
-            bearing.name: isotropic_bearing(REFERENCE_STIFFNESS) for bearing in self.rig.drivetrain.bearings
+            bearing.name: _reference(bearing.name in self.pressed) for bearing in self.rig.drivetrain.bearings
         }
         rows = np.vstack([port_rows_of(self.model), *self.port_rows.values()])
         return reduce_rig(self.model, reference, self.cutoff, rows)
@@ -83,20 +85,44 @@ class ElasticDrivetrain:
 
 
 def elastic_rig(
-    case: Case, drivetrain: Drivetrain, axes: Mapping[str, ShaftAxis], pairs: Mapping[str, GearPair]
+    case: Case,
+    drivetrain: Drivetrain,
+    axes: Mapping[str, ShaftAxis],
+    pairs: Mapping[str, GearPair],
+    housings: Sequence[HousingSupport] = (),
 ) -> ElasticRig:
     """Shafts at their axes, bearings on their supports, what locates them axially.
+
+    housings : condensed to the seats of their bearings, of the gearboxes whose case says so
 
     Raises DrivetrainError for parts that contradict each other.
     """
     return ElasticRig(
         drivetrain=drivetrain,
         placements=tuple(_placement(shaft.name, axes[shaft.name]) for shaft in drivetrain.shafts),
-        supports=tuple(_supports(case)),
+        supports=(*_supports(case), *housings),
         axial_locations=tuple(_locations(case)),
         axial_mesh_springs=tuple(_double_helical(case, pairs)),
-        axially_locating=tuple(_single_helical(case, pairs)),
+        axially_locating=(*_single_helical(case, pairs), *pressed_bearings(case)),
     )
+
+
+def pressed_bearings(case: Case) -> Iterator[str]:
+    """Bearings on shafts that contact angles hold: pressed against each other, they have an axial stiffness."""
+    power = case.drivetrain
+    if power is None or power.bearing_coefficients == "stated":
+        return
+    for box_name, box in case.gearboxes.items():
+        angled = {entry.shaft for entry in box.bearings.values() if entry.induced_axial_load(1.0) > 0.0}
+        yield from (f"{box_name}.{name}" for name, entry in box.bearings.items() if entry.shaft in angled)
+
+
+def _reference(pressed: bool) -> BearingCoefficients:
+    """Bearing of the state whose modes span the reduced rig."""
+    if not pressed:
+        return isotropic_bearing(REFERENCE_STIFFNESS)
+    axially = np.diag([REFERENCE_STIFFNESS] * 3 + [0.0, 0.0])
+    return BearingCoefficients(stiffness=axially, damping=np.zeros((5, 5)))
 
 
 def _placement(name: str, axis: ShaftAxis) -> ShaftPlacement:
@@ -127,9 +153,10 @@ def _supports(case: Case) -> Iterator[HousingSupport]:
 
 
 def _locations(case: Case) -> Iterator[AxialLocation]:
+    pressed = set(pressed_bearings(case))
     for box_name, box in case.gearboxes.items():
         for name, bearing in box.bearings.items():
-            if bearing.locating:
+            if bearing.locating and f"{box_name}.{name}" not in pressed:
                 stiffness = bearing.axial_stiffness or AXIAL_STIFFNESS
                 yield AxialLocation(
                     bearing=f"{box_name}.{name}",

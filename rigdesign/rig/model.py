@@ -6,6 +6,7 @@ from functools import cached_property
 
 from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.elastic_rig.layout import HousingSupport
 from dynamics.gear.pair import GearPair
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
@@ -22,9 +23,10 @@ from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
 from rigdesign.rig.drivetrain import build_drivetrain
-from rigdesign.rig.elastic_rig import ElasticDrivetrain, elastic_rig
+from rigdesign.rig.elastic_rig import ElasticDrivetrain, elastic_rig, pressed_bearings
 from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
 from rigdesign.rig.gears import build_pairs
+from rigdesign.rig.housing_seats import housing_supports
 from rigdesign.rig.influence_store import Progress
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
@@ -204,15 +206,15 @@ class Rig:
             for name, model in self.models.items()
         }
 
-    def body_materials(self, name: str) -> dict[str, Material]:
-        """Material of every body of a housing."""
+    def body_materials(self, name: str, model: GearboxModel | None = None) -> dict[str, Material]:
+        """Material of every body of a housing, or of another model of it."""
         box = self.case.gearboxes[name]
         housing = box.housing
         assert housing is not None
         named = {"housing": housing.material, "field": housing.field.material}
         named |= {f"shaft_{shaft}": entry.material for shaft, entry in housing.shafts.items()}
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
-        return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
+        return {body: self.materials[named[body]] for body in (model or self.models[name]).mesh.bodies}
 
     @cached_property
     def topographies(self) -> Mapping[str, FlankTopographies]:
@@ -233,9 +235,17 @@ class Rig:
         """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
         assert self.drivetrain is not None
         return ElasticDrivetrain(
-            rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs),
+            rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
             cutoff=self.highest_mode,
+            pressed=frozenset(pressed_bearings(self.case)),
+        )
+
+    @cached_property
+    def _seats(self) -> tuple[HousingSupport, ...]:
+        """Housings condensed to their seats; their quick meshes are 1 % stiffer than the others."""
+        return housing_supports(
+            self.case.gearboxes, self.axes, lambda: self.meshed("quick"), self.body_materials
         )
 
     @property

@@ -138,6 +138,14 @@ class ElasticSetup:
         reactions += self.free.reactions(load)
         return Displacement(values, reactions, solution.residuals)
 
+    def deflection(self, load: FloatArray, tolerance: float = 1e-8) -> FloatArray:
+        """Displacement (n_nodes, 3) [m] under nodal forces (n_nodes, 3) [N]; those on free pieces must balance.
+
+        Raises ThermalNotConverged with its residuals.
+        """
+        solution = self._solved(np.where(self._held, 0.0, load.ravel()), None, tolerance)
+        return self.free.onto_supports(solution.values.reshape(-1, 3))
+
     def _solved(self, load: FloatArray, start: FloatArray | None, tolerance: float) -> LinearSolution:
         """Conjugate gradients; where they stall on a small mesh, of very flat cells say, a direct solution."""
         try:

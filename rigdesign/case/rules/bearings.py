@@ -99,6 +99,11 @@ def _induced(at: str, box: "Gearbox") -> Iterator[Fault]:
     """A bearing with a contact angle pushes its shaft away: the other end has to hold it."""
     for name, bearing in box.bearings.items():
         if bearing.induced_axial_load(1.0) == 0.0:
+            if bearing.arrangement is not None:
+                yield Fault(
+                    f"{at}.bearings.{name}.arrangement", bearing.arrangement, f"{bearing.label} has no contact angle",
+                    "leave it out",
+                )  # fmt: skip
             continue
         for other, partner in box.bearings.items():
             if other != name and partner.shaft == bearing.shaft and not partner.holds_axially:
@@ -109,3 +114,16 @@ def _induced(at: str, box: "Gearbox") -> Iterator[Fault]:
                     f"take a second bearing with a contact angle, or one for {other} that locates the shaft, "
                     "locating = true",
                 )  # fmt: skip
+            if name < other and partner.shaft == bearing.shaft and _opposed(bearing, partner):
+                yield Fault(
+                    f"{at}.bearings.{other}.arrangement", partner.arrangement or "",
+                    f"{name} on the same shaft says {bearing.arrangement}",
+                    "write the same at both, or at one of them",
+                )  # fmt: skip
+
+
+def _opposed(bearing: "BearingInput", partner: "BearingInput") -> bool:
+    """Whether two bearings of a shaft state different arrangements."""
+    return (
+        None not in (bearing.arrangement, partner.arrangement) and bearing.arrangement != partner.arrangement
+    )

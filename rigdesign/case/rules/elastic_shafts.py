@@ -31,6 +31,7 @@ def elastic_shaft_faults(case: "Case") -> Iterator[Fault]:
     train = case.drivetrain
     if train is None or train.shaft_model != "elastic":
         return
+    yield from _supported_twice(case)
     yield from _thin_discs(train)
     yield from _stated_bearings(case)
     couplings = [
@@ -38,6 +39,21 @@ def elastic_shaft_faults(case: "Case") -> Iterator[Fault]:
     ]
     yield from _axial(case, train.shafts, couplings)
     yield from _lateral(case, couplings)
+
+
+def _supported_twice(case: "Case") -> Iterator[Fault]:
+    """Bearings whose support is stated in a housing that is condensed to its seats."""
+    for box_name, box in case.gearboxes.items():
+        if box.housing is None or box.housing.bearing_seats != "elastic":
+            continue
+        for name, bearing in box.bearings.items():
+            if bearing.support_stiffness is not None:
+                yield Fault(
+                    f"gearboxes.{box_name}.bearings.{name}.support_stiffness",
+                    show(bearing.support_stiffness, "linear_stiffness"),
+                    f'gearboxes.{box_name}.housing.bearing_seats = "elastic" gives it from the mesh of the housing',
+                    'leave it out, or write bearing_seats = "rigid"',
+                )
 
 
 def _thin_discs(train: "DrivetrainInput") -> Iterator[Fault]:

@@ -33,7 +33,10 @@ def solved_rig_of(case: Case) -> SolvedRig:
         label: MeshLoads(role="rig", torque_peak=PEAKS[label.split(".")[0]])
         for label in rig.mesh_labels.values()
     }
-    drift: Any = SimpleNamespace(warm=SimpleNamespace(actuator_force=600.0, friction_force=300.0))
+    drift: Any = SimpleNamespace(
+        initial=SimpleNamespace(shift=-1.2e-3),
+        warm=SimpleNamespace(actuator_force=600.0, friction_force=300.0, shift=1.1e-3),
+    )
     ramp = SimpleNamespace(
         drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
     )
@@ -48,7 +51,8 @@ def held(part: str, quantity: str, base: Case | None = None) -> Check:
     entry = {
         "title": "x", "part": part, "quantity": quantity, "source": "data sheet",
         "limit": {"speed": "20000 rpm", "drive_power": "30 kW", "oil_flow": "90 l/min", "actuator_force": "2 kN",
-                  "seal_surface_velocity": "90 m/s", "shaft_growth": "1 mm"}.get(quantity, "400 N m"),
+                  "shift_travel": "2 mm", "seal_surface_velocity": "90 m/s",
+                  "shaft_growth": "1 mm"}.get(quantity, "400 N m"),
     }  # fmt: skip
     changed = case.with_value("limits.bought_parts", {"x": entry})
     (check,) = checks(solved_rig_of(changed))
@@ -76,6 +80,7 @@ def held(part: str, quantity: str, base: Case | None = None) -> Check:
         ("gearboxes.test.oil", "oil_flow", 5.0),
         ("gearboxes.reference.bearing_oil", "oil_flow", 8.0),
         ("drivetrain.bracing", "actuator_force", 900.0),
+        ("drivetrain.bracing", "shift_travel", 1.2),
         ("gearboxes.test.seals.wheel", "seal_surface_velocity", 0.5 * 0.05754 * 12000.0 * RPM * 99 / 102),
         ("gearboxes.test", "seal_surface_velocity", 0.5 * 0.05754 * 12000.0 * RPM * 99 / 102),
     ],

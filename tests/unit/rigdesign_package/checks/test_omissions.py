@@ -47,6 +47,7 @@ COMPLETE = (
     "bought_part.speed",
     "bought_part.circulating_power",
     "bought_part.actuator_force",
+    "bought_part.shift_travel",
     "bought_part.oil_flow",
     "bought_part.seal_surface_velocity",
     "bought_part.given",

@@ -12,13 +12,16 @@ from dynamics.bearing.protocol import BearingOperation, HeatStar, OilSupply
 from dynamics.bearing.rolling import RollingBearing
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
 from dynamics.bearing.rolling_heat import SeatConductances, shaft_path
+from dynamics.elastic_rig.statics import static_deflection
 from rigdesign import load_case
+from rigdesign.case import Case
 from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_heat import conductances
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.point_losses import PointLosses
@@ -225,3 +228,68 @@ def test_a_sump_that_finds_its_temperature_takes_what_the_bearings_leave_in_the_
     sumps = sump_temperatures(rig, {"test": field})
     streams = oil_streams(rig, losses.losses, films, none | heat_into_oil(field), sumps)
     assert next(s.heat for s in streams if s.name == "test.gear_oil") == pytest.approx(0.0, abs=1e-3)
+
+
+def tapered(tmp_path: Path, arrangement: str) -> Case:
+    """Single-helical gears on tapered roller bearings of a stated arrangement."""
+    path = rolling_case(
+        tmp_path,
+        dip=False,
+        test_oil=FED,
+        slave_oil=FED,
+        others={"test.pinion_front": "30206", "test.pinion_rear": "30306"},
+    )
+    text = path.read_text().replace(
+        'normal_module = "4.5 mm"', 'normal_module = "4.35 mm", helix_angle = "15 deg"'
+    )
+    path.write_text(text)
+    return load_case(path).with_value("gearboxes.test.bearings.pinion_front.arrangement", arrangement)
+
+
+@pytest.mark.parametrize("arrangement", ["back_to_back", "face_to_face"])
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_hand_and_arrangement_say_which_tapered_bearing_the_gears_press(
+    tmp_path: Path, arrangement: str, hand: str
+) -> None:
+    """Forces of the shaft on both bearings and of the gears balance along x; back to back the shaft pulls the front
+    bearing rearwards."""
+    case = tapered(tmp_path, arrangement).with_value("gearboxes.test.gears.pinion.helix_hand", hand)
+    rig = build_rig(case, "quick")
+    state = initial_state(rig, held_points(rig)[0])
+    loads = bearing_loads(rig, state)
+    front, rear = loads["test.pinion_front"], loads["test.pinion_rear"]
+    pushed = sum(load.axial for load in shaft_loads(rig, "test", "test_pinion", state))
+    assert abs(pushed) > 100.0
+    assert front.axial_sense * front.axial + rear.axial_sense * rear.axial == pytest.approx(pushed)
+    outwards = 1.0 if arrangement == "back_to_back" else -1.0
+    assert (front.axial_sense, rear.axial_sense) == (outwards, -outwards)
+    for load, share in ((front, 1.0 / 3.2), (rear, 1.0 / 3.8)):
+        assert load.axial >= share * load.radial * (1.0 - 1e-9)
+
+
+def test_tapered_bearings_hold_their_shaft_axially_by_their_rollers(tmp_path: Path) -> None:
+    """The axial stiffness of the shaft is that of both rows: one newton moves it by 1 / (k_front + k_rear), where
+    turning it out of the way is locked; a spring of its own is left to the other shafts."""
+    case = tapered(tmp_path, "face_to_face")
+    rig = replace(build_rig(case, "quick"), shaft_model="elastic")
+    point = held_points(rig)[0]
+    state = initial_state(rig, point)
+    bearings = solve_bearings(rig, point, state)
+    located = {location.bearing for location in rig.elastic.rig.axial_locations}
+    pair = {"test.pinion_front", "test.pinion_rear"}
+    assert rig.elastic.pressed == pair and located.isdisjoint(pair)
+    running = running_state(rig, point, state, bearings)
+    stiffness = {name: running.bearings[name].padded()[0] for name in pair}
+    assert all(
+        matrix[2, 2] > 1e7 and abs(matrix[2, 0]) + abs(matrix[2, 1]) > 1e6 for matrix in stiffness.values()
+    )
+    model = rig.elastic.model
+    axial = model.row("test.pinion_front", "u_x")
+    bent = static_deflection(model, running, axial).deflection
+    stiff = sum(matrix[2, :] @ (model.ports[name] @ bent) for name, matrix in stiffness.items())
+    assert stiff == pytest.approx(1.0, rel=1e-6)
+    assert (
+        1.0 / sum(m[2, 2] for m in stiffness.values())
+        < axial @ bent
+        < 4.0 / sum(m[2, 2] for m in stiffness.values())
+    )
