@@ -24,7 +24,7 @@ def march_model(
     """Modal model of a drivetrain with the loads of a march: motor, twist, alternating torques and the drags named.
 
     cutoff : modes above this frequency keep their static effect only [Hz]
-    drag_damping : steepest rise of the drags over the speed of a turning shaft by name [N m s/rad]; modes that are
+    drag_damping : steepest rise of the drags over the speed by name [N m s/rad]; modes that are
         damped far more by themselves give way to drags statically alone; all move with them when left out
 
     Raises DynamicsInputError and DefectiveModes as ``modal_model``, DynamicsInputError for unknown names of drags.

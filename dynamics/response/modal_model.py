@@ -104,7 +104,7 @@ def modal_model(
     loads : (n, n_slow) torque on each freedom per unit of each slow input [-]
     drags : (n, n_drags) the same of each drag torque, from ``drag_loads``; none when left out
     cutoff : modes above this frequency keep their static effect only [Hz]; ``inf`` keeps all
-    drag_damping : (n_drags,) steepest rise of each drag torque over the speed of a turning shaft [N m s/rad]: modes
+    drag_damping : (n_drags,) steepest rise of each drag torque over the speed [N m s/rad]: modes
         whose own damping is far above what it adds give way to the drags statically alone; all move when left out
 
     Raises

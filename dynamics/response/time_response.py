@@ -32,7 +32,7 @@ from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
 from dynamics.response.march_loads import march_model
-from dynamics.response.time_march import TimeMarch
+from dynamics.response.time_march import CREEP_SHARE, TimeMarch
 
 Array = NDArray[np.float64]
 
@@ -304,8 +304,9 @@ def _twists(system: LinearSystem, laws: Sequence[MeshLaw], torque: Array) -> tup
 
 
 def _steepest(curve: DragCurve) -> float:
-    """Steepest rise of a drag torque over the speed [N m s/rad]."""
-    return float(np.max(np.abs(np.diff(curve.torque) / np.diff(curve.speed)), initial=0.0))
+    """Steepest rise of a drag torque over the speed, that through standstill included [N m s/rad]."""
+    rises = np.abs(np.diff(curve.torque) / np.diff(curve.speed))
+    return float(max(rises.max(initial=0.0), 1.5 * curve.torque[0] / (CREEP_SHARE * curve.speed[-1])))
 
 
 def _drag_speed(system: LinearSystem, ratios: Array, name: str) -> float:
