@@ -68,16 +68,16 @@ def test_seconds_per_simulated_second(name: str) -> None:
     system = seen(50e3).system(films()) if bends else rig()
     modes = len(march_model(system, laws).eigenvalues)
     freedoms = seen(50e3).reduced.model.mass.shape[0] if bends else len(system.inertia)
-    print(f"\n{name}: {freedoms} freedoms, {modes} modes, tables off the law by {table_error(laws):.1e} of the mean")
+    print(
+        f"\n{name}: {freedoms} freedoms, {modes} modes, tables off the law by {table_error(laws):.1e} of the mean"
+    )
     for rpm in (3000.0, 12000.0):
         exact, _ = march_at(system, laws, rpm, 64, 400)
         for substeps in (4, 8, 16):
             force, _ = march_at(system, laws, rpm, substeps, 400)
             _, seconds = march_at(system, laws, rpm, substeps, 8000)
             late = slice(100, None)
-            off = [
-                np.sqrt(np.mean((a[late] - b[late]) ** 2)) / np.std(b[late]) for a, b in zip(force, exact)
-            ]
+            off = [np.sqrt(np.mean((a[late] - b[late]) ** 2)) / np.std(b[late]) for a, b in zip(force, exact)]
             print(
                 f"  {rpm:6.0f} rpm, {substeps:2d} steps a sample: {seconds:.3f} s per simulated second "
                 f"({1e9 * seconds / SAMPLE_RATE / substeps:.0f} ns a step), error {max(off):.1e}"
