@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -54,7 +54,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def inlined(function: Function) -> Function:
     """Compile what becomes part of its compiled caller; arrays are neither made nor counted in it."""
-    compiled: Function = njit(cache=True, fastmath=LOOSE, forceinline=True, _nrt=False)(function)  # type: ignore[call-overload]
+    compiled: Function = njit(  # type: ignore[call-overload]
+        cache=True, fastmath=LOOSE, error_model="numpy", forceinline=True, _nrt=False
+    )(function)
     return compiled
 
 

@@ -16,11 +16,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
-from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
-from dynamics.kernels.mesh_tables import POSITIVE, R1, R2
+from dynamics.kernels.contact_table import V_R1, V_R2
+from dynamics.kernels.linear_step import BANK_AT, FOUR, STATE_AT, DragModes
+from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
+from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -117,7 +119,7 @@ def drags_on_ports(drags: DragModes, torque: Array, total: Array, space: Array) 
 
 
 @inlined
-def _move_ports(drags: DragModes, change: Array, total: Array, space: Array) -> None:
+def _move_ports(drags: DragModes, change: Array, total: Array, values: Array, space: Array) -> None:
     """Add to ports and meshes what changes of the drag torques at the end of the step give."""
     _outputs(drags.ports_new, change, total)
     for m in range(total.shape[0] // 4):
@@ -127,8 +129,8 @@ def _move_ports(drags: DragModes, change: Array, total: Array, space: Array) -> 
         space[at + TURN] += turn_1
         space[at + PORT + SPEED] += speed_2
         space[at + PORT + TURN] += turn_2
-        space[at + REACH] += space[at + R1] * turn_1 - space[at + R2] * turn_2
-        space[at + RATE] += space[at + R1] * speed_1 - space[at + R2] * speed_2
+        space[at + REACH] += values[m, V_R1] * turn_1 - values[m, V_R2] * turn_2
+        space[at + RATE] += values[m, V_R1] * speed_1 - values[m, V_R2] * speed_2
 
 
 @inlined
@@ -138,7 +140,7 @@ def push_drags(drags: DragModes, blocks: Integers, torque: Array, bank: Array) -
     for four in range(drags.branches.shape[0]):
         block, d = drags.branches[four], (FOUR * four) & POSITIVE
         t_0, t_1, t_2, t_3 = torque[d], torque[d + 1], torque[d + 2], torque[d + 3]
-        for group in range(blocks[block, GROUPS]):
+        for group in range(drags.groups[four]):
             s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
             b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
             for i in range(2 * WIDTH):
@@ -157,7 +159,7 @@ def _add_modes(drags: DragModes, blocks: Integers, bank: Array, load_speed: Arra
     for four in range(drags.branches.shape[0]):
         block, d = drags.branches[four], (FOUR * four) & POSITIVE
         v_0, v_1, v_2, v_3 = 0.0, 0.0, 0.0, 0.0
-        for group in range(blocks[block, GROUPS]):
+        for group in range(drags.groups[four]):
             s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
             b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
             for i in range(2 * WIDTH):
@@ -204,6 +206,34 @@ def _speeds(
         speed[d] = -speed[d]
 
 
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _follow_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, damping: Array) -> bool:
+    """Set the drag torques to those of the speeds at hand where all places turn; return whether that does.
+
+    It does if what the torques change of the speeds is too little for any of them.
+    """
+    n_drags = torque.shape[0]
+    last = laws.torque.shape[1] - 1
+    moved, turning = 0.0, True
+    for d in range(n_drags):
+        own, fast = through[d, d], abs(speed[d])
+        damping[d] = 0.0
+        if own != 0.0:
+            place = min(fast * laws.per_step[d], last - 1e-9)
+            j = max(0, min(int(place), last - 1))  # also for a run that left the finite numbers
+            rise = laws.torque[d, j + 1] - laws.torque[d, j]
+            value = laws.torque[d, j] + (place - j) * rise
+            value = value if speed[d] > 0.0 else -value
+            turning = turning and fast >= laws.creep[d]
+            damping[d] = abs(rise) * laws.per_step[d]
+            moved += own * abs(value - torque[d])
+            torque[d] = value
+    for d in range(n_drags):
+        if damping[d] * moved > TOLERANCE * abs(torque[d]):
+            turning = False
+    return turning
+
+
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _iterate_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, damping: Array) -> bool:
     """Iterate on all drag torques and their speeds; return whether they converged.
@@ -234,8 +264,8 @@ def _iterate_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def brake(
-    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, space: Array, by_slow: Array, first: int,
-    torque: Array, work: DragWork,
+    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, values: Array, space: Array, by_slow: Array,
+    first: int, torque: Array, work: DragWork,
 ) -> bool:  # fmt: skip
     """Set the drag torques at the end of a step whose mesh torques are known; return whether they converged.
 
@@ -246,8 +276,12 @@ def brake(
     _speeds(drags, blocks, bank, space, torque, by_slow, first, speed)
     for d in range(torque.shape[0]):
         change[d] = -torque[d]
-    converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
+    converged = _follow_drags(laws, drags.each_other, torque, speed, work.damping)
+    if not converged:
+        for d in range(torque.shape[0]):
+            torque[d] = -change[d]
+        converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
     for d in range(torque.shape[0]):
         change[d] += torque[d]
-    _move_ports(drags, change, work.outputs, space)
+    _move_ports(drags, change, work.outputs, values, space)
     return bool(converged)

@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -14,19 +14,15 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
+from dynamics.kernels.mode_layout import N_BANK, WIDTH
+from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-WIDTH = 16
-"""Modes in a row of the tables: a fixed number, so that the compiler makes vector instructions of a loop
-over them."""
 FOUR = 4
 """Drag torques in a group, for the same reason."""
-N_BANK = 16
-"""Rows of WIDTH in a group of the bank, real and imaginary alternating: state, decay, push of torque a, of torque b,
-speed of port a, turn of port a, speed and turn of port b."""
 # columns of DiscreteModes.blocks
 STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
 # columns of DiscreteModes.links
@@ -43,6 +39,8 @@ class DragModes(NamedTuple):
 
     branches: Integers
     """(n_drags / 4,) row of ``DiscreteModes.blocks`` with the modes of each four."""
+    groups: Integers
+    """(n_drags / 4,) first groups of these modes that each four acts on; the others do without drag."""
     push: Array
     """(n_drags, n_states) state after the step per drag torque at its start."""
     rows: Array
@@ -61,12 +59,12 @@ class DragModes(NamedTuple):
 class DiscreteModes(NamedTuple):
     """Modes at one step length and number of steps per sample; see ``dynamics.response.propagator.discretise``.
 
-    The modal state ``w`` obeys ``w' = decay w + inputs tau`` in each step, ``tau`` being the torques of the ports
-    at its start; what the slow inputs give is added once per sample, and to the outputs in each step. Per branch the
-    state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
-    pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for none. The outputs of port ``p`` are
-    its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks and links name a port by its place in
-    the space (``kernels.mesh_workspace``).
+    The modal state ``w`` leaves out what follows the torques of the ports at once, so that ``w' = decay w + inputs
+    tau`` in each step, ``tau`` being these torques at its start; what the slow inputs give is added once per sample,
+    and to the outputs in each step. Per branch the state holds groups of WIDTH real parts and WIDTH imaginary parts,
+    filled up with zeros. Port ``2 m`` is the pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands
+    for none. The outputs of port ``p`` are its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks
+    and links name a port by its place in the space (``kernels.mesh_workspace``).
     """
 
     blocks: Integers
@@ -84,8 +82,10 @@ class DiscreteModes(NamedTuple):
     port_new: Array
     """(n_ports, n_outputs) outputs of the ports per mesh torque at the end of the step."""
     rows: Array
-    """(n_rows, n_states) speed of every slow input and drag, then joint rates whose squares are losses, over the
-    states at the end of the step."""
+    """(n_rows, n_states) speed of every slow input and drag, joint rates whose squares are losses, then what skew
+    stiffness takes, over the states at the end of the step."""
+    circulating: int
+    """Number of the last of these rows, in fours: a', b, b', a of a power a' b - b' a."""
     through_old: Array
     """(n_ports + n_drags, n_rows) these per mesh and drag torque at the start of the step."""
     through_new: Array
@@ -153,22 +153,32 @@ def take_state(blocks: Integers, bank: Array, state: Array) -> None:
 
 
 @inlined
+def _given(through: Array, t: int, c: float, d: float) -> tuple[float, float, float, float]:
+    """Return speed and turn of two ports that two torques give by a link."""
+    return (
+        through[t] * c + through[t + 1] * d,
+        through[t + 2] * c + through[t + 3] * d,
+        through[t + 4] * c + through[t + 5] * d,
+        through[t + 6] * c + through[t + 7] * d,
+    )
+
+
+@inlined
 def add_torques(links: Integers, first: int, through: Array, part: int, space: Array, torque: int) -> None:
     """Add to speeds and turns what the torques in column ``torque`` give by the links from ``first`` on.
 
-    They act at the start or the end of the step (``part``).
+    ``part`` says when in the step they act.
     """
     for link in range(first, links.shape[0]):
         a, b = links[link, TO_A] & POSITIVE, links[link, TO_B] & POSITIVE
         c = space[(links[link, FROM_C] & POSITIVE) + torque]
         d = space[(links[link, FROM_D] & POSITIVE) + torque]
         t = (links[link, LINK_AT] & POSITIVE) + part
-        speed_a = space[a + SPEED] + through[t] * c + through[t + 1] * d
-        turn_a = space[a + TURN] + through[t + 2] * c + through[t + 3] * d
-        speed_b = space[b + SPEED] + through[t + 4] * c + through[t + 5] * d
-        turn_b = space[b + TURN] + through[t + 6] * c + through[t + 7] * d
-        space[b + SPEED], space[b + TURN] = speed_b, turn_b
-        space[a + SPEED], space[a + TURN] = speed_a, turn_a
+        speed_a, turn_a, speed_b, turn_b = _given(through, t, c, d)
+        space[b + SPEED] += speed_b
+        space[b + TURN] += turn_b
+        space[a + SPEED] += speed_a
+        space[a + TURN] += turn_a
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -207,45 +217,21 @@ def step_modes(
     """
     for block in range(further.shape[0]):
         _look(further, block, bank, space)
+    # what the torques give is known before the modes are: nothing waits for its sums
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
-        t_a, t_b, t_a_new, t_b_new = space[a + OLD], space[b + OLD], space[a + TAU], space[b + TAU]
-        first = blocks[block, BANK_AT] & POSITIVE
-        speed_a, turn_a, speed_b, turn_b = 0.0, 0.0, 0.0, 0.0
-        for group in range(blocks[block, GROUPS]):
-            g = first + N_BANK * WIDTH * group
-            for i in range(WIDTH):
-                real, imag = bank[g + i], bank[g + WIDTH + i]
-                speed_a += bank[g + 8 * WIDTH + i] * real + bank[g + 9 * WIDTH + i] * imag
-                turn_a += bank[g + 10 * WIDTH + i] * real + bank[g + 11 * WIDTH + i] * imag
-                speed_b += bank[g + 12 * WIDTH + i] * real + bank[g + 13 * WIDTH + i] * imag
-                turn_b += bank[g + 14 * WIDTH + i] * real + bank[g + 15 * WIDTH + i] * imag
-                decay_r, decay_i = bank[g + 2 * WIDTH + i], bank[g + 3 * WIDTH + i]
-                push_r = bank[g + 4 * WIDTH + i] * t_a + bank[g + 6 * WIDTH + i] * t_b
-                push_i = bank[g + 5 * WIDTH + i] * t_a + bank[g + 7 * WIDTH + i] * t_b
-                bank[g + i] = decay_r * real - decay_i * imag + push_r
-                bank[g + WIDTH + i] = decay_i * real + decay_r * imag + push_i
         t = blocks[block, THROUGH_AT] & POSITIVE
-        speed_a += (
-            through[t] * t_a + through[t + 1] * t_b + through[t + 8] * t_a_new + through[t + 9] * t_b_new
-        )
-        turn_a += (
-            through[t + 2] * t_a
-            + through[t + 3] * t_b
-            + through[t + 10] * t_a_new
-            + through[t + 11] * t_b_new
-        )
-        speed_b += (
-            through[t + 4] * t_a
-            + through[t + 5] * t_b
-            + through[t + 12] * t_a_new
-            + through[t + 13] * t_b_new
-        )
-        turn_b += (
-            through[t + 6] * t_a
-            + through[t + 7] * t_b
-            + through[t + 14] * t_a_new
-            + through[t + 15] * t_b_new
+        now = _given(through, t + AT_END, space[a + TAU], space[b + TAU])
+        start = _given(through, t + AT_START, space[a + OLD], space[b + OLD])
+        space[b + SPEED] += now[2] + start[2]
+        space[b + TURN] += now[3] + start[3]
+        space[a + SPEED] += now[0] + start[0]
+        space[a + TURN] += now[1] + start[1]
+    for block in range(blocks.shape[0]):
+        a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
+        first = blocks[block, BANK_AT] & POSITIVE
+        speed_a, turn_a, speed_b, turn_b = pass_modes(
+            bank, first, blocks[block, GROUPS], space[a + OLD], space[b + OLD]
         )
         space[b + SPEED] += speed_b
         space[b + TURN] += turn_b

@@ -1,18 +1,21 @@
 """March of the modal propagator with the gear meshes as implicit nonlinear torques.
 
-Arrays come from ``dynamics.response.propagator`` (discretised modes) and ``dynamics.mesh.force`` (packed mesh laws);
-names, units and validation live above.
+Arrays come from ``dynamics.response.propagator`` (discretised modes) and ``dynamics.mesh.contact_table`` (tables of the
+mesh laws); names, units and validation live above.
 
-A step guesses the mesh torques (straight on from the last two), lists the contacts at the angles this guess
-leads to, and takes a Newton step with these contacts held (``mesh_solve``). Only where its remainder is too
-large, or a kink of the mesh force lies within the correction, are the contacts summed again.
+Within a step the mesh torques are the cubics through their last four values, of which the newest is found
+implicitly. A step guesses the torques (the parabola through the last three), looks at the meshes at the angles this
+guess leads to, and takes a Newton step there (``mesh_solve``). Only where its remainder is too large are the meshes
+looked at again.
 """
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, Pressing, flank_powers, inlined
+from dynamics.kernels.aligned import aligned, aligned_zeros
+from dynamics.kernels.contact import LOOSE, inlined
+from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_FLOOR, V_R1, V_R2, ContactTables
 from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
 from dynamics.kernels.linear_step import (
     AT_END,
@@ -27,35 +30,25 @@ from dynamics.kernels.linear_step import (
 )
 from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, Workspace
 from dynamics.kernels.mesh_solve import (
-    LEAST_GUARD,
-    ListedContacts,
-    behind_body,
-    can_touch,
-    choose_contacts,
-    chosen_flank,
+    HeldRows,
+    choose_friction,
     correct,
+    correct_alone,
+    find_place,
+    flank_powers,
+    hold_mesh,
     invert,
     left_open,
-    list_individual,
+    look,
     look_ahead,
-    react,
+    move_others,
 )
-from dynamics.kernels.mesh_tables import (
-    BACKLASH,
-    BODY,
-    FLOOR,
-    INDIVIDUAL,
-    MOST,
-    N_PHASE,
-    POSITIVE,
-    R1,
-    R2,
-    PackedMeshes,
-)
+from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
     APPROACH,
-    GUARD,
+    GIVEN,
+    GIVEN_OLD,
     MISSING,
     N_SPACE,
     NET,
@@ -63,15 +56,19 @@ from dynamics.kernels.mesh_workspace import (
     OFFSET_RATE,
     OLD,
     OLDER,
+    OLDEST,
     PORT,
     RATE,
     REACH,
     SPEED,
     TAU,
+    TEETH,
+    TEETH_OLD,
     TURN,
+    TURN_OLD,
 )
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -81,107 +78,112 @@ TOLERANCE = 1e-6
 MOST_SWEEPS = 50
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: float, share: float) -> None:
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _account(
+    tables: ContactTables, circulating: int, carried: Carried, work: Workspace, step: float, share: float
+) -> None:
     """Add the work of one step, which ends at ``share`` of the sample, to the accounts.
 
-    Powers are integrated by trapezoids. The march lets a mesh torque vary linearly over the step, so the
-    work of the damping force is its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
-    smooth curve), and so is that of a drag torque.
+    Powers are integrated by the cubic through their last four values. A drag torque, which
+    varies linearly over the step, works by its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
+    smooth curve).
     """
-    total, powers, damping, slow = carried.work, carried.powers, carried.damping, carried.slow
+    total, powers, slow = carried.work, carried.powers, carried.slow
     drags, speeds = carried.drags, carried.speeds
-    counts, space, ends, fresh = meshes.counts, work.space, work.ends, work.fresh
-    n_meshes, n_slow = damping.shape[0], slow.shape[0]
+    space, ends, fresh = work.space, work.ends, work.fresh
+    n_meshes, n_slow = tables.values.shape[0], slow.shape[0]
     for m in range(n_meshes):
-        table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.listed.contacts
-        at = m * N_SPACE
-        reach, rate = space[at + REACH], space[at + RATE]
-        if space[at + BODY] > 0.0:
-            reach = behind_body(space, at, meshes, m, reach, work.listed).approach
-        lost, damped, pull = 0.0, 0.0, 0.0
+        lost, damped = 0.0, 0.0
         for side in range(2):
-            if not can_touch(space, at, side):
-                continue
-            sign = 1.0 - 2.0 * side
-            flank = chosen_flank(space, at, meshes, m, side, work.listed)
-            pressing = Pressing(
-                sign, sign * reach - side * space[at + BACKLASH], sign * rate, space[at + SPEED]
-            )
-            sliding, damping_power, force = flank_powers(table, flank, space, at, pressing)
-            lost += sliding
-            damped += damping_power
-            pull += sign * force
-        fresh[2 * m] = lost
-        fresh[2 * m + 1] = damped
-        total[2 * m + 1] -= step * (pull - damping[m, 0]) * (rate - damping[m, 1]) / 12.0
-        damping[m, 0] = pull
-        damping[m, 1] = rate
+            if work.held.counts[m, side] > 0:
+                sliding, damping = flank_powers(tables, space, m * N_SPACE, m, side, work.held)
+                lost += sliding
+                damped += damping
+        fresh[2 * m], fresh[2 * m + 1] = lost, damped
     for k in range(n_slow):
         fresh[2 * n_meshes + k] = (slow[k] + share * (work.target[k] - slow[k])) * ends[k]
     n_inputs = n_slow + drags.shape[0]
-    for d in range(drags.shape[0]):
-        k = n_slow + d
-        fresh[2 * n_meshes + k] = drags[d] * ends[k]
-        total[2 * n_meshes + k] -= step * work.drags.change[d] * (ends[k] - speeds[k]) / 12.0
-        speeds[k] = ends[k]
-    joints = 0.0
-    for r in range(n_inputs, ends.shape[0]):
+    joints, taken, first = 0.0, 0.0, ends.shape[0] - circulating
+    for r in range(n_inputs, first):
         joints += ends[r] * ends[r]
-    fresh[2 * n_meshes + n_inputs] = joints
+    for r in range(first, ends.shape[0], 4):
+        taken += ends[r] * ends[r + 1] - ends[r + 2] * ends[r + 3]
+    fresh[2 * n_meshes + n_inputs], fresh[2 * n_meshes + n_inputs + 1] = joints, taken
+    for d in range(drags.shape[0]):
+        k = 2 * n_meshes + n_slow + d
+        fresh[k] = drags[d] * ends[n_slow + d]
+        change = work.drags.change[d] * (ends[n_slow + d] - speeds[n_slow + d])
+        total[k] += step * (0.5 * (powers[0, k] + fresh[k]) - change / 12.0)
+        speeds[n_slow + d] = ends[n_slow + d]
+        powers[0, k] = fresh[k]
     for k in range(fresh.shape[0]):
-        total[k] += 0.5 * step * (powers[k] + fresh[k])
-        powers[k] = fresh[k]
+        if 2 * n_meshes + n_slow <= k < 2 * n_meshes + n_inputs:
+            continue
+        done = (9.0 * fresh[k] + 19.0 * powers[0, k] - 5.0 * powers[1, k] + powers[2, k]) / 24.0
+        # the first two steps know no more than two powers
+        total[k] += step * (done if powers[2, k] == powers[2, k] else 0.5 * (fresh[k] + powers[0, k]))
+        powers[2, k], powers[1, k], powers[0, k] = powers[1, k], powers[0, k], fresh[k]
 
 
 def march(
-    meshes: PackedMeshes, modes: DiscreteModes, commands: Commands, carried: Carried, steps: Steps,
+    tables: ContactTables, modes: DiscreteModes, commands: Commands, carried: Carried, steps: Steps,
     record: MarchRecord,
 ) -> int:  # fmt: skip
     """March over the samples of ``commands``; return the number of unconverged steps.
 
-    Each step: outputs and modal state for the old torques; contacts chosen at the predicted angles; Newton on
-    the new mesh torques with these contacts held; drag torques at the new speeds; accounts.
+    Each step: outputs and modal state for the old torques; meshes looked at where these lead; Newton on the new mesh
+    torques; drag torques at the new speeds; accounts.
     """
-    n_meshes, n_rows, n_drags = len(meshes.values), len(modes.rows), len(carried.drags)
-    most = int(max(1, meshes.counts[:, MOST].max()))
+    n_meshes, n_rows, n_drags = len(tables.values), len(modes.rows), len(carried.drags)
+    room = N_ROW * np.repeat(tables.counts[:, C_PAIRS], 2)
     work = Workspace(
         record=record,
-        listed=ListedContacts(
-            contacts=np.zeros(2 * n_meshes * N_PHASE * most),
-            found=np.zeros((n_meshes, 2), np.int64),
-            no_pairs=np.empty((2, 0), np.int64),
+        held=HeldRows(
+            rows=aligned_zeros(int(room.sum()) + SCRATCH),
+            counts=np.zeros((n_meshes, 2), np.int64),
+            first=(np.cumsum(room) - room).reshape(n_meshes, 2),
+            levels=np.zeros(n_meshes, np.int64),
+            cells=np.zeros((n_meshes, 2), np.int64),
+            sides=np.zeros(n_meshes, np.int64),
+            knots=np.zeros(n_meshes, np.int64),
         ),
-        bank=modes.bank.copy(),
+        bank=aligned(modes.bank),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
         torques=np.zeros((2, 2 * n_meshes + n_drags)),
         give=np.zeros(4 * n_meshes**2),
-        space=np.pad(meshes.values, ((0, 1), (0, N_SPACE - meshes.values.shape[1]))).ravel(),
+        space=np.zeros((n_meshes + 1) * N_SPACE),
         target=np.zeros(len(carried.slow)),
         fresh=np.zeros(len(carried.work)),
         drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
-    return int(_march(meshes, modes, commands, carried, work, steps))
+    return int(_march(tables, modes, commands, carried, work, steps))
 
 
 @inlined
-def _begin(space: Array, ports: Array, port_new: Array, give: Array) -> None:
+def _begin(space: Array, values: Array, carried: Carried, port_new: Array, give: Array, step: float) -> None:
     """Take over the state of the last call, and what the torques give to the meshes."""
+    ports, offset = carried.ports, carried.offset
     n_meshes = ports.shape[0]
     for m in range(n_meshes):
         at = m * N_SPACE
         for side in range(2):
-            space[at + side * PORT + OLD], space[at + side * PORT + OLDER] = (
-                ports[m, side],
-                ports[m, 2 + side],
-            )
-        space[at + APPROACH], space[at + ANGLE], space[at + GUARD] = ports[m, 4], ports[m, 5], LEAST_GUARD
+            port = at + side * PORT
+            space[port + OLD], space[port + OLDER] = ports[m, side], ports[m, 2 + side]
+            space[port + OLDEST] = ports[m, 4 + side]
+        space[at + APPROACH], space[at + ANGLE] = ports[m, 6], ports[m, 7]
+        space[at + GIVEN], space[at + GIVEN_OLD] = ports[m, 8], ports[m, 9]
+        space[at + SPEED], space[at + PORT + SPEED] = ports[m, 10], ports[m, 11]
+        # rates that are straight on, or the first hold is repeated
+        space[at + TURN] = space[at + TURN_OLD] = step * ports[m, 10]
+        rate = values[m, V_R1] * ports[m, 10] - values[m, V_R2] * ports[m, 11]
+        space[at + TEETH] = ports[m, 6] + offset[m] - ports[m, 8]
+        space[at + TEETH_OLD] = space[at + TEETH] - step * rate
         for port in range(2 * n_meshes):
             for k in range(2):
                 given_1, given_2 = port_new[port, 4 * m + k], port_new[port, 4 * m + 2 + k]
                 place = 4 * (port // 2 * n_meshes + m) + 2 * (1 - k) + port % 2
-                give[place] = space[at + R1] * given_1 - space[at + R2] * given_2
+                give[place] = values[m, V_R1] * given_1 - values[m, V_R2] * given_2
 
 
 @inlined
@@ -190,50 +192,103 @@ def _end(space: Array, ports: Array) -> None:
     for m in range(ports.shape[0]):
         at = m * N_SPACE
         for side in range(2):
-            ports[m, side], ports[m, 2 + side] = (
-                space[at + side * PORT + OLD],
-                space[at + side * PORT + OLDER],
-            )
-        ports[m, 4], ports[m, 5] = space[at + APPROACH], space[at + ANGLE]
+            port = at + side * PORT
+            ports[m, side], ports[m, 2 + side] = space[port + OLD], space[port + OLDER]
+            ports[m, 4 + side] = space[port + OLDEST]
+        ports[m, 6], ports[m, 7] = space[at + APPROACH], space[at + ANGLE]
+        ports[m, 8], ports[m, 9] = space[at + GIVEN], space[at + GIVEN_OLD]
+        ports[m, 10], ports[m, 11] = space[at + SPEED], space[at + PORT + SPEED]
 
 
 @inlined
-def _guess(space: Array, n_meshes: int, by_slow: Array, first: int) -> None:
-    """Begin a step: torques straight on from the last two, speeds and turns with what the slow inputs give."""
-    for m in range(n_meshes):
+def _guess(tables: ContactTables, space: Array, held: HeldRows, by_slow: Array, first: int) -> None:
+    """Begin a step: the parabola through the last three torques, speeds and turns with what the slow inputs give.
+
+    The meshes are held where angle and approach go straight on.
+    """
+    for m in range(tables.values.shape[0]):
         at, given = (m * N_SPACE) & POSITIVE, (first + 4 * m) & POSITIVE
         wheel = at + PORT
-        space[at + TAU] = 2.0 * space[at + OLD] - space[at + OLDER]
-        space[wheel + TAU] = 2.0 * space[wheel + OLD] - space[wheel + OLDER]
+        space[at + TAU] = 3.0 * (space[at + OLD] - space[at + OLDER]) + space[at + OLDEST]
+        space[wheel + TAU] = 3.0 * (space[wheel + OLD] - space[wheel + OLDER]) + space[wheel + OLDEST]
+        turned = space[at + TURN]
+        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD]
+        teeth = 2.0 * space[at + TEETH] - space[at + TEETH_OLD]
+        space[at + TURN_OLD], space[at + TEETH_OLD] = turned, space[at + TEETH]
+        find_place(tables, space, at, m, held, angle, teeth)
         space[at + SPEED], space[at + TURN] = by_slow[given], by_slow[given + 1]
         space[wheel + SPEED], space[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
+        last = space[at + GIVEN]
+        space[at + GIVEN] = 2.0 * last - space[at + GIVEN_OLD]
+        space[at + GIVEN_OLD] = last
+    for m in range(tables.values.shape[0]):
+        hold_mesh(tables, space, (m * N_SPACE) & POSITIVE, m, held)
 
 
 @inlined
-def _sweep_meshes(space: Array, give: Array, n_meshes: int) -> bool:
-    """Bring all torques to the tangents of the meshes, one mesh after the other.
+def _next_step(space: Array, n_meshes: int) -> None:
+    """Let the torques of the step be old ones."""
+    for m in range(n_meshes):
+        for port in ((m * N_SPACE) & POSITIVE, (m * N_SPACE + PORT) & POSITIVE):
+            space[port + OLDEST], space[port + OLDER] = space[port + OLDER], space[port + OLD]
+            space[port + OLD] = space[port + TAU]
 
-    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and
-    moves the others by less still. Returns whether that was reached and no mesh is off its tangent by more.
-    """
-    correction, agreed, m = 0, -1, 0
-    while agreed < n_meshes - 1 and correction < MOST_SWEEPS * n_meshes:
-        at = (m * N_SPACE) & POSITIVE
-        error = correct(space, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
-        agreed = agreed + 1 if error <= TOLERANCE * abs(space[at + TAU]) + space[at + FLOOR] else 0
-        m = m + 1 if m + 1 < n_meshes else 0
-        correction += 1
-    converged = agreed >= n_meshes - 1
+
+@inlined
+def _keep_torques(space: Array, n_meshes: int, drags: Array, change: Array, torques: Array) -> None:
+    """Fill the torques at start and end of the step, see ``end_rows``."""
+    n_ports = 2 * n_meshes
+    for port in range(n_ports):
+        at = port // 2 * N_SPACE + port % 2 * PORT
+        torques[0, port], torques[1, port] = space[at + OLD], space[at + TAU]
+    for d in range(drags.shape[0]):
+        torques[0, n_ports + d], torques[1, n_ports + d] = drags[d] - change[d], drags[d]
+
+
+@inlined
+def _meet_others(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
+    """Let the meshes move each other; return whether all torques are on their tangents."""
+    together = True
     for m in range(n_meshes):
         at = (m * N_SPACE) & POSITIVE
-        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + space[at + FLOOR]:
+        if move_others(space, at, give, n_meshes, m) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
+            together = False
+    converged = together or _sweep_meshes(space, values, give, n_meshes)
+    for m in range(n_meshes):
+        at = (m * N_SPACE) & POSITIVE
+        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
             converged = False
     return converged
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _sweep_meshes(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
+    """Bring all torques to the tangents of the meshes, one mesh after the other; return whether that was reached.
+
+    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and moves the
+    others by less still.
+    """
+    correction, agreed, m = 0, -1, 0
+    for n in range(n_meshes):
+        at = n * N_SPACE
+        space[at + MISSING] -= space[at + TAU]
+        space[at + PORT + MISSING] -= space[at + PORT + TAU]
+    while agreed < n_meshes - 1 and correction < MOST_SWEEPS * n_meshes:
+        at = (m * N_SPACE) & POSITIVE
+        error = correct(space, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
+        agreed = agreed + 1 if error <= TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR] else 0
+        m = m + 1 if m + 1 < n_meshes else 0
+        correction += 1
+    for n in range(n_meshes):
+        at = n * N_SPACE
+        space[at + MISSING] += space[at + TAU]
+        space[at + PORT + MISSING] += space[at + PORT + TAU]
+    return agreed >= n_meshes - 1
+
+
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _march(
-    meshes: PackedMeshes,
+    tables: ContactTables,
     modes: DiscreteModes,
     commands: Commands,
     carried: Carried,
@@ -242,19 +297,19 @@ def _march(
 ) -> int:
     """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
     step, substeps, history, samples = steps.step, steps.substeps, work.record.history, work.record.samples
-    counts = meshes.counts
+    values = tables.values
     blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
-    state, slow, listed = carried.state, carried.slow, work.listed
+    state, slow = carried.state, carried.slow
     bank, space, give, by_slow, torques = work.bank, work.space, work.give, work.slow_outputs, work.torques
-    n_meshes, n_slow = counts.shape[0], slow.shape[0]
+    n_meshes, n_slow = values.shape[0], slow.shape[0]
     drags, n_drags = carried.drags, carried.drags.shape[0]
     keeps_accounts = carried.work.shape[0] > 0
     n_outputs = 4 * n_meshes + modes.rows.shape[0]
 
-    _begin(space, carried.ports, modes.port_new, give)
+    _begin(space, values, carried, modes.port_new, give, step)
     put_state(blocks, state, bank)
     mean_torque = carried.controller[2]
-    torque_share = space[R1] / substeps
+    torque_share = values[0, V_R1] / substeps
     unconverged = 0
     now = 0
     for sample in range(commands.given.shape[0]):
@@ -271,44 +326,44 @@ def _march(
         for m in range(n_meshes):
             rate = (commands.offsets[sample, m] - carried.offset[m]) / (substeps * step)
             space[m * N_SPACE + OFFSET], space[m * N_SPACE + OFFSET_RATE] = carried.offset[m], rate
+            choose_friction(tables, space, (m * N_SPACE) & POSITIVE, m, work.held)
         mean_torque = 0.0
         for sub in range(substeps):
             slow_at = sub * n_outputs
-            _guess(space, n_meshes, by_slow, slow_at)
-            drags_on_ports(modes.drags, drags, work.drags.outputs, space)
+            _guess(tables, space, work.held, by_slow, slow_at)
+            if n_drags:
+                drags_on_ports(modes.drags, drags, work.drags.outputs, space)
             step_modes(blocks, further, links, bank, through, space)
-            push_drags(modes.drags, blocks, drags, bank)
+            if n_drags:
+                push_drags(modes.drags, blocks, drags, bank)
             converged = False
             attempt = 0
             while attempt < MOST_ITERATIONS and not converged:
                 for m in range(n_meshes):
                     at = (m * N_SPACE) & POSITIVE
-                    look_ahead(space, at, step)
-                    if attempt == 0:
-                        choose_contacts(space, at, step)
-                        if counts[m, INDIVIDUAL] != 0:
-                            list_individual(meshes, space, m, listed)
-                    react(space, at, meshes, m, listed)
-                    invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                    space[at + MISSING], space[at + PORT + MISSING] = (
-                        -space[at + TAU],
-                        -space[at + PORT + TAU],
-                    )
-                converged = _sweep_meshes(space, give, n_meshes)
+                    look_ahead(space, at, values, m, step)
+                    look(tables, space, at, m, work.held, attempt > 0)
                 for m in range(n_meshes):
                     at = (m * N_SPACE) & POSITIVE
-                    space[at + MISSING] += space[at + TAU]
-                    space[at + PORT + MISSING] += space[at + PORT + TAU]
+                    invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                    correct_alone(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                converged = _meet_others(space, values, give, n_meshes)
                 add_torques(links, 0, through, AT_END, space, MISSING)
                 attempt += 1
             if n_drags:
                 braked = brake(
-                    commands.drags, modes.drags, blocks, bank, space, by_slow, slow_at + 4 * n_meshes + n_slow,
+                    commands.drags, modes.drags, blocks, bank, values, space, by_slow, slow_at + 4 * n_meshes + n_slow,
                     drags, work.drags,
                 )  # fmt: skip
                 converged = converged and braked
             if not converged:
                 unconverged += 1
+            if keeps_accounts or sub == substeps - 1:
+                _keep_torques(space, n_meshes, drags, work.drags.change, torques)
+                take_state(blocks, bank, state)
+                end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
+            if keeps_accounts:  # while the angles are those of the start of the step
+                _account(tables, modes.circulating, carried, work, step, (sub + 1.0) / substeps)
             for m in range(n_meshes):
                 at = (m * N_SPACE) & POSITIVE
                 space[at + OFFSET] += step * space[at + OFFSET_RATE]
@@ -323,24 +378,7 @@ def _march(
                     history[m, 5, now] = space[at + TAU]
             mean_torque += space[NET] * torque_share
             now += 1
-            if keeps_accounts or sub == substeps - 1:
-                for port in range(2 * n_meshes):
-                    at = port // 2 * N_SPACE + port % 2 * PORT
-                    torques[0, port], torques[1, port] = space[at + OLD], space[at + TAU]
-                for d in range(n_drags):
-                    torques[0, 2 * n_meshes + d] = drags[d] - work.drags.change[d]
-                    torques[1, 2 * n_meshes + d] = drags[d]
-                take_state(blocks, bank, state)
-                end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
-            if keeps_accounts:
-                _account(meshes, carried, work, step, (sub + 1.0) / substeps)
-            for m in range(n_meshes):
-                at = (m * N_SPACE) & POSITIVE
-                space[at + OLDER], space[at + OLD] = space[at + OLD], space[at + TAU]
-                space[at + PORT + OLDER], space[at + PORT + OLD] = (
-                    space[at + PORT + OLD],
-                    space[at + PORT + TAU],
-                )
+            _next_step(space, n_meshes)
         hold_slow(modes.slow_states, slow, work.target, substeps, state)
         put_state(blocks, state, bank)
         for k in range(n_slow):

@@ -6,11 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.kernels.drag import DragLaws, DragWork
-from dynamics.kernels.mesh_solve import ListedContacts
+from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+N_PORTS = 12
+"""Numbers of a mesh that go from call to call."""
 
 
 class Commands(NamedTuple):
@@ -33,7 +37,8 @@ class Carried(NamedTuple):
     state: Array
     """(n_states,) modal state."""
     ports: Array
-    """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
+    """(n_meshes, N_PORTS) tau_1, tau_2, both one and two steps earlier, approach, pinion angle, parts of the approach
+    that bodies outside the table gave in the last two steps, speeds of pinion and wheel."""
     slow: Array
     """(n_slow,) motor torque, twist, torques that are given."""
     drags: Array
@@ -45,11 +50,10 @@ class Carried(NamedTuple):
     speeds: Array
     """(n_slow + n_drags,) speed of the load of every slow input and drag."""
     powers: Array
-    """Last powers: friction and damping of each mesh, every slow input, every drag, joints; empty without accounts."""
+    """(3, n) powers at the end of the last three steps, the last first: friction and damping of each mesh, every slow
+    input, every drag, joints, skew stiffness; NaN where there was no step; n = 0 without accounts."""
     work: Array
-    """Their integrals."""
-    damping: Array
-    """(n_meshes, 2) last damping force and approach rate."""
+    """(n,) their integrals."""
 
 
 class Steps(NamedTuple):
@@ -74,7 +78,7 @@ class Workspace(NamedTuple):
     """Scratch arrays of a march."""
 
     record: MarchRecord
-    listed: ListedContacts
+    held: HeldRows
     bank: Array
     """That of the modes with the state in it."""
     slow_outputs: Array
@@ -82,7 +86,7 @@ class Workspace(NamedTuple):
     ends: Array
     """(n_rows,) the outputs of no port; without accounts those of the slow inputs alone."""
     torques: Array
-    """(2, n_ports + n_drags) torques of ports and drags at start and end of a step."""
+    """(2, n_ports + n_drags) at start and end of the step."""
     give: Array
     """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
     then its rate."""

@@ -1,9 +1,10 @@
 """Newton steps on the torques of gear meshes within one step of the march.
 
-Between its kinks (a contact that closes, opens or reaches full damping) the force of a mesh is bilinear in
-reach and rate: a Newton step solves it but for a known remainder. Meshes that share a shaft move each other;
-their tangents are swept until all torques agree, without summing the contacts again. The state of a
-mesh is in the mesh workspace ``space`` (``kernels.mesh_workspace``) from ``at`` on.
+At the angle that a mesh is predicted to reach its contact table is contracted to cubics over the approach
+(``kernels.hold_path``); a Newton step on reach and rate then leaves out what bends within it. Only where that is too
+much, where the approach leaves the cell of the table, or where a damper lets go of a flank is the mesh looked at again.
+Meshes that share a shaft move each other; their tangents are swept until all torques agree. The state of a mesh is in
+the mesh workspace ``space`` (``kernels.mesh_workspace``) from ``at`` on.
 """
 
 from typing import NamedTuple
@@ -12,84 +13,103 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, Flank, Pressed, Pressing, inlined, press_flank
-from dynamics.kernels.flank_contacts import (
-    ContactState,
-    ContactTable,
-    flank_in_phase,
-    flank_on_path,
-    list_on_path,
+from dynamics.kernels.contact import LOOSE, inlined
+from dynamics.kernels.contact_table import (
+    C_GENERAL,
+    V_BACKLASH,
+    V_BODY,
+    V_LEAST_GAP,
+    V_PER_KNOT,
+    V_R1,
+    V_R2,
+    ContactTables,
 )
-from dynamics.kernels.mesh_tables import (
-    BACKLASH,
-    BODY,
-    DAMP_TIME,
-    INDIVIDUAL,
-    JAMMED,
-    LEAST_GAP,
-    N_PHASE,
-    POSITIVE,
-    R1,
-    R2,
-    PackedMeshes,
-)
+from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
+from dynamics.kernels.hold_phase import Place, hold_phase, place_of
+from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
-    AHEAD,
     ANGLE,
     APPROACH,
     AT_RATE,
     AT_REACH,
-    CHOSEN_1,
-    CHOSEN_2,
-    CHOSEN_ANGLE,
-    CHOSEN_REACH,
-    CURVED,
+    BENT,
+    BENT_V,
+    FRACTION,
     GIVEN,
-    GUARD,
+    HELD_ANGLE,
+    HIGH,
     INVERSE,
-    KINKED,
+    LOW,
+    LOWER,
+    MISSING,
     N_SPACE,
     NET,
     NET_V,
     NET_X,
+    OFF,
     OFFSET,
     OFFSET_RATE,
+    PER_SPEED,
     PORT,
+    PRESSED,
+    PRESSED_V,
+    PRESSED_X,
     RATE,
     REACH,
     REACTION,
+    SHARE,
     SPEED,
     TANGENT_V,
     TANGENT_X,
     TAU,
-    TOOTH_SHARE,
+    TEETH,
     TURN,
+    UPPER,
 )
-from dynamics.kernels.shared_body import Flanks, ToothApproach, no_contacts, tooth_approach
+from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-LEAST_GUARD = 1e-15
-"""Least distance to a kink that is looked at [m]."""
+
+NEAR = 0.2
+"""Share of a cell by which the path may be off the place at which rows are held."""
 
 
-class ListedContacts(NamedTuple):
-    """Contacts of the meshes with individual teeth, listed anew in every step."""
+class HeldRows(NamedTuple):
+    """Rows of the flanks that are held on their path."""
 
-    contacts: Array
-    """Room for the tables of both flanks of every mesh."""
-    found: Integers
-    """(n_meshes, 2) contacts in them."""
-    no_pairs: Integers
-    """(2, 0): tooth pair and slice of a contact are not asked for."""
+    rows: Array
+    """Flat, per mesh and flank room for all of its pairs, then room that tilt needs."""
+    counts: Integers
+    """(n_meshes, 2) rows that are in use."""
+    first: Integers
+    """(n_meshes, 2) first entry."""
+    levels: Integers
+    """(n_meshes,) level of friction in this sample, see ``hold_path.Sliding``."""
+    cells: Integers
+    """(n_meshes, 2) cells of the last rows."""
+    sides: Integers
+    """(n_meshes,) flank that is held first: 0 in front, 1 on the back, 2 none."""
+    knots: Integers
+    """(n_meshes,) knot of its place on the path."""
 
 
 @inlined
-def look_ahead(space: Array, at: int, step: float) -> None:
+def choose_friction(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+    """Keep the friction of a mesh at its last speeds for the steps of a sample."""
+    omega_1, omega_2 = space[at + SPEED], space[at + PORT + SPEED]
+    sliding = sliding_at(tables, m, omega_1, omega_2)
+    held.levels[m] = sliding.level
+    space[at + LOWER], space[at + UPPER] = sliding.lower, sliding.upper
+    space[at + PER_SPEED] = reversal_per_speed(tables.values, m, omega_1 + omega_2)
+
+
+@inlined
+def look_ahead(space: Array, at: int, values: Array, m: int, step: float) -> None:
     """Set reach and rate of a mesh at the end of the step from its speeds and turns, imposed ones included."""
-    r_1, r_2 = space[at + R1], space[at + R2]
+    r_1, r_2 = values[m, V_R1], values[m, V_R2]
     turn = r_1 * space[at + TURN] - r_2 * space[at + PORT + TURN]
     reach = space[at + APPROACH] + turn + space[at + OFFSET] + step * space[at + OFFSET_RATE]
     rate = r_1 * space[at + SPEED] - r_2 * space[at + PORT + SPEED] + space[at + OFFSET_RATE]
@@ -98,139 +118,168 @@ def look_ahead(space: Array, at: int, step: float) -> None:
 
 
 @inlined
-def choose_contacts(space: Array, at: int, step: float) -> None:
-    """Keep the state at which the contacts of a mesh are chosen for this step."""
-    space[at + CHOSEN_ANGLE] = space[at + ANGLE] + space[at + TURN]
-    space[at + CHOSEN_1], space[at + CHOSEN_2] = space[at + SPEED], space[at + PORT + SPEED]
-    space[at + CHOSEN_REACH], space[at + AHEAD] = space[at + REACH], 2.0 * step * abs(space[at + RATE])
-
-
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def list_individual(meshes: PackedMeshes, space: Array, m: int, listed: ListedContacts) -> None:
-    """List the contacts of a mesh with individual teeth at the angle chosen for this step."""
-    counts, contacts = meshes.counts, listed.contacts
-    stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
-    for side in range(2):
-        table = ContactTable(contacts, (2 * m + side) * N_PHASE * stride, stride, listed.no_pairs)
-        angle = space[m * N_SPACE + CHOSEN_ANGLE]
-        listed.found[m, side] = list_on_path(space, m * N_SPACE, meshes, m, 1.0 - 2.0 * side, angle, table)
-
-
-@inlined
-def _within(space: Array, at: int, side: int) -> float:
-    """Return the reach up to which contacts of a flank are looked for in this step."""
-    within = (1.0 - 2.0 * side) * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
-    return float(within + space[at + JAMMED])
-
-
-@inlined
-def can_touch(space: Array, at: int, side: int) -> bool:
-    """Return whether a flank comes within reach of its least gap in this step."""
-    return bool(_within(space, at, side) > space[at + LEAST_GAP])
-
-
-@inlined
-def chosen_flank(
-    space: Array, at: int, meshes: PackedMeshes, m: int, side: int, listed: ListedContacts
-) -> Flank:
-    """Return the contacts of a flank that were chosen for this step."""
+def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressing:
+    """Return how the gears press a flank at the approach of the teeth and the rate at the end of the step."""
     sign = 1.0 - 2.0 * side
-    omega_1, omega_2 = space[at + CHOSEN_1], space[at + CHOSEN_2]
-    if meshes.counts[m, INDIVIDUAL] == 0:
-        state = ContactState(sign, _within(space, at, side), space[at + CHOSEN_ANGLE], omega_1, omega_2)
-        return flank_in_phase(space, at, meshes, m, state)
-    stride = listed.contacts.shape[0] // (2 * N_PHASE * meshes.counts.shape[0])
-    table = ContactTable(listed.contacts, (2 * m + side) * N_PHASE * stride, stride, listed.no_pairs)
-    return flank_on_path(space, at, table, listed.found[m, side], omega_1, omega_2)
+    beside = sign * values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
+    advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
+    reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH]
+    return Pressing(
+        sign, reach, sign * space[at + RATE], beside, advance, space[at + SPEED], space[at + PORT + SPEED]
+    )
 
 
 @inlined
-def _press_side(space: Array, at: int, side: int, table: Array, flank: Flank) -> Pressed:
-    """Sum the contacts of one flank where the mesh was last looked at."""
-    sign = 1.0 - 2.0 * side
-    reach = sign * (space[at + AT_REACH] - space[at + GIVEN]) - side * space[at + BACKLASH]
-    pressing = Pressing(sign, reach, sign * space[at + AT_RATE], space[at + SPEED])
-    return press_flank(table, flank, space, at, pressing, space[at + GUARD])
+def find_place(
+    tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, angle: float, teeth: float
+) -> None:
+    """Find the flank of a mesh that touches at an angle of the pinion and an approach of the teeth, and its place."""
+    values = tables.values
+    front = teeth > values[m, V_LEAST_GAP]
+    back = teeth < -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
+    side = 0 if front else 1
+    space[at + HELD_ANGLE], space[at + TEETH] = angle, teeth
+    held.sides[m] = side if front or back else 2
+    place = place_of(tables, m, side, angle)
+    held.knots[m], space[at + FRACTION] = place.knot, place.fraction
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def behind_body(
-    space: Array, at: int, meshes: PackedMeshes, m: int, reach: float, listed: ListedContacts
-) -> ToothApproach:
-    """Return what the teeth see of a reach of the gears, from the contacts chosen for this step."""
-    front, back = no_contacts(), no_contacts()
-    if can_touch(space, at, 0):
-        front = chosen_flank(space, at, meshes, m, 0, listed)
-    if can_touch(space, at, 1):
-        back = chosen_flank(space, at, meshes, m, 1, listed)
-    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
-    start = reach - space[at + GIVEN]
-    teeth: ToothApproach = tooth_approach(table, Flanks(front, back), space, at, reach, start)
-    return teeth
+@inlined
+def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+    """Hold the flanks of a mesh that touch at the place that was found."""
+    values = tables.values
+    least, turning = values[m, V_LEAST_GAP], -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
+    side, teeth = held.sides[m], space[at + TEETH]
+    held.counts[m, 0], held.counts[m, 1] = 0, 0
+    low, high = turning, least
+    if side < 2:
+        sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
+        first = held.first[m, side] & POSITIVE
+        reach = teeth if side == 0 else -teeth - values[m, V_BACKLASH]
+        if tables.counts[m, C_GENERAL] == 0:
+            place = Place(held.knots[m], space[at + FRACTION])
+            rows = hold_phase(tables, m, side, place, sliding, reach, held.cells, held.rows, first)
+        else:
+            state = FlankState(side, space[at + HELD_ANGLE], 0.0)
+            rows = hold_path(tables, m, state, sliding, reach, held.rows, first)
+        held.counts[m, side] = rows.n
+        if side == 0:
+            low, high = rows.low if teeth < turning or rows.low > turning else turning, rows.high
+        else:
+            low, high = -values[m, V_BACKLASH] - rows.high, -values[m, V_BACKLASH] - rows.low
+            high = high if high < least else least
+    space[at + LOW], space[at + HIGH] = low, high
+    if side == 0 and teeth < turning:
+        _hold_back(tables, space, at, m, held, teeth)
 
 
-@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _react_on_both(space: Array, at: int, table: Array, front: Flank, back: Flank) -> None:
-    """Set the reaction of a mesh where both flanks can touch."""
-    _react_on(space, at, table, 0, front, back)
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _hold_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, teeth: float) -> None:
+    """Hold the back flank of a mesh whose front flank is held."""
+    backlash = tables.values[m, V_BACKLASH]
+    sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
+    state = FlankState(1, space[at + HELD_ANGLE], 0.0)
+    rows = hold_path(tables, m, state, sliding, -teeth - backlash, held.rows, held.first[m, 1] & POSITIVE)
+    held.counts[m, 1] = rows.n
+    # no longer from where the back flank begins to touch on
+    space[at + LOW] = max(
+        space[at + LOW] if space[at + LOW] > teeth - 1.0 else -np.inf, -backlash - rows.high
+    )
+    space[at + HIGH] = min(space[at + HIGH], -backlash - rows.low)
+
+
+@inlined
+def is_held(space: Array, at: int, values: Array, m: int) -> bool:
+    """Return whether the held rows of a mesh are good at the approach and the angle that it reaches."""
+    beside = values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
+    near = abs(beside) * values[m, V_PER_KNOT] < NEAR
+    return bool(near and space[at + LOW] <= space[at + TEETH] <= space[at + HIGH])
+
+
+@inlined
+def _set_flank(space: Array, at: int, values: Array, m: int, sign: float, sums: Sums) -> None:
+    """Set what a flank answers as the reaction of its mesh; derivatives over the approach of the teeth."""
     wheel = at + PORT
-    sums = _press_side(space, at, 1, table, back)
-    r_1, r_2 = space[at + R1], space[at + R2]
+    r_1, r_2 = values[m, V_R1], values[m, V_R2]
+    space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
+    space[at + TANGENT_X], space[wheel + TANGENT_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
+    space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
+    space[at + PRESSED], space[at + PRESSED_X] = sums.force, sign * sums.force_x
+    space[at + PRESSED_V], space[at + NET] = sign * sums.force_v, sign * sums.recorded
+    space[at + NET_X], space[at + NET_V] = sums.force_x, sums.force_v
+    space[at + BENT], space[at + BENT_V] = r_1 * abs(sums.curvature), r_1 * abs(sums.force_xv)
+    space[at + OFF], space[at + SHARE] = -sign * sums.elastic, sums.stiffness
+
+
+@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+    """Add what the back flank answers to the reaction of a mesh whose front flank touches too."""
+    values = tables.values
+    wheel = at + PORT
+    r_1, r_2 = values[m, V_R1], values[m, V_R2]
+    first = held.first[m, 1] & POSITIVE
+    pressing = _pressing(space, at, values, m, 1)
+    sums = press_rows(held.rows, first, held.counts[m, 1], values, m, pressing)
     space[at + REACTION] += r_1 * sums.a_1
     space[wheel + REACTION] -= r_2 * sums.a_2
-    share = space[at + TOOTH_SHARE]
-    space[at + TANGENT_X] -= r_1 * share * sums.a_1_x
-    space[wheel + TANGENT_X] += r_2 * share * sums.a_2_x
+    space[at + TANGENT_X] -= r_1 * sums.a_1_x
+    space[wheel + TANGENT_X] += r_2 * sums.a_2_x
     space[at + TANGENT_V] -= r_1 * sums.a_1_v
     space[wheel + TANGENT_V] += r_2 * sums.a_2_v
-    space[at + NET] -= sums.force
-    space[at + NET_X] += share * sums.force_x
+    space[at + PRESSED] += sums.force
+    space[at + PRESSED_X] -= sums.force_x
+    space[at + PRESSED_V] -= sums.force_v
+    space[at + NET] -= sums.recorded
+    space[at + NET_X] += sums.force_x
     space[at + NET_V] += sums.force_v
-    space[at + KINKED] += sums.kinked
-    space[at + CURVED] += sums.curved
+    space[at + BENT] += r_1 * abs(sums.curvature)
+    space[at + BENT_V] += r_1 * abs(sums.force_xv)
+    space[at + OFF] += sums.elastic
+    space[at + SHARE] += sums.stiffness
 
 
 @inlined
-def _react_on(space: Array, at: int, table: Array, side: int, flank: Flank, other: Flank) -> None:
-    """Set the reaction of a mesh of which one flank presses; the other flank counts for the body only."""
+def _no_contact(space: Array, at: int) -> None:
+    """Set the reaction of a mesh whose flanks do not touch."""
     wheel = at + PORT
-    sign = 1.0 - 2.0 * side
-    share = 1.0
-    if space[at + BODY] > 0.0:
-        flanks = Flanks(flank, other) if side == 0 else Flanks(other, flank)
-        reach = space[at + AT_REACH]
-        teeth = tooth_approach(table, flanks, space, at, reach, reach - space[at + GIVEN])
-        share, space[at + GIVEN] = teeth.share, reach - teeth.approach
-    space[at + TOOTH_SHARE] = share
-    sums = _press_side(space, at, side, table, flank)
-    r_1, r_2 = space[at + R1], space[at + R2]
-    space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
-    space[at + TANGENT_X] = -r_1 * share * sums.a_1_x
-    space[wheel + TANGENT_X] = r_2 * share * sums.a_2_x
-    space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
-    space[at + NET], space[at + NET_X] = sign * sums.force, share * sums.force_x
-    space[at + NET_V] = sums.force_v
-    space[at + KINKED], space[at + CURVED] = sums.kinked, sums.curved
+    for port in (at, wheel):
+        space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
+    space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
+    space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
+    space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
 
 
 @inlined
-def react(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedContacts) -> None:
-    """Set reaction and derivatives of mesh ``m`` at its last state, from the contacts chosen for this step."""
+def look(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, again: bool) -> None:
+    """Set reaction and derivatives of mesh ``m`` at its reach and rate, by the rows that are held for it."""
+    values = tables.values
     wheel = at + PORT
-    front, back = can_touch(space, at, 0), can_touch(space, at, 1)
-    if not (front or back):
-        for port in (at, wheel):
-            space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
-        space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
-        space[at + KINKED], space[at + CURVED] = 0.0, 0.0
-        return
-    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
-    side = 0 if front else 1
-    flank = chosen_flank(space, at, meshes, m, side, listed)
-    if front and back:
-        _react_on_both(space, at, table, flank, chosen_flank(space, at, meshes, m, 1, listed))
+    space[at + TEETH] = space[at + AT_REACH] - space[at + GIVEN]
+    if again or not is_held(space, at, values, m):
+        find_place(tables, space, at, m, held, space[at + ANGLE] + space[at + TURN], space[at + TEETH])
+        hold_mesh(tables, space, at, m, held)
+    front, back = held.counts[m, 0] > 0, held.counts[m, 1] > 0
+    if front or back:
+        side = 0 if front else 1
+        pressing = _pressing(space, at, values, m, side)
+        first = held.first[m, side] & POSITIVE
+        sums = press_rows(held.rows, first, held.counts[m, side], values, m, pressing)
+        _set_flank(space, at, values, m, pressing.sign, sums)
     else:
-        _react_on(space, at, table, side, flank, no_contacts())
+        _no_contact(space, at)
+    if front and back:
+        _add_back(tables, space, at, m, held)
+    body = values[m, V_BODY]
+    if body > 0.0:
+        share = 1.0 / (1.0 + body * space[at + SHARE])
+        off = space[at + GIVEN] + body * space[at + OFF]
+        space[at + SHARE], space[at + OFF] = share, share * off
+        space[at + REACTION] += space[at + TANGENT_X] * share * off
+        space[wheel + REACTION] += space[wheel + TANGENT_X] * share * off
+        space[at + TANGENT_X] *= share
+        space[wheel + TANGENT_X] *= share
+    else:
+        space[at + SHARE], space[at + OFF] = 1.0, 0.0
 
 
 @inlined
@@ -278,16 +327,58 @@ def correct(space: Array, at: int, give: Array, first: int, n_meshes: int) -> fl
 
 
 @inlined
-def left_open(space: Array, at: int) -> float:
-    """Bring the force of a mesh to its tangent; return the torque by which the mesh can be off it [N m].
+def correct_alone(space: Array, at: int, give: Array, own: int) -> None:
+    """Bring the torques of a mesh to its tangent where it was looked at, the others staying as they are."""
+    wheel = at + PORT
+    e_1, e_2 = space[at + REACTION] - space[at + TAU], space[wheel + REACTION] - space[wheel + TAU]
+    d_1 = space[at + INVERSE] * e_1 + space[at + INVERSE + 1] * e_2
+    d_2 = space[at + INVERSE + 2] * e_1 + space[at + INVERSE + 3] * e_2
+    space[at + TAU] += d_1
+    space[wheel + TAU] += d_2
+    space[at + MISSING], space[wheel + MISSING] = d_1, d_2
+    space[at + REACH] += give[own] * d_1 + give[own + 1] * d_2
+    space[at + RATE] += give[own + 2] * d_1 + give[own + 3] * d_2
 
-    The mesh force is bilinear in reach and rate, which leaves ``curved dx dv``, unless a kink lies within: then up
-    to the stiffness of its contacts times ``dx``, and infinity where kinks were looked for in a smaller range.
+
+@inlined
+def move_others(space: Array, at: int, give: Array, n_meshes: int, m: int) -> float:
+    """Let the other meshes move mesh ``m`` by what ``correct_alone`` did to them; return the torque that it means."""
+    dx, dv = 0.0, 0.0
+    for n in range(n_meshes):
+        if n != m:
+            by, given = (n * N_SPACE) & POSITIVE, (4 * (n * n_meshes + m)) & POSITIVE
+            d_1, d_2 = space[by + MISSING], space[by + PORT + MISSING]
+            dx += give[given] * d_1 + give[given + 1] * d_2
+            dv += give[given + 2] * d_1 + give[given + 3] * d_2
+    space[at + REACH] += dx
+    space[at + RATE] += dv
+    return float(abs(space[at + TANGENT_X] * dx + space[at + TANGENT_V] * dv))
+
+
+@inlined
+def left_open(space: Array, at: int) -> float:
+    """Bring approach of the teeth and recorded force to the tangent; return the torque that may be off it [N m].
+
+    Infinity where the held rows do not reach, or where a damper lets go of a flank.
     """
     dx, dv = space[at + REACH] - space[at + AT_REACH], space[at + RATE] - space[at + AT_RATE]
-    space[at + NET] += space[at + NET_X] * dx + space[at + NET_V] * dv
-    moved = abs(dx) + space[at + DAMP_TIME] * abs(dv)
-    looked_at = moved <= space[at + GUARD]
-    space[at + GUARD] = max(2.0 * moved, 0.9 * space[at + GUARD], LEAST_GUARD)
-    left = space[at + R1] * (space[at + KINKED] * moved + space[at + CURVED] * abs(dx * dv))
-    return float(left) if looked_at else np.inf
+    moved = space[at + OFF] + space[at + SHARE] * dx
+    pressed = space[at + PRESSED]
+    teeth = space[at + TEETH] + moved
+    space[at + TEETH], space[at + GIVEN] = teeth, space[at + REACH] - teeth
+    space[at + NET] += space[at + NET_X] * moved + space[at + NET_V] * dv
+    after = pressed + space[at + PRESSED_X] * moved + space[at + PRESSED_V] * dv
+    inside = space[at + LOW] <= teeth <= space[at + HIGH] and (after > 0.0) == (pressed > 0.0)
+    left = space[at + BENT] * moved * moved + space[at + BENT_V] * abs(moved * dv)
+    return float(left) if inside else np.inf
+
+
+@inlined
+def flank_powers(
+    tables: ContactTables, space: Array, at: int, m: int, side: int, held: HeldRows
+) -> tuple[float, float]:
+    """Return friction and damping power of a flank at the end of the step, whose rows are held."""
+    pressing = _pressing(space, at, tables.values, m, side)
+    first = held.first[m, side] & POSITIVE
+    sums = press_rows(held.rows, first, held.counts[m, side], tables.values, m, pressing)
+    return powers(sums, tables.values, m, pressing, space[at + SPEED], space[at + PORT + SPEED])

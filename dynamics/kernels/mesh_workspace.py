@@ -1,12 +1,10 @@
-"""Mesh workspace: the state of each mesh within a step of the march, one row of numbers, those of its law first.
+"""Mesh workspace: the state of each mesh within a step of the march, one row of numbers.
 
 It is a single flat array, ``space``, read at fixed offsets from the start of a row, so that the compiler keeps numbers
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-from dynamics.kernels.mesh_tables import N_VALUES
-
-# compiled from sources b9e97a4a
+# compiled from sources 82bd4541
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -15,33 +13,43 @@ from dynamics.kernels.mesh_tables import N_VALUES
     OFFSET_RATE,
     REACH,  # approach and its rate at the end of the step, imposed ones included, moving with the torques
     RATE,
-    AT_REACH,  # the same where the contacts were last summed
+    AT_REACH,  # the same where the mesh was last looked at
     AT_RATE,
-    GUARD,  # distance within which kinks are looked for [m]
-    CHOSEN_ANGLE,  # pinion angle, both speeds and reach at which the contacts of the step were chosen
-    CHOSEN_1,
-    CHOSEN_2,
-    CHOSEN_REACH,
-    AHEAD,  # margin of that reach [m]
-    NET,  # force, front less back, and its derivatives over reach and rate
+    TEETH,  # approach that the teeth see, where the mesh was last looked at, then at the end of the step [m]
+    TEETH_OLD,  # the same at the end of the last step
+    HELD_ANGLE,  # angle of the pinion at which the rows are held [rad]
+    FRACTION,  # of the cell of the path there
+    OFF,  # by how much the approach behind the bodies is off there [m]
+    SHARE,  # part of a change of the reach that the teeth take there [-]
+    LOW,  # range of the approach of the teeth in which the held rows are good [m]
+    HIGH,
+    GIVEN,  # part of the reach that bodies outside the table give, in this step and in the last [m]
+    GIVEN_OLD,
+    PRESSED,  # force of both flanks, and its derivatives over approach and rate
+    PRESSED_X,
+    PRESSED_V,
+    NET,  # force to be recorded, front less back, and its derivatives
     NET_X,
     NET_V,
-    KINKED,  # bounds of what the derivatives leave out, see kernels.contact.Pressed
-    CURVED,
-    GIVEN,  # part of the reach that the shared body gave where the contacts were last summed [m]
-    TOOTH_SHARE,  # part of a change of the reach that the teeth took there [-]
+    BENT,  # what a Newton step leaves out of the torque: over approach twice, over approach and rate
+    BENT_V,
+    LOWER,  # shares of two levels of friction, and how far sliding reverses per sliding speed, of the sample
+    UPPER,
+    PER_SPEED,
     INVERSE,  # of the Newton matrix, four numbers
-) = range(N_VALUES, N_VALUES + 22)
+) = range(30)
 # of both ports, the pinion's first and the wheel's PORT further
-PORT = 9
+PORT = 11
 (
     SPEED,  # at the end of the step [rad/s]
     TURN,  # in the step [rad]
-    TAU,  # torque at the end of the step [N m], one step earlier, two steps earlier
+    TURN_OLD,  # in the last step
+    TAU,  # torque at the end of the step [N m], then one, two and three steps earlier
     OLD,
     OLDER,
+    OLDEST,
     MISSING,  # torque that speed and turn do not hold yet
-    REACTION,  # torque that the contacts answer where they were last summed, and its derivatives
+    REACTION,  # torque that the contacts answer where they were last looked at, and its derivatives
     TANGENT_X,
     TANGENT_V,
 ) = range(INVERSE + 4, INVERSE + 4 + PORT)

@@ -226,6 +226,7 @@ def law_of_springs(
         back_deviation_1=deviations[0][1],
         back_deviation_2=deviations[1][1],
         body_compliance=springs.body_compliance,
+        slice_face=face,
     )
 
 

@@ -108,6 +108,8 @@ class MeshLaw(NamedTuple):
     """Rate that the damper of a contact answers to."""
     body_compliance: float = 0.0
     """Compliance of both gear bodies that all tooth pairs share [m/N]; 0: every pair deflects alone."""
+    slice_face: Array | None = None
+    """Face position of each slice from mid-face, shape (n_slices,) [m]; None where tilt does not matter."""
 
 
 def back_deviations(law: MeshLaw) -> tuple[Array, Array]:
@@ -160,6 +162,10 @@ def check_mesh_law(law: MeshLaw) -> None:
     shapes: dict[str, tuple[tuple[int, ...], tuple[tuple[int, ...], ...]]] = {
         "gap": (law.gap.shape, ((n_slices, n_path),)),
         "slice_shift": (law.slice_shift.shape, ((n_slices,),)),
+        "slice_face": (
+            law.slice_shift.shape if law.slice_face is None else law.slice_face.shape,
+            ((n_slices,),),
+        ),
         "deviation_1": (law.deviation_1.shape, ((law.teeth_1, n_path), (1, n_path))),
         "deviation_2": (law.deviation_2.shape, ((law.teeth_2, n_path), (1, n_path))),
         "back_deviation_1": (back_1.shape, (law.deviation_1.shape,)),

@@ -1,6 +1,6 @@
 """Columns of load through which a march acts on the drivetrain: motor, bracing, periodic loads and drag torques."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +15,26 @@ Array = NDArray[np.float64]
 
 
 def march_model(
-    system: LinearSystem, laws: Sequence[MeshLaw], drags: Sequence[str] = (), cutoff: float = DEFAULT_CUTOFF
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    drags: Sequence[str] = (),
+    cutoff: float = DEFAULT_CUTOFF,
+    drag_damping: Mapping[str, float] | None = None,
 ) -> ModalModel:
     """Modal model of a drivetrain with the loads of a march: motor, twist, alternating torques and the drags named.
 
     cutoff : modes above this frequency keep their static effect only [Hz]
+    drag_damping : steepest rise of the drags over the speed by name [N m s/rad]; modes that are
+        damped far more by themselves give way to drags statically alone; all move with them when left out
 
     Raises DynamicsInputError and DefectiveModes as ``modal_model``, DynamicsInputError for unknown names of drags.
     """
-    return modal_model(system, laws, slow_loads(system), drag_loads(system, drags), cutoff=cutoff)
+    loads = drag_loads(system, drags)
+    steepest = None
+    if drag_damping is not None:
+        steepest = np.zeros(loads.shape[1])
+        steepest[drag_places(system, drags)] = [drag_damping[name] for name in drags]
+    return modal_model(system, laws, slow_loads(system), loads, cutoff=cutoff, drag_damping=steepest)
 
 
 def slow_loads(system: LinearSystem) -> Array:

@@ -29,6 +29,8 @@ DEFAULT_CUTOFF = 50e3
 """Modes above this frequency [Hz] keep their static effect only."""
 
 
+UNBRAKED = 2e-3
+"""Share of the damping of a mode that drag torques add at most where they are left out of it [-]."""
 PARTING = 1e-9
 """Share by which the damping is raised where two modes coincide [-]."""
 
@@ -53,7 +55,10 @@ class ModalModel:
     scaled_through : (n_states, n_inputs) static part of the dropped modes
     shapes : (n, n) real modes, mass-normalised, rigid ones first
     frequencies : (n,) undamped circular frequencies of the lines [rad/s]
+    springs : (n - n_lines,) stiffness of each elastic mode over its squared frequency: 1, but for one that a film holds
     n_meshes, n_slow, n_drags : numbers of meshes, of slow loads and of drag torques
+    n_circulating : number of the last outputs, in fours: speeds and displacements a', b, b', a whose a' b - b' a is
+        what skew stiffness takes [W]
     drag_branches : (n_drags / 4,) branch of each four of drag torques
     dropped : number of eigenvalues left out
     """
@@ -70,12 +75,14 @@ class ModalModel:
     scaled_through: Array
     shapes: Array
     frequencies: Array
+    springs: Array
     inertia: Array
     mesh_ports: NDArray[np.int64]
     n_lines: int
     n_meshes: int
     n_slow: int
     n_drags: int
+    n_circulating: int
     drag_branches: NDArray[np.int64]
     dropped: int
 
@@ -87,6 +94,7 @@ def modal_model(
     drags: Array | None = None,
     *,
     cutoff: float = DEFAULT_CUTOFF,
+    drag_damping: Array | None = None,
 ) -> ModalModel:
     """Solve the complex eigenproblem of the drivetrain without its meshes.
 
@@ -96,6 +104,8 @@ def modal_model(
     loads : (n, n_slow) torque on each freedom per unit of each slow input [-]
     drags : (n, n_drags) the same of each drag torque, from ``drag_loads``; none when left out
     cutoff : modes above this frequency keep their static effect only [Hz]; ``inf`` keeps all
+    drag_damping : (n_drags,) steepest rise of each drag torque over the speed [N m s/rad]: modes
+        whose own damping is far above what it adds give way to the drags statically alone; all move when left out
 
     Raises
     ------
@@ -138,36 +148,56 @@ def modal_model(
     forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
     forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), slow_and_drags))
     modal_forcing = inverse @ forcing
-    velocity = _velocity_rows(system, slow_and_drags) @ shapes
+    skew_rows = _skew_rows(system)
+    velocity = np.vstack((_velocity_rows(system, slow_and_drags), skew_rows)) @ shapes
     seen = (velocity @ vectors[:n]) * weights
+    moved = np.arange(len(seen) - len(skew_rows) + 1, len(seen), 2)
+    seen[moved] /= np.where(values == 0.0, np.inf, values)
+    in_motion = np.ones(modal_forcing.shape, bool)
+    if drag_damping is not None and drags.shape[1]:
+        first = 2 * len(laws) + loads.shape[1]
+        of_drags = slice(first, first + drags.shape[1])
+        rows = slice(first + 2 * len(laws), first + 2 * len(laws) + drags.shape[1])
+        added = drag_damping @ np.abs(seen[rows] * modal_forcing[:, of_drags].T) / weights
+        free = added < UNBRAKED * np.abs(values.real)
+        in_motion[free, of_drags] = False
+        seen[rows, free] = 0.0
+        # those that drags brake stand first in their branch: the march passes over the others
+        order = np.lexsort((np.arange(len(values)), free, branches))
+        values, branches, weights = values[order], branches[order], weights[order]
+        vectors, inverse = vectors[:, order], inverse[order]
+        modal_forcing, in_motion, seen = modal_forcing[order], in_motion[order], seen[:, order]
     # branches that no load moves at all stand still
     pushed = np.bincount(branches, weights=np.abs(modal_forcing).max(axis=1))[branches] > 0.0
     keep = (np.abs(values) <= 2.0 * np.pi * cutoff) & pushed
     left = np.unique(branches[keep])
-    lost, lost_forcing = values[~keep], modal_forcing[~keep]
-    lost = np.where(np.abs(lost_forcing).max(axis=1) > 0.0, lost, 1.0)
-    static = -lost_forcing / lost[:, None]
-    delayed = -lost_forcing / lost[:, None] ** 2
+    in_motion[~keep] = False
+    # what modes that do not move with an input do of it statically, and with some delay
+    lost = np.where(in_motion, 0.0, modal_forcing)
+    static = -lost / np.where(np.abs(lost).max(axis=1) > 0.0, values, 1.0)[:, None]
+    delayed = static / np.where(np.abs(lost).max(axis=1) > 0.0, values, 1.0)[:, None]
     ports = system.mesh_ports.ravel()
     return ModalModel(
         eigenvalues=values[keep],
         branches=np.searchsorted(left, branches[keep]),
         port_branches=np.searchsorted(left, [branch_of[np.argmax(np.abs(shapes[port]))] for port in ports]),
-        inputs=modal_forcing[keep],
+        inputs=np.where(in_motion, modal_forcing, 0.0)[keep],
         outputs=seen[:, keep],
-        through=(seen[:, ~keep] @ static).real,
-        through_rate=(seen[:, ~keep] @ delayed).real,
+        through=(seen @ static).real,
+        through_rate=(seen @ delayed).real,
         to_modes=inverse[keep],
         to_scaled=vectors[:, keep] * weights[keep],
-        scaled_through=((vectors[:, ~keep] * weights[~keep]) @ static).real,
+        scaled_through=((vectors * weights) @ static).real,
         shapes=shapes,
         frequencies=frequencies,
+        springs=squared[n_lines:] / frequencies[n_lines:] ** 2,
         inertia=np.asarray(system.inertia, float),
         mesh_ports=system.mesh_ports,
         n_lines=n_lines,
         n_meshes=len(laws),
         n_slow=loads.shape[1],
         n_drags=drags.shape[1],
+        n_circulating=len(skew_rows),
         drag_branches=np.searchsorted(left, _drag_branches(shapes, branch_of, drags)),
         dropped=int(np.count_nonzero(~keep)),
     )
@@ -263,7 +293,12 @@ def _branch_modes(
         parted = own.copy()
         parted[moving] *= 1.0 + more
         values, vectors = scipy.linalg.eig(parted)
-        condition = float(np.linalg.cond(vectors))
+        try:
+            inverse = np.linalg.inv(vectors)
+        except np.linalg.LinAlgError:
+            condition = np.inf
+            continue
+        condition = float(np.linalg.norm(vectors, 1) * np.linalg.norm(inverse, 1))
         if condition < 1e12:
             break
     else:
@@ -271,7 +306,6 @@ def _branch_modes(
             f"complex modes: condition number {condition:.1e} of the eigenvectors, limit 1e12; two modes coincide, "
             "change a joint damping by a part in 1e4"
         )
-    inverse = np.linalg.inv(vectors)
     half = np.flatnonzero(values.imag >= 0.0)
     half = half[np.lexsort((values[half].imag, np.abs(values[half])))]
     right = np.zeros((len(matrix), len(half)), complex)
@@ -311,3 +345,16 @@ def _velocity_rows(system: LinearSystem, loads: Array) -> Array:
     squares, vectors = scipy.linalg.eigh(0.5 * (system.damping + system.damping.T))
     lossy = squares > 1e-13 * max(float(squares.max()), 1e-300)
     return np.vstack((ports, loads.T, (vectors[:, lossy] * np.sqrt(squares[lossy])).T))
+
+
+def _skew_rows(system: LinearSystem) -> Array:
+    """Rows a, b, b, a over the freedoms in fours: the sum of a b' - b a' is the skew part of the stiffness."""
+    skew = 0.5 * (system.stiffness - system.stiffness.T)
+    scale = np.abs(system.stiffness).max(initial=0.0)
+    if np.abs(skew).max(initial=0.0) <= 1e-13 * scale:
+        return np.zeros((0, len(skew)))
+    # i S is Hermitian: its positive eigenvalues s with vectors b + i a give S = sum of 2 s (a b' - b a')
+    values, vectors = scipy.linalg.eigh(1j * skew)
+    acting = values > 1e-13 * scale
+    rows = vectors[:, acting].T * np.sqrt(2.0 * values[acting])[:, None]
+    return np.stack((rows.imag, rows.real, rows.real, rows.imag), axis=1).reshape(-1, len(skew))

@@ -245,7 +245,7 @@ class TimeIntegration:
     @property
     def _alternates(self) -> bool:
         """Whether the period holds a load that alternates with a shaft."""
-        loads = within_period(self.system.periodic_loads, self._ratios, self._turns)
+        loads = within_period(self.system.periodic_loads, self._ratios, self.turns)
         return any(load.parts for load in loads)
 
     def _period(self, speed: float) -> PeriodGrid:

@@ -1,25 +1,22 @@
 """Exact propagator of the linear drivetrain between its gear meshes, from its complex modes.
 
-A step with inputs that vary linearly (first-order hold) is exact for any step length,
-
-    z' = E z + h (phi_1 - phi_2) b u + h phi_2 b u',     phi_k(lambda h)
-
-so overdamped joints with real poles of 1e7 1/s cost nothing. Angles and approaches are integrals of the
-velocity outputs, exact in the same sense, which keeps the small difference of two large rotations.
-
-Source: phi_k as in exponential integrators (Hochbruck and Ostermann, Acta Numerica 19, 2010).
+A step takes each mode exactly, so that overdamped joints with real poles of 1e7 1/s cost nothing; the torques of the
+meshes are held by Numerov's method, all other inputs vary linearly (``dynamics.response.step_hold``). Angles and
+approaches are integrals of the velocity outputs in the same sense, which keeps the small difference of two large
+rotations. The modal state that is marched leaves out what follows the inputs at once, so that a step pushes each mode
+by one number of each input.
 """
 
 from dataclasses import dataclass
-from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.kernels import WIDTH, DiscreteModes, DragModes
+from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.response.modal_layout import ModalLayout, StepResponse, branch_layout, port_blocks
 from dynamics.response.modal_model import ModalModel
+from dynamics.response.step_hold import numerov, phi, straight_line
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -54,12 +51,14 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
         raise DynamicsInputError(f"step = {step} s must be positive")
     scaled = model.eigenvalues * step
     decay = np.exp(scaled)
-    phi_1, phi_2, phi_3 = (_phi(k, scaled)[:, None] for k in (1, 2, 3))
-    old = step * (phi_1 - phi_2) * model.inputs
-    hold = step * phi_2 * model.inputs
-    driven = decay[:, None] * hold + old
-
+    phi_1, phi_2 = phi(1, scaled)[:, None], phi(2, scaled)[:, None]
     n_fast = 2 * model.n_meshes
+    of_mesh, of_line = numerov(scaled), straight_line(scaled)
+    is_mesh = np.arange(model.inputs.shape[1]) < n_fast
+    hold = step * np.where(is_mesh, of_mesh.state[:, None], of_line.state[:, None]) * model.inputs
+    turned = step**2 * np.where(is_mesh, of_mesh.turn[:, None], of_line.turn[:, None]) * model.inputs
+    driven = decay[:, None] * hold + step * phi_1 * model.inputs - hold
+
     n_ports = 2 * n_fast
     n_driven = n_fast + model.n_slow
     n_rows = model.outputs.shape[0] if with_losses else n_ports + model.n_slow + model.n_drags
@@ -73,10 +72,10 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
     through_old[speed] += (seen[speed] @ driven).real
     # the angle a port turns by is the integral of its speed over the step
     rows[angle] = seen[angle] * (step * phi_1[:, 0])
-    integral = step * phi_1 * hold + step**2 * (phi_2 - phi_3) * model.inputs
+    integral = step * phi_1 * hold + step**2 * phi_2 * model.inputs - turned
     dropped, dropped_rate = 0.5 * step * model.through[angle], model.through_rate[angle]
     through_old[angle] = (seen[angle] @ integral).real + dropped - dropped_rate
-    through_new[angle] = (seen[angle] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
+    through_new[angle] = (seen[angle] @ turned).real + dropped + dropped_rate
     layout = branch_layout(model.branches)
     of_ports = StepResponse(
         decay=decay,
@@ -97,12 +96,14 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
         **tables._asdict(),
         port_new=np.ascontiguousarray(through_new[:n_ports, :n_fast].T),
         rows=layout.lay(rows[n_ports:].conj()),
+        circulating=model.n_circulating if with_losses else 0,
         through_old=np.ascontiguousarray(through_old[n_ports:, fast].T),
         through_new=np.ascontiguousarray(through_new[n_ports:, fast].T),
         slow_outputs=slow_outputs,
         slow_states=layout.lay(slow_states),
         drags=DragModes(
             branches=model.drag_branches,
+            groups=_braked_groups(model, layout, driven[:, n_driven:]),
             push=layout.lay(driven[:, n_driven:].T),
             rows=layout.lay(rows[braked].conj()),
             inputs=np.ascontiguousarray(
@@ -142,6 +143,16 @@ def _slow_responses(response: StepResponse, n_ports: int, substeps: int) -> tupl
     return outputs.reshape(2 * n_slow, -1), modes.reshape(2 * n_slow, -1)
 
 
+def _braked_groups(model: ModalModel, layout: ModalLayout, driven: ComplexArray) -> NDArray[np.int64]:
+    """Return (n_drags / 4,) groups of modes from the start of its branch on that each four of drag torques drives."""
+    groups = np.zeros(len(model.drag_branches), np.int64)
+    for four, branch in enumerate(model.drag_branches):
+        driving = driven[:, FOUR * four : FOUR * (four + 1)]
+        braked = layout.modes[np.any(driving != 0.0, axis=1)]
+        groups[four] = (int(braked.max(initial=-1)) - int(layout.starts[branch])) // (2 * WIDTH) + 1
+    return groups
+
+
 def modal_state(
     model: ModalModel, propagator: Propagator, angles: Array, speeds: Array, inputs: Array
 ) -> Array:
@@ -162,17 +173,3 @@ def scaled_state(model: ModalModel, propagator: Propagator, state: Array, inputs
     z = state[real] + 1j * state[real + WIDTH] + propagator.hold @ inputs
     scaled: Array = (model.to_scaled @ z).real + model.scaled_through @ inputs
     return scaled
-
-
-def _phi(k: int, x: ComplexArray) -> ComplexArray:
-    """Return phi_k(x) = sum_j x^j / (j + k)!, by series near zero and by recursion elsewhere."""
-    small = np.abs(x) < 0.5
-    near = np.where(small, x, 0.0)
-    series = np.zeros_like(near)
-    for j in range(18, -1, -1):
-        series = series * near + 1.0 / factorial(j + k)
-    far = np.where(small, 1.0, x)
-    value = np.exp(far)
-    for j in range(k):
-        value = (value - 1.0 / factorial(j)) / far
-    return np.where(small, series, value)

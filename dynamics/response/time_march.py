@@ -5,7 +5,6 @@ each slow input and the losses of meshes and joints, so that drive torque and lo
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +12,10 @@ from numpy.typing import NDArray
 from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
-from dynamics.mesh.force import evaluate_mesh, pack_meshes
+from dynamics.kernels.contact_table import V_BODY
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.table_force import TableReaction, evaluate_table
+from dynamics.response.band_change import fade, mean_shift
 from dynamics.response.march_inputs import (
     DragTables,
     DriveLoads,
@@ -24,6 +25,9 @@ from dynamics.response.march_inputs import (
     TorqueControl,
 )
 from dynamics.response.march_loads import drag_loads, drag_places, march_model, slow_loads
+from dynamics.response.march_record import Accounts as Accounts
+from dynamics.response.march_record import Block as Block
+from dynamics.response.march_tables import MarchTables
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import discretise, modal_state, scaled_state
 
@@ -31,60 +35,13 @@ Array = NDArray[np.float64]
 
 CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
+SEGMENT = 1000
+"""Samples after which the contact tables are those of the speed that has come."""
 NO_LOADS = DriveLoads()
 
 
 class MarchDiverged(DynamicsNotConverged):
     """A march left the finite numbers; the message names mesh, time, speed and the slowest mode."""
-
-
-class Block(NamedTuple):
-    """One advance: internal steps and sample values."""
-
-    force: Array
-    """(n_meshes, n_steps) front minus back normal force in the transverse line of action [N]."""
-    approach: Array
-    """(n_meshes, n_steps) approach including offsets [m]; no columns unless everything is recorded."""
-    angle_1: Array
-    """(n_meshes, n_steps) pinion angle [rad]."""
-    rate: Array
-    """(n_meshes, n_steps) approach rate [m/s]."""
-    omega_1: Array
-    """(n_meshes, n_steps) pinion speed [rad/s]."""
-    torque_1: Array
-    """(n_meshes, n_steps) generalized torque on the pinion body, friction included [N m]."""
-    slow: Array
-    """(n_samples, n_slow) motor torque [N m], twist [rad] and alternating torques [N m] at the end of each sample."""
-    slow_speed: Array
-    """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
-    drags: Array
-    """(n_samples, n_drags) drag torques [N m] at the end of each sample."""
-    angle: Array
-    """(n_samples,) angle of the pinion of the first mesh at the end of each sample [rad]."""
-
-
-class Accounts(NamedTuple):
-    """Work since the start of a march [J]; losses are positive."""
-
-    friction: Array
-    """(n_meshes,) sliding friction of the teeth."""
-    mesh_damping: Array
-    """(n_meshes,)"""
-    slow_work: Array
-    """(n_slow,) work done on the drivetrain by motor, bracing and alternating torques."""
-    drag: Array
-    """(n_drags,)"""
-    joint_damping: float
-
-    def since(self, before: "Accounts") -> "Accounts":
-        """Work since an earlier account."""
-        return Accounts(
-            self.friction - before.friction,
-            self.mesh_damping - before.mesh_damping,
-            self.slow_work - before.slow_work,
-            self.drag - before.drag,
-            self.joint_damping - before.joint_damping,
-        )
 
 
 class TimeMarch:
@@ -129,53 +86,61 @@ class TimeMarch:
         self.drags = drags
         self.model = model or march_model(system, laws, drags, settings.cutoff)
         self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
-        self.packed = pack_meshes(laws, derivative_torques=settings.derivative_torques)
         self.unconverged = 0
         self._settings = settings
+        self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
         self._marched = 0
+        self._apart, self._apart_since = np.zeros(len(self.laws)), 0
         self._names = system.dofs
         self._record_all = settings.record_all
-        self._laws_packed = [pack_meshes([law]) for law in self.laws]
         self._places = drag_places(system, drags)
         braked = drag_loads(system, drags)
         columns = np.column_stack((slow_loads(system), braked))
         n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.periodic_loads), braked.shape[1]
         self._n_slow = n_slow
-        n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
-        ports = np.zeros((n_meshes, 6))
-        damping = np.zeros((n_meshes, 2))
-        powers = np.zeros(n_power)
-        for mesh, (law, (pinion, wheel)) in enumerate(zip(self.laws, system.mesh_ports)):
-            x = law.base_radius_1 * start.angles[pinion] - law.base_radius_2 * start.angles[wheel]
-            rate = law.base_radius_1 * start.speeds[pinion] - law.base_radius_2 * start.speeds[wheel]
-            reaction = evaluate_mesh(
-                self._laws_packed[mesh], start.angles[pinion], x + law.offset, start.speeds[pinion], start.speeds[wheel]
-            )  # fmt: skip
-            torques = float(reaction.torque_1[0]), float(reaction.torque_2[0])
-            ports[mesh] = (*torques, *torques, x, start.angles[pinion])
-            damping[mesh, 1] = rate
-            powers[2 * mesh : 2 * mesh + 2] = (reaction.friction_power[0], reaction.damping_power[0])[
-                :n_power
-            ]
+        n_power = 2 * n_meshes + n_slow + n_drags + 2 if accounts else 0
+        pinions, wheels = system.mesh_ports.T
+        self.tables = self._tables.at(start.speeds[pinions])
+        ports = np.zeros((n_meshes, kernels.N_PORTS))
+        powers = np.full((3, n_power), np.nan)
+        for mesh, law in enumerate(self.laws):
+            angles = start.angles[pinions[mesh]], start.angles[wheels[mesh]]
+            turning = start.speeds[pinions[mesh]], start.speeds[wheels[mesh]]
+            for back in range(3):
+                # the steps before are those of a steady rotation
+                now = [angle - back * self.step * speed for angle, speed in zip(angles, turning)]
+                x = law.base_radius_1 * now[0] - law.base_radius_2 * now[1]
+                reaction = self._reaction(mesh, now[0], x + law.offset, *turning)
+                ports[mesh, 2 * back : 2 * back + 2] = reaction.torque_1[0], reaction.torque_2[0]
+                if back == 0:
+                    ports[mesh, 6:8] = x, now[0]
+                    ports[mesh, 10:] = turning
+                    ports[mesh, 8:10] = self._outer_given(mesh, x + law.offset, reaction)
+                if accounts and back == 0:
+                    powers[0, 2 * mesh : 2 * mesh + 2] = (
+                        reaction.friction_power[0],
+                        reaction.damping_power[0],
+                    )
         slow = np.zeros(n_slow)
         slow[:2] = loads.drive_torque, start.twist
         braking = np.zeros(n_drags)
         braking[self._places] = list(loads.drag_torques.values())
         speeds = columns.T @ start.speeds
         if accounts:
-            powers[2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
-            powers[-1] = start.speeds @ system.damping @ start.speeds
+            powers[0, 2 * n_meshes : -2] = np.concatenate((slow, braking)) * speeds
+            powers[0, -2] = start.speeds @ system.damping @ start.speeds
+            skew = 0.5 * (system.stiffness - system.stiffness.T)
+            powers[0, -1] = start.speeds @ skew @ start.angles
         self._carried = kernels.Carried(
             state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
             slow=slow,
             drags=braking,
-            offset=self.packed.offsets.copy(),
+            offset=np.array([law.offset for law in self.laws], float),
             controller=np.zeros(5),
             speeds=speeds,
             powers=powers,
             work=np.zeros(n_power),
-            damping=damping,
         )
         with np.errstate(invalid="ignore"):  # an infinite torque shows in the march, which says where
             self._carried.state[:] = modal_state(
@@ -225,32 +190,35 @@ class TimeMarch:
             tables[self._places] = drags.torque
             if drags.last_speed is not None:
                 ends[self._places] = drags.last_speed
-        held = (
-            np.tile(self._carried.offset, (n_samples, 1))
-            if offsets is None
-            else np.ascontiguousarray(offsets)
+        left = np.outer(fade(n_samples, self._apart_since, sample_time), self._apart)
+        past = fade(1, self._apart_since - 1, sample_time)[0] * self._apart
+        asked = np.tile(self._carried.offset - past, (n_samples, 1)) if offsets is None else offsets
+        held = np.ascontiguousarray(asked + left)
+        drag_laws = kernels.DragLaws(
+            torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
         )
-        history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
-        samples = np.empty((n_samples, 2 * n_slow + n_drags + 1))
-        commands = kernels.Commands(
-            given=np.ascontiguousarray(given, float),
-            offsets=held,
-            control=control,
-            drags=kernels.DragLaws(
-                torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
-            ),
-        )
-        self.unconverged += kernels.march(
-            self.packed,
-            self.propagator.modes,
-            commands,
-            self._carried,
-            kernels.Steps(self.step, self.substeps),
-            kernels.MarchRecord(history, samples),
-        )
+        given = np.ascontiguousarray(given, float)
+        histories, all_samples = [], []
+        for first in range(0, n_samples, SEGMENT):
+            part = slice(first, min(first + SEGMENT, n_samples))
+            count = part.stop - part.start
+            histories.append(np.empty((n_meshes, 6 if self._record_all else 1, count * self.substeps)))
+            all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
+            self.tables = self._tables.at(self._pinion_speeds())
+            self.unconverged += kernels.march(
+                self.tables,
+                self.propagator.modes,
+                kernels.Commands(given=given[part], offsets=held[part], control=control, drags=drag_laws),
+                self._carried,
+                kernels.Steps(self.step, self.substeps),
+                kernels.MarchRecord(histories[-1], all_samples[-1]),
+            )
+        history = histories[0] if len(histories) == 1 else np.concatenate(histories, axis=2)
+        samples = all_samples[0] if len(histories) == 1 else np.concatenate(all_samples)
         if not np.all(np.isfinite(self._carried.ports)):
             raise MarchDiverged(self._diverged(history[:, 0], samples[:, : 2 * n_slow]))
         self._marched += n_samples
+        self._apart_since += n_samples
         none = np.empty((n_meshes, 0))
         force, approach, angle, rate, omega, torque = (
             (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
@@ -283,9 +251,29 @@ class TimeMarch:
 
     def mean_torque_of_first_mesh(self) -> float:
         """Torque of the first mesh at its pinion at this instant, friction left out [N m]."""
-        law, ports = self.laws[0], self._carried.ports[0]
-        force = evaluate_mesh(self._laws_packed[0], ports[5], ports[4] + self._carried.offset[0], 0.0, 0.0)
-        return float(law.base_radius_1 * (force.force_front[0] - force.force_back[0]))
+        force = self._reaction_now(0)
+        return float(self.laws[0].base_radius_1 * (force.force_front[0] - force.force_back[0]))
+
+    def _reaction(self, mesh: int, angle: float, reach: float, *speeds: float) -> TableReaction:
+        """What a mesh answers at the angle of its pinion and an approach, imposed part included."""
+        return evaluate_table(self.tables, angle, reach, *speeds, mesh=mesh)
+
+    def _reaction_now(self, mesh: int) -> TableReaction:
+        """What a mesh answers at rest at this instant."""
+        approach, angle = self._carried.ports[mesh, 6:8]
+        return self._reaction(mesh, angle, approach + self._carried.offset[mesh])
+
+    def _outer_given(self, mesh: int, reach: float, reaction: TableReaction) -> float:
+        """Part of an approach that bodies outside the table give [m]."""
+        outside = self.tables.values[mesh, V_BODY] > 0.0
+        return float(reach - reaction.tooth_approach[0]) if outside else 0.0
+
+    def _pinion_speeds(self) -> Array:
+        """Speeds of the pinions (n_meshes,) without their vibration [rad/s]."""
+        model = self.model
+        scaled = scaled_state(model, self.propagator, self._carried.state, self._inputs())
+        rigid = model.n_lines
+        return np.asarray(model.shapes[model.mesh_ports[:, 0], :rigid] @ scaled[:rigid])
 
     def accounts(self) -> Accounts:
         """Return work and losses since the start; zeros if the march keeps no accounts."""
@@ -293,22 +281,22 @@ class TimeMarch:
         if len(self._carried.work) == 0:
             return Accounts(np.zeros(n), np.zeros(n), np.zeros(self._n_slow), np.zeros(len(self.drags)), 0.0)
         work = self._carried.work
-        slow, drag = np.split(work[2 * n : -1], (self._n_slow,))
+        slow, drag = np.split(work[2 * n : -2], (self._n_slow,))
         return Accounts(
             work[0 : 2 * n : 2].copy(),
             work[1 : 2 * n : 2].copy(),
             slow.copy(),
             -drag[self._places],
+            float(work[-2]),
             float(work[-1]),
         )
 
     def energy(self) -> float:
         """Kinetic energy plus elastic energy of joints and tooth contacts at this instant [J]."""
         scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
-        stored = 0.5 * float(scaled @ scaled)
-        for packed, ports, offset in zip(self._laws_packed, self._carried.ports, self._carried.offset):
-            stored += float(evaluate_mesh(packed, ports[5], ports[4] + offset, 0.0, 0.0).energy[0])
-        return stored
+        n = len(self.model.inertia)
+        stored = 0.5 * float(scaled[:n] @ scaled[:n] + self.model.springs @ scaled[n:] ** 2)
+        return stored + sum(float(self._reaction_now(mesh).energy[0]) for mesh in range(len(self.laws)))
 
     def state(self) -> DriveState:
         """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""
@@ -320,7 +308,7 @@ class TimeMarch:
         placed: set[int] = set()
         for mesh in range(len(self.laws)):
             law = self.laws[mesh]
-            approach, pinion = self._carried.ports[mesh, 4:]
+            approach, pinion = self._carried.ports[mesh, 6:8]
             wheel = (law.base_radius_1 * pinion - approach) / law.base_radius_2
             for port, angle in zip(model.mesh_ports[mesh], (pinion, wheel)):
                 line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
@@ -330,22 +318,54 @@ class TimeMarch:
                     placed.add(line)
         return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._carried.slow[1]))
 
-    def continued(self, system: LinearSystem, model: ModalModel) -> "TimeMarch":
+    def continued(
+        self, system: LinearSystem, model: ModalModel, mean_force: Array | None = None
+    ) -> "TimeMarch":
         """The same motion with other matrices of the same freedoms from this instant on: another speed band.
 
-        system : with the same ports and loads; model : its ``march_model`` for the laws and drags of this march
+        system : with the same ports and loads
+        model : its ``march_model`` for the laws and drags of this march
+        mean_force : (n_meshes,) mean of ``Block.force``, under which the mean position goes over to that of the new
+            bearings (see ``band_change``); it stays where it is when left out [N]
         """
         drags = dict(zip(self.drags, self._carried.drags[self._places].tolist()))
         loads = DriveLoads(drive_torque=float(self._carried.slow[0]), drag_torques=drags)
-        march = TimeMarch(system, self.laws, self.state(), self._settings, loads, model)
+        state = self.state()
+        march = TimeMarch(system, self.laws, state, self._settings, loads, model)
         march._marched, march.unconverged = self._marched, self.unconverged
+        march.tables, march._tables = self.tables, self._tables
+        march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried
-        after.ports[:, :4], after.slow[:], after.offset[:] = before.ports[:, :4], before.slow, before.offset
-        after.controller[:], after.work[:] = before.controller, before.work
-        after.speeds[:], after.damping[:] = before.speeds, before.damping
-        here = self.state()
-        after.state[:] = modal_state(march.model, march.propagator, here.angles, here.speeds, march._inputs())
+        after.ports[:], after.slow[:], after.offset[:] = before.ports, before.slow, before.offset
+        after.controller[:], after.work[:], after.powers[:] = before.controller, before.work, before.powers
+        angles = state.angles
+        if mean_force is not None:
+            shift = mean_shift(self.system, system, self._mean_load(mean_force))
+            angles = angles + shift
+            march._move_flanks(shift)
+        after.state[:] = modal_state(model, march.propagator, angles, state.speeds, march._inputs())
         return march
+
+    def _mean_load(self, mean_force: Array) -> Array:
+        """Loads (n,) on the freedoms under mean forces of the meshes, with motor, twist and drags of this instant."""
+        carried = self._carried
+        load = slow_loads(self.system) @ carried.slow + drag_loads(self.system, self.drags) @ carried.drags
+        for law, (pinion, wheel), force in zip(self.laws, self.system.mesh_ports, mean_force):
+            load[pinion] -= law.base_radius_1 * force
+            load[wheel] += law.base_radius_2 * force
+        return np.asarray(load)
+
+    def _move_flanks(self, shift: Array) -> None:
+        """Let the ports move by ``shift`` (n,) at once, and the approach that this gives come over a time."""
+        past = fade(1, self._apart_since - 1, self.step * self.substeps)[0]
+        ports = shift[self.system.mesh_ports]
+        for mesh, law in enumerate(self.laws):
+            moved = law.base_radius_1 * ports[mesh, 0] - law.base_radius_2 * ports[mesh, 1]
+            self._carried.ports[mesh, 6] += moved
+            self._carried.ports[mesh, 7] += ports[mesh, 0]
+            self._carried.offset[mesh] -= moved
+            self._apart[mesh] = past * self._apart[mesh] - moved
+        self._apart_since = 0
 
     def preset_speed_integral(self, torque: float) -> None:
         """Let the speed controller start from a motor torque [N m]."""
@@ -353,11 +373,11 @@ class TimeMarch:
 
     def pinion_angle(self) -> float:
         """Angle of the pinion of the first mesh at this instant [rad]."""
-        return float(self._carried.ports[0, 5])
+        return float(self._carried.ports[0, 7])
 
     def kick(self, speeds: Array) -> None:
         """Add ``speeds`` (n,) [rad/s] to the motion at once."""
-        nothing = np.zeros(self.model.inputs.shape[1])
+        nothing = np.zeros(self.propagator.hold.shape[1])
         self._carried.state[:] += modal_state(
             self.model, self.propagator, np.zeros_like(speeds), speeds, nothing
         )

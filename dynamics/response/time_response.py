@@ -32,7 +32,7 @@ from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
 from dynamics.response.march_loads import march_model
-from dynamics.response.time_march import TimeMarch
+from dynamics.response.time_march import CREEP_SHARE, TimeMarch
 
 Array = NDArray[np.float64]
 
@@ -46,6 +46,7 @@ class LoopEnergy:
     input_work : of the motor and of all torques that alternate with a shaft; bracing_work : of the twist
     friction, mesh_damping : (n_meshes,); joint_damping : joints and linear bearing damping; drag : by name
     change : of kinetic and elastic energy
+    circulation : what the skew stiffness of lubricant films takes from whirling shafts, negative where it drives them
     """
 
     input_work: float
@@ -55,6 +56,7 @@ class LoopEnergy:
     joint_damping: float
     drag: dict[str, float]
     change: float
+    circulation: float = 0.0
 
     @property
     def losses(self) -> float:
@@ -65,7 +67,7 @@ class LoopEnergy:
     @property
     def residual(self) -> float:
         """Work put in less losses and change [J]; the error of the integration."""
-        return self.input_work + self.bracing_work - self.losses - self.change
+        return self.input_work + self.bracing_work - self.losses - self.circulation - self.change
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,6 +161,7 @@ def run_schedule(
         torque=None if command.torque is None else float(command.torque[0]),
         twist=None if command.twist is None else float(command.twist[0]),
     )
+    rises = {name: _steepest(curve) for name, curve in curves.items()}
     wound = wound_state(system, laws, float(command.speed[0]), load, drag_now)
     march = TimeMarch(
         system,
@@ -172,6 +175,7 @@ def run_schedule(
             record_all=False,
         ),
         DriveLoads(drive_torque=wound.drive_torque, drag_torques=drag_now),
+        march_model(system, laws, names, sampling.cutoff, rises),
     )
     models = {id(system): march.model}
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
@@ -225,8 +229,8 @@ def run_schedule(
         band = drivetrain.at(abs(float(block.slow_speed[-1, 0])) / drive_ratio)
         if band is not march.system:
             if id(band) not in models:
-                models[id(band)] = march_model(band, laws, names, sampling.cutoff)
-            march = march.continued(band, models[id(band)])
+                models[id(band)] = march_model(band, laws, names, sampling.cutoff, rises)
+            march = march.continued(band, models[id(band)], block.force.mean(axis=1))
         dynamic = radius * block.force
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
         if sampling.keep_channels:
@@ -266,6 +270,7 @@ def run_schedule(
             joint_damping=accounts.joint_damping,
             drag=dict(zip(names, accounts.drag.tolist())),
             change=march.energy() - energy_before,
+            circulation=accounts.circulation,
         ),
         drive_limited_share=float(np.mean(limited)),
         speed_missed=float(command_speed[-1] - speed[-1]),
@@ -297,6 +302,12 @@ def _twists(system: LinearSystem, laws: Sequence[MeshLaw], torque: Array) -> tup
     return levels, np.array(
         [wound_state(system, laws, 0.0, LoopLoad(torque=float(t))).state.twist for t in levels]
     )
+
+
+def _steepest(curve: DragCurve) -> float:
+    """Steepest rise of a drag torque over the speed, that through standstill included [N m s/rad]."""
+    rises = np.abs(np.diff(curve.torque) / np.diff(curve.speed))
+    return float(max(rises.max(initial=0.0), 1.5 * curve.torque[0] / (CREEP_SHARE * curve.speed[-1])))
 
 
 def _drag_speed(system: LinearSystem, ratios: Array, name: str) -> float:

@@ -5,12 +5,15 @@ closed forms: a drag linear in speed is a damper (matrix exponential); one that 
 of a turning shaft alone; about standstill it is Coulomb friction, which takes 4 T per cycle and amplitude of angle.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
+from dynamics.response.march_loads import march_model
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import spur_law
 
@@ -121,3 +124,31 @@ def test_work_of_the_drag_is_what_the_rig_loses() -> None:
     begin = start(SPEED, 5.0)
     kinetic = 0.5 * INERTIA @ begin.speeds**2
     assert march.accounts().drag[0] == pytest.approx(kinetic - march.energy(), rel=1e-4)
+
+
+def test_modes_far_above_the_damping_of_a_drag_give_way_to_it_statically() -> None:
+    """A damped line with a brake: the march without drag in its fast mode is the march with it, shaft and teeth alike.
+
+    The mode takes 2e-3 of its damping from the drag at most, so that 1e-3 of the vibration is left to differ at the
+    end of its first time constant; the twist under the drag is all there.
+    """
+    damper = 5e-3
+    line = replace(system(), damping=np.array([[0.5, -0.5, 0.0], [-0.5, 0.5, 0.0], [0.0, 0.0, 0.0]]) * 4.0)
+    table = damper * np.linspace(0.0, TOP, 513)
+    torque = damper * SPEED
+    ends = {}
+    for rise in (None, {"bearing": damper}):
+        model = march_model(line, [OPEN], ("bearing",), drag_damping=rise)
+        march = TimeMarch(
+            line, [OPEN], start(SPEED, 5.0), MarchSettings(step=1.0 / 160e3, substeps=8),
+            DriveLoads(drag_torques={"bearing": torque}), model,
+        )  # fmt: skip
+        march.advance(np.zeros((400, 4)), drags=DragTables(torque=table[None], last_speed=np.array([TOP])))
+        assert march.unconverged == 0
+        ends[rise is None] = march.state(), march.propagator.modes.drags
+    (all_modes, every), (some, few) = ends[True], ends[False]
+    assert np.count_nonzero(few.push) < np.count_nonzero(every.push)
+    assert some.speeds == pytest.approx(all_modes.speeds, rel=1e-6, abs=1e-6)
+    twist = np.diff(all_modes.angles[:2])[0]
+    assert abs(twist) > 1e-10
+    assert np.diff(some.angles[:2])[0] == pytest.approx(twist, rel=1e-3)

@@ -8,17 +8,24 @@ import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.kernels.mesh_solve import left_open
-from dynamics.kernels.mesh_tables import DAMP_TIME, R1
 from dynamics.kernels.mesh_workspace import (
-    CURVED,
-    GUARD,
-    KINKED,
+    BENT,
+    BENT_V,
+    GIVEN,
+    HIGH,
+    LOW,
     N_SPACE,
     NET,
     NET_V,
     NET_X,
+    OFF,
+    PRESSED,
+    PRESSED_V,
+    PRESSED_X,
     RATE,
     REACH,
+    SHARE,
+    TEETH,
 )
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import drag_loads, slow_loads
@@ -246,16 +253,24 @@ def test_critical_damping_is_still_accurate() -> None:
     np.testing.assert_allclose(march.state().speeds, exact[4:], atol=1e-6 * np.abs(exact[4:]).max())
 
 
-@pytest.mark.parametrize(("looked", "known"), [(4e-9, True), (3e-9, False)])
-def test_a_step_of_a_mesh_is_off_its_tangent_by_no_more_than_its_kinks(looked: float, known: bool) -> None:
-    """3.2 nm moved: the contacts that may open or close within, and nothing known where none were looked for so far."""
+@pytest.mark.parametrize(
+    ("changes", "known"),
+    [({}, True), ({HIGH: 30.001e-6}, False), ({LOW: 30.002e-6}, False), ({PRESSED: 0.1}, False)],
+)
+def test_a_step_of_a_mesh_is_off_its_tangent_by_what_bends(changes: dict[int, float], known: bool) -> None:
+    """3 nm of the gears, of which the teeth take two thirds less what they were off: known within the held rows, and as
+    long as the damper leaves a force."""
     space = np.zeros(N_SPACE)
     for place, value in {
-        R1: 0.04, DAMP_TIME: 1e-6, REACH: 3e-9, RATE: -2e-4, GUARD: looked, KINKED: 2e8, CURVED: 5e4,
-        NET: 100.0, NET_X: 1e9, NET_V: 1e3,
+        REACH: 3e-9, RATE: -2e-4, OFF: -0.5e-9, SHARE: 2.0 / 3.0, TEETH: 30e-6, LOW: 29e-6, HIGH: 31e-6, PRESSED: 100.0,
+        PRESSED_X: 1e9, PRESSED_V: 1e4, NET: 100.0, NET_X: 1e9, NET_V: 1e4, BENT: 1e12, BENT_V: 5e4,
     }.items():  # fmt: skip
         space[place] = value
-    bound = 0.04 * (2e8 * 3.2e-9 + 5e4 * 3e-9 * 2e-4)
-    assert left_open(space, 0) == (pytest.approx(bound) if known else np.inf)
-    assert space[NET] == pytest.approx(100.0 + 1e9 * 3e-9 - 1e3 * 2e-4)
-    assert space[GUARD] == pytest.approx(6.4e-9)
+    for place, value in changes.items():
+        space[place] = value
+    moved = 1.5e-9
+    left = left_open(space, 0)
+    assert left == (pytest.approx(1e12 * moved**2 + 5e4 * moved * 2e-4) if known else np.inf)
+    assert space[TEETH] == pytest.approx(30e-6 + moved, rel=1e-12)
+    assert space[GIVEN] == pytest.approx(3e-9 - 30e-6 - moved, rel=1e-12)
+    assert space[NET] == pytest.approx(100.0 + 1e9 * moved - 1e4 * 2e-4)

@@ -214,5 +214,5 @@ def test_sample_rate_is_no_integration_step() -> None:
             prototype_laws(),
             command,
             motor=MotorDrive(torque_limit=10.0),
-            sampling=Sampling(substeps=4),
+            sampling=Sampling(substeps=2),
         )

@@ -452,7 +452,7 @@ BAD = [
         "is not below",
         "exchange",
     ),
-    ("numerics.internal_steps = 4", "numerics.internal_steps", "greater than or equal to 8", "at least 8"),
+    ("numerics.internal_steps = 2", "numerics.internal_steps", "greater than or equal to 4", "at least 4"),
 ]
 
 

@@ -1,0 +1,88 @@
+"""Layout of contact tables: smooth potentials of a tooth pair or of a whole mesh, that mesh forces come from.
+
+A table holds ``W(u, s)``: ``s`` is the path position (of a pair, or the phase of the mesh within its base pitch) and
+``u = y - G(s)`` the depth of the approach ``y`` of the teeth below the least gap ``G``, so that the first touch stands
+on a node. Over the depth W is a cubic in each cell, over the path the coefficients of these cubics are uniform cubic
+B-splines: force ``dW/dy`` and derivative torque ``r_b1 dW/ds`` are continuous and come from one potential, so that the
+interpolation neither makes nor takes energy (``dynamics.mesh.law``).
+
+Where the faces tilt against each other, W is tabulated at some tilts with the tilting moment ``dW/dtilt`` and a cubic
+over the tilt by both (Hermite), again one potential.
+
+``kernels.hold_path`` contracts the splines of every pair that can touch to one row of numbers, a cubic in y, at a place
+on the path; ``kernels.press_rows`` sums the rows. Built by ``dynamics.mesh.contact_table``.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+CELL = 8
+"""Numbers of a cell: W at its start, then F = dW/du there, slope and square term of F; damper weight and its slope;
+what the recorded force has beyond F, and its slope."""
+LINES = 4
+"""Value and slope over the depth in a cell of two quantities; or four numbers of a moment, as of W."""
+# columns of ContactTables.values; SPUR is 1 where all slices of a pair stand at one place and friction needs no table
+(
+    V_R1, V_R2, V_PER_PITCH, V_ORIGIN, V_BACK_ORIGIN, V_BACKLASH, V_DAMP_TIME, V_BODY, V_PER_FINEST, V_LOWEST,
+    V_LEAST_GAP, V_PER_KNOT, V_FRICTION, V_ROLL_1, V_ROLL_2, V_PER_REVERSAL, V_CLOSING, V_DERIVATIVE, V_FLOOR, V_TILT,
+    V_PER_TILT, V_TABULATED_BODY, V_REVERSAL, V_MU_1, V_MU_2, V_HALF_PITCH, V_START,
+    V_BACK_START, V_SPUR,
+) = range(29)  # fmt: skip
+N_TABLE_VALUES = 29
+# columns of ContactTables.counts; a flank of its own on the back stands behind the front's if BACK is 1; GENERAL is 0
+# where all teeth are alike and do not tilt
+(
+    C_PER_PITCH, C_PAIRS, C_KNOTS, C_CELLS, C_FINEST, C_BACK, C_GAPS_AT, C_CELLS_AT, C_MOMENTS_AT, C_DEPTHS_AT,
+    C_CELL_OF_AT, C_FRICTION_AT, C_CLOSING_AT, C_INDIVIDUAL, C_OFFSET_2, C_DEVIATIONS_AT, C_TEETH_1, C_TEETH_2,
+    C_PER_TOOTH, C_SCALES_AT, C_SCALED_1, C_SCALED_2, C_PLANES, C_LEVELS, C_LEVELS_AT,
+    C_GENERAL,
+) = range(26)  # fmt: skip
+N_TABLE_COUNTS = 26
+# places in a row: a cell (CELL), its slopes over the path (CELL), closing dampers (2 LINES), tilting moment and its
+# derivative
+# over the tilt, second derivative of W over the path; levers of friction and what they gain by the reversal; the
+# approach at the start of the cell, slope and second derivative of the gap
+R_SLOPES, R_CLOSING, R_MOMENT, R_TILT, R_CURVES, R_FRICTION, R_GAIN, R_START, R_GAP_SLOPE, R_GAP_CURVE = (
+    8, 16, 24, 28, 32, 36, 40, 44, 45, 46,
+)  # fmt: skip
+N_SCALED, N_ROW = 36, 48
+SCRATCH = 2 * CELL + 4 * LINES
+"""Numbers behind the rows that tilt needs."""
+
+
+class ContactTables(NamedTuple):
+    """Tables of all meshes of a drivetrain; see ``dynamics.mesh.contact_table.contact_tables``."""
+
+    values: Array
+    """(n_meshes, N_TABLE_VALUES) plain numbers."""
+    counts: Integers
+    """(n_meshes, N_TABLE_COUNTS) sizes and first entries in the arrays below."""
+    gaps: Array
+    """Per flank (n_knots,) spline coefficients of the least gap [m]."""
+    cells: Array
+    """Flat, per flank (n_planes, n_cells, n_knots, CELL): those of the cubics over the depth at every tilt."""
+    moments: Array
+    """Flat, per flank (n_planes, n_cells, n_knots, LINES): those of the tilting moment, as of W; empty without tilt."""
+    depths: Array
+    """Per mesh (n_cells + 1,) first depth of each cell [m]."""
+    cell_of: Integers
+    """Per mesh (n_finest,) cell at each multiple of the finest depth step."""
+    friction: Array
+    """Flat, per flank (n_planes, n_levels, n_cells, n_knots, 2 LINES): levers of friction on pinion and wheel, with the
+    direction of sliding, then what they gain per advance of its reversal [m]."""
+    levels: Array
+    """Flat, per mesh (n_levels,) sharpness of the reversal over the path at which they hold [1/m]."""
+    closing: Array
+    """Flat, per flank (n_planes, n_cells, n_knots, 2 LINES): of dampers on the closing rate at no rate of the approach,
+    force and its derivative over that rate, torque on the slope of the gap and its derivative; empty for others."""
+    deviations: Array
+    """Per flank, gear and tooth: spline coefficients over the path of the gap it adds, or one number [m]."""
+    scales: Array
+    """Per gear and tooth: stiffness scale [-]."""
+    offsets: Array
+    """(n_meshes,) imposed approach [m]."""

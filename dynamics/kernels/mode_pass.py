@@ -1,0 +1,78 @@
+"""One pass over the modes of a block as vector instructions: outputs of two ports, and the modes taken over the step.
+
+Written as vectors from the start: the compiler would sum the outputs up after every row of modes.
+"""
+
+from typing import Any
+
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from dynamics.kernels.mode_layout import N_BANK, WIDTH
+
+# compiled from sources 82bd4541
+FAST = ("contract", "reassoc", "nsz", "arcp")
+LANES = 4
+"""Numbers in a vector."""
+
+
+def _pass_modes(typing: Any, bank: Any, first: Any, groups: Any, torque_a: Any, torque_b: Any) -> Any:
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array, start, count, t_a, t_b = args
+        data = context.make_array(signature.args[0])(context, builder, array).data
+        vector, number = ir.VectorType(ir.DoubleType(), LANES), start.type
+
+        def spread(value: Any) -> Any:
+            one = builder.insert_element(
+                ir.Constant(vector, ir.Undefined), value, ir.Constant(ir.IntType(32), 0)
+            )
+            mask = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+            return builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined), mask)
+
+        def times(a: Any, b: Any) -> Any:
+            return builder.fmul(a, b, flags=FAST)
+
+        def plus(a: Any, b: Any) -> Any:
+            return builder.fadd(a, b, flags=FAST)
+
+        push_a, push_b = spread(t_a), spread(t_b)
+        sums = [
+            cgutils.alloca_once_value(builder, ir.Constant(vector, [0.0] * LANES))  # type: ignore[no-untyped-call]
+            for _ in range(4)
+        ]
+        with cgutils.for_range(builder, count, intp=number) as loop:
+            group = builder.add(start, builder.mul(loop.index, ir.Constant(number, N_BANK * WIDTH)))
+            for lane in range(0, WIDTH, LANES):
+                rows = [
+                    builder.bitcast(
+                        builder.gep(data, [builder.add(group, ir.Constant(number, row * WIDTH + lane))]),
+                        vector.as_pointer(),
+                    )
+                    for row in range(N_BANK)
+                ]
+                values = [builder.load(row, align=8) for row in rows]
+                real, imag = values[0], values[1]
+                for output, total in enumerate(sums):
+                    seen = plus(times(values[8 + 2 * output], real), times(values[9 + 2 * output], imag))
+                    builder.store(plus(builder.load(total), seen), total)
+                pushed = [plus(times(values[4 + i], push_a), times(values[6 + i], push_b)) for i in (0, 1)]
+                turned = builder.fsub(times(values[2], real), times(values[3], imag), flags=FAST)
+                builder.store(plus(turned, pushed[0]), rows[0], align=8)
+                turned = plus(times(values[3], real), times(values[2], imag))
+                builder.store(plus(turned, pushed[1]), rows[1], align=8)
+        found = []
+        for total in sums:
+            whole = builder.load(total)
+            lanes = [builder.extract_element(whole, ir.Constant(ir.IntType(32), i)) for i in range(LANES)]
+            found.append(plus(plus(lanes[0], lanes[1]), plus(lanes[2], lanes[3])))
+        return cgutils.pack_array(builder, found)  # type: ignore[no-untyped-call]
+
+    four = types.UniTuple(types.float64, 4)  # type: ignore[no-untyped-call]
+    return four(bank, first, groups, torque_a, torque_b), codegen
+
+
+pass_modes: Any = intrinsic(_pass_modes)
+"""pass_modes(bank, first, groups, torque_a, torque_b): take a block of the bank over a step with the torques of its two
+ports at the start of it; return speed and turn of port a, speed and turn of port b that its modes give."""

@@ -1,0 +1,145 @@
+"""Sums over the slices of a flank at places on its path and depths, filtered over the path where a march asks for it.
+
+The sums are kept: a march asks for the same ones with another filter whenever its speed has changed.
+"""
+
+from dataclasses import dataclass
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings, slice_sums
+from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.path_filter import TAIL, PathFilter
+from dynamics.mesh.slice_springs import slice_springs
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+PADDING = 8
+"""Cells beyond the ends of the path of a pair, which keep its splines free of them."""
+FINER = 4
+"""Samples of a cell before a filter."""
+MOST_KEPT = 8
+"""Sums that are kept; the oldest are forgotten when one more comes."""
+_kept: dict[object, "_Sums"] = {}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FlankGrid:
+    """Where a flank is tabulated.
+
+    sign : +1 in front, -1 on the back; pairs : True for the potential of single pairs, False for that of the mesh
+    per_pitch : cells in a base pitch; depths : (n_cells + 1,) first depth of each cell, and the last [m]
+    tilts : (n_planes,) [rad]; path_filter : None where the march resolves all of the path
+    """
+
+    sign: float
+    pairs: bool
+    per_pitch: int
+    depths: Array
+    tilts: Array
+    path_filter: PathFilter | None
+
+
+class FlankSamples(NamedTuple):
+    """A flank at the starts of the cells of its path.
+
+    start : path position of the first cell [m]; pitches : base pitches that the path takes
+    gap : (n_places,) least gap [m]; sums : (n_planes, n_places, n_depths, n_sums) of ``slice_sums``
+    force : (n_planes, n_places, n_depths) of the unfiltered law [N]; springs : the slices there
+    """
+
+    start: float
+    pitches: int
+    gap: Array
+    sums: Array
+    force: Array
+    springs: SliceSprings
+
+
+class _Sums(NamedTuple):
+    """The same, FINER in a cell, with the sums over cycles per path instead of places."""
+
+    unfiltered: FlankSamples
+    spectrum: ComplexArray
+    places: int
+
+
+def flank_samples(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankSamples:
+    """Sum the slices of one flank of a law."""
+    if grid.path_filter is None:
+        return _sample(law, node_law, grid, 1, 0)
+    # quarters of a pitch, so that the sums of one speed serve others
+    pitch = law.base_pitch
+    beyond = ceil(4.0 * TAIL * abs(grid.path_filter.step) / pitch) * grid.per_pitch // 4 if grid.pairs else 0
+    key = (
+        tuple(value.tobytes() if isinstance(value, np.ndarray) else value for value in law), grid.sign, grid.pairs,
+        grid.per_pitch, grid.depths.tobytes(), grid.tilts.tobytes(), beyond, node_law.path_speed,
+        node_law.sharpness.tobytes(),
+    )  # fmt: skip
+    if key not in _kept:
+        if len(_kept) >= MOST_KEPT:
+            del _kept[next(iter(_kept))]
+        found = _sample(law, node_law, grid, FINER, beyond)
+        spectrum = np.fft.rfft(found.sums, axis=1)
+        places = found.sums.shape[1]
+        _kept[key] = _Sums(found._replace(sums=np.zeros(0)), spectrum, places)
+    unfiltered, spectrum, places = _kept[key]
+    cycles = np.fft.rfftfreq(places, pitch / grid.per_pitch / FINER)
+    response = grid.path_filter.response(cycles)
+    known = np.flatnonzero(response)[-1] + 1
+    response = response[:known, None, None]
+    used = _used(grid, node_law, spectrum.shape[-1])
+    sums = np.zeros((len(spectrum), len(range(0, places, FINER)), *spectrum.shape[2:]))
+    sums[..., used] = np.fft.irfft(spectrum[:, :known][..., used] * response, places, axis=1)[:, ::FINER]
+    return unfiltered._replace(sums=sums)
+
+
+def _used(grid: FlankGrid, node_law: NodeLaw, count: int) -> NDArray[np.int64]:
+    """Which of the sums of ``slice_sums`` a table takes: those of tilt and of closing dampers only where there are
+    such."""
+    used = np.ones(count, bool)
+    used[3:5] = len(grid.tilts) > 1
+    used[5:SUMS] = node_law.path_speed != 0.0
+    return np.flatnonzero(used)
+
+
+def _sample(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid, finer: int, beyond: int) -> FlankSamples:
+    """Sum the slices at ``finer`` places in a cell, as many cells beyond the ends of the path of a pair."""
+    lag = grid.sign * law.slice_shift
+    length = law.path_step * (law.stiffness.shape[1] - 1) + float(np.ptp(lag))
+    width = law.base_pitch / grid.per_pitch
+    start = law.path_start + float(lag.min()) - beyond * width
+    pitches = ceil((length + 2.0 * beyond * width) / law.base_pitch - 1e-9)
+    if grid.pairs:
+        cells = np.arange(-PADDING * finer, (pitches * grid.per_pitch + PADDING) * finer + 1) / finer
+    else:
+        cells = np.arange(grid.per_pitch * finer) / finer
+    # the splines of a pair that touches at the ends of its path go on there
+    goes_on = grid.pairs and finer == 1 and not np.any(lag)
+    springs = slice_springs(
+        law, start + width * cells, grid.sign, 1 if grid.pairs else pitches, beyond=goes_on
+    )
+    gap = _least_gap(springs)
+    if finer > 1:
+        gap = np.full(len(gap), gap.min())
+    sums = np.empty((len(grid.tilts), len(gap), len(grid.depths), SUMS + FRICTION * len(node_law.sharpness)))
+    for tilt, plane in zip(grid.tilts, sums):
+        slice_sums(
+            springs._replace(gap=springs.gap - tilt * springs.face),
+            node_law,
+            gap[:, None] + grid.depths,
+            plane,
+        )
+    coarse = springs._replace(**{name: getattr(springs, name)[::finer] for name in springs._fields[:-1]})
+    return FlankSamples(start, pitches, gap[::finer], sums, sums[:, ::finer, :, 1].copy(), coarse)
+
+
+def _least_gap(springs: SliceSprings) -> Array:
+    """Least gap of the slices that carry (n_places,) [m]; where there are none that of the nearest place."""
+    gap = np.where(springs.stiffness > 0.0, springs.gap, np.inf).min(axis=1)
+    known = np.flatnonzero(np.isfinite(gap))
+    return np.asarray(np.interp(np.arange(len(gap)), known, gap[known]))
