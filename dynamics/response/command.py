@@ -75,7 +75,7 @@ class Sampling:
     """
 
     sample_rate: float = 40e3
-    substeps: int = 4
+    substeps: int = 8
     window: float = 0.01
     lift_off_share: float = 0.05
     keep_channels: bool = True

@@ -1,13 +1,12 @@
 """Senses of rotation, hands of the teeth and ends of the face in a gearbox, from what the case states of one gear."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from rigdesign.case.gearbox import Gearbox
     from rigdesign.case.gears import GearMesh
-    from rigdesign.case.model import Case
 
 Rotation = Literal["clockwise", "anticlockwise"]
 Hand = Literal["right", "left"]
@@ -39,33 +38,13 @@ def shaft_senses(
 
 def pinion_sense(box: "Gearbox", mesh: str) -> float:
     """Sense in which the pinion of a mesh turns about x: 1 clockwise seen from the front, -1 the other way."""
-    meshes = _meshing(box)
+    meshes = mesh_shafts(box)
     first = 1.0 if box.rotation == "clockwise" else -1.0
     senses = shaft_senses({meshes[0][0]: first}, meshes)
     return senses.get(box.gears[box.meshes[mesh].pinion].shaft, first)
 
 
-def contradicting_rotations(case: "Case") -> Iterator[tuple[str, str, Rotation]]:
-    """(gearbox, gearbox that turns it, rotation it then has) where what the case states does not fit its couplings."""
-    train = case.drivetrain
-    if train is None:
-        return
-    meshes = [pair for box in case.gearboxes.values() for pair in _meshing(box)]
-    couplings = [(one.shafts, one.ends) for one in train.couplings.values()]
-    firsts = {name: _meshing(box)[0][0] for name, box in case.gearboxes.items()}
-    settled: dict[str, str] = {}
-    senses: dict[str, float] = {}
-    for name, box in case.gearboxes.items():
-        first = 1.0 if box.rotation == "clockwise" else -1.0
-        if firsts[name] not in senses:
-            found = shaft_senses({firsts[name]: first}, meshes, couplings)
-            settled |= dict.fromkeys(found, name)
-            senses |= found
-        elif senses[firsts[name]] != first:
-            yield name, settled[firsts[name]], "anticlockwise" if first > 0.0 else "clockwise"
-
-
-def _meshing(box: "Gearbox") -> list[Shafts]:
+def mesh_shafts(box: "Gearbox") -> list[Shafts]:
     """Shafts of pinion and wheel of every mesh."""
     return [(box.gears[entry.pinion].shaft, box.gears[entry.wheel].shaft) for entry in box.meshes.values()]
 

@@ -10,7 +10,6 @@ from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import ROOM
 from rigdesign.case.housing import Housing
 from rigdesign.case.paths import known_paths, nearest_paths
-from rigdesign.case.rotation import contradicting_rotations
 from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
@@ -20,6 +19,7 @@ from rigdesign.case.rules.losses import loss_faults
 from rigdesign.case.rules.lubrication import lubrication_faults
 from rigdesign.case.rules.oil_circuits import oil_circuit_faults
 from rigdesign.case.rules.rig_heat import rig_heat_faults
+from rigdesign.case.rules.rotation import rotation_faults
 from rigdesign.case.rules.schedule import schedule_faults
 from rigdesign.case.rules.surfaces import housing_faults
 from rigdesign.case.rules.transient import transient_faults
@@ -59,18 +59,8 @@ def broken_rules(case: "Case") -> list[Fault]:
     if faults:
         return faults
     faults = [fault for name, box in case.gearboxes.items() for fault in housing_faults(name, box)]
-    faults += _rotations(case)
+    faults += rotation_faults(case)
     return faults or list(transient_faults(case))
-
-
-def _rotations(case: "Case") -> Iterator[Fault]:
-    """Shafts that are coupled turn together."""
-    for name, partner, needed in contradicting_rotations(case):
-        yield Fault(
-            f"gearboxes.{name}.rotation", case.gearboxes[name].rotation,
-            f"its shafts are coupled to gearbox {partner}, whose rotation makes it {needed}",
-            f"write {needed} or leave it out; correct the ends of the couplings if they meet otherwise",
-        )  # fmt: skip
 
 
 def _substances(case: "Case") -> Iterator[Fault]:
