@@ -56,9 +56,17 @@ class BranchSearch:
         """
         self._walk, self._problem, self._drags, self._speeds = walk, problem, drags, speeds
         self._over_speed = SpeedProblem(problem=problem, drags=drags)
+        self._tested = True
         self._open: dict[int, bool] = {}
         self._unstable_states: dict[int, list[HarmonicSolution]] = {}
         self.states = HarmonicStates()
+
+    def on_one_branch(self) -> HarmonicStates:
+        """States next to each other on one branch, stable or not: for maps, where many are asked."""
+        self._tested = False
+        for order in (range(len(self._speeds)), range(len(self._speeds) - 1, -1, -1)):
+            self._walk_over(order)
+        return self.states
 
     def run(self) -> HarmonicStates:
         """All states; a reason stays where no stable one is known."""
@@ -91,7 +99,7 @@ class BranchSearch:
 
     def _keep(self, i: int, state: HarmonicSolution) -> None:
         """Keep a stable state; DynamicsNotConverged for one that is not."""
-        if self._walk.cells == 1:
+        if self._tested and self._walk.cells == 1:
             self._open[i] = False
             known = self._unstable_states.setdefault(i, [])
             if any(self._same(state, other) for other in known):

@@ -122,12 +122,15 @@ class SweepSettings:
     cutoff : highest mode that counts [Hz]; harmonics must reach 1.5 times the highest mode below it
     tolerance : of the harmonic balance, error of the approach over its mean [-]
     methods : what may be used, tried in this order at every speed
+    branches : test states with contact loss for stability and trace branches round their turning points; without it the
+        harmonic balance walks from speed to speed
     """
 
     period: Period = "mesh"
     cutoff: float = DEFAULT_CUTOFF
     tolerance: float = 1e-5
     methods: Sequence[Method] = ("harmonic_balance", "time_integration")
+    branches: bool = True
 
 
 DEFAULT_SWEEP = SweepSettings()
@@ -294,7 +297,7 @@ def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) ->
         lambda speed: drags(speed * ratio) if callable(drags) else drags,
         np.array(speeds) / ratio,
     )
-    return search.run()
+    return search.run() if settings.branches else search.on_one_branch()
 
 
 def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None, longest: float) -> CurvePoint:

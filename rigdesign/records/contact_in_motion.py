@@ -119,7 +119,10 @@ def _row(
         LoopLoad(torque=torque),
         drag_torques=warm.drags,
         settings=SweepSettings(
-            period=rig.case.numerics.response_period, cutoff=rig.highest_mode, methods=("harmonic_balance",)
+            period=rig.case.numerics.response_period,
+            cutoff=rig.highest_mode,
+            methods=("harmonic_balance",),
+            branches=False,
         ),
     )
     found = {point.speed: point for point in curve.points}
