@@ -65,8 +65,8 @@ class SeenRig:
             own_coordinates=Coordinates(
                 freedoms=self._forth,
                 inertia=at.mass,
-                damping=_without_dust(at.damping),
-                stiffness=_without_dust(at.stiffness),
+                damping=_without_rounding(at.damping),
+                stiffness=_without_rounding(at.stiffness),
                 rigid=self.reduced.rigid,
             ),
         )
@@ -117,7 +117,7 @@ class SeenRig:
 
     @cached_property
     def _names(self) -> tuple[str, ...]:
-        hidden = (f"inner motion {i}" for i in range(self._hidden.shape[1]))
+        hidden = (f"hidden motion {i}" for i in range(self._hidden.shape[1]))
         return (*self._rows, *hidden)
 
     @cached_property
@@ -193,7 +193,7 @@ def _exact(shapes: Array) -> Array:
     return np.where(np.abs(shapes) < 1e-12 * np.abs(shapes).max(axis=0, initial=1e-300), 0.0, shapes)
 
 
-def _without_dust(matrix: Array) -> Array:
+def _without_rounding(matrix: Array) -> Array:
     """A matrix without what rounding has left of entries that are zero: blocks stay apart."""
     scale = np.sqrt(np.abs(np.diag(matrix)))
     scale = np.maximum(scale, 1e-6 * scale.max(initial=1e-300))

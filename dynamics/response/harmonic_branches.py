@@ -138,11 +138,11 @@ class BranchSearch:
             for rising in (True, False):
                 if all(i in self.states.found or i in self.states.not_mesh_periodic for i in gap):
                     break
-                start = self._beside(gap, rising=rising)
+                start = self._next_to(gap, rising=rising)
                 if start is not None:
                     self._trace(start, gap, rising=rising)
 
-    def _beside(self, gap: list[int], *, rising: bool) -> HarmonicSolution | None:
+    def _next_to(self, gap: list[int], *, rising: bool) -> HarmonicSolution | None:
         """Nearest state below (rising) or above the gap; a plain one from outside the speeds if there is none."""
         edge = self._speeds[gap].min() if rising else self._speeds[gap].max()
         side = 1.0 if rising else -1.0

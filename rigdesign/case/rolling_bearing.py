@@ -169,7 +169,7 @@ class RollingBearingInput(Part):
     support_stiffness: LinearStiffness | None = None
     """Of the housing under the bearing, radially and in series with it; rigid when left out."""
     support_damping: LinearDamping = 0.0
-    """Damper beside the stiffness of the support."""
+    """Damper in parallel with the stiffness of the support."""
     support_mass: Mass = 1.0
     """Of the housing that moves with the bearing on its support."""
 

@@ -9,7 +9,7 @@ Curve = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class DynamicRootCurve:
-    """Stress at one place of a root at one speed, dynamic beside quasi-static, over the way through the mesh."""
+    """Stress at one place of a root at one speed, dynamic and quasi-static, over the way through the mesh."""
 
     mesh: str
     """Its label."""

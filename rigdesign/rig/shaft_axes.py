@@ -96,15 +96,15 @@ def _coupled(case: Case, found: Mapping[str, ShaftAxis]) -> Iterator[tuple[str, 
             if known in found and other not in found:
                 axis, ends = found[known], coupling.ends
                 direction = axis.direction * (-1.0 if ends[0] == ends[1] else 1.0)
-                start = _beside_partner(case, other, direction, found)
+                start = _start_by_mesh(case, other, direction, found)
                 if start is None:
                     meeting = axis.place(_end(case, known, ends[here]))
                     start = meeting - direction * _end(case, other, ends[there])
                 yield other, replace(axis, start=start, direction=direction)
 
 
-def _beside_partner(case: Case, shaft: str, direction: float, found: Mapping[str, ShaftAxis]) -> float | None:
-    """x of the start of a shaft [m] with its gear beside one on a known shaft that it meshes with; None without one."""
+def _start_by_mesh(case: Case, shaft: str, direction: float, found: Mapping[str, ShaftAxis]) -> float | None:
+    """x of the start of a shaft [m] at which its gear meets its partner on a known shaft; None without one."""
     for box in case.gearboxes.values():
         for mesh in box.meshes.values():
             gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
