@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule
 from rigdesign.records.dwell_speeds import (
@@ -43,6 +44,7 @@ DWELL = DwellRule(
     source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
     comparison=">=",
     needs=LOADS,
+    leaves_out=(long_periods,),
     absent="no stage dwells at a speed whose response is computed",
     moved_by=frozenset({"start torque", "resonance limits"}),
 )

@@ -114,6 +114,7 @@ def explain_check(case: Case, identity: str, finished: FinishedCheck | None = No
 
 DRIVETRAIN, HOUSING, TRANSIENT = "a drivetrain", "a gearbox with a housing", "check --transient"
 LOADED_CONTACT = "loaded contact, not at fidelity quick"
+BENDING = "shafts that bend, not at fidelity quick"
 
 
 def _needs(family: RuleFamily) -> Iterator[str]:
@@ -125,12 +126,19 @@ def _needs(family: RuleFamily) -> Iterator[str]:
         yield TRANSIENT
     if family.key in ("flank.contact_pressure", "flank.edge_pressure"):
         yield LOADED_CONTACT
+    if family.key.startswith("lateral."):
+        yield BENDING
 
 
 def _met(case: Case, needs: tuple[str, ...]) -> bool:
     """Whether the case has what the check needs; that it is run with an option is not a matter of the case."""
     housed = any(box.housing is not None for box in case.gearboxes.values())
-    return (DRIVETRAIN not in needs or case.drivetrain is not None) and (HOUSING not in needs or housed)
+    power = case.drivetrain
+    return (
+        (DRIVETRAIN not in needs or power is not None)
+        and (HOUSING not in needs or housed)
+        and (BENDING not in needs or (power is not None and power.shaft_model == "elastic"))
+    )
 
 
 def _stated(case: Case, path: str) -> str:

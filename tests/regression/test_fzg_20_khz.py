@@ -46,8 +46,8 @@ def last(stage: str, seconds: float = 0.3) -> np.ndarray:
 def test_rig_stands_still_before_it_turns() -> None:
     """It creeps to rest against the lips of its shaft exits: 1.5 rpm after 0.9 s, 0.007 rpm after 1.2 s.
 
-    With the teeth summed slice by slice it came to rest 0.3 s earlier: the contact tables hold the friction of creeping
-    teeth by their bluntest reversal.
+    With the teeth summed slice by slice it came to rest 0.3 s earlier. Step count and the modes that give way to drags
+    are not the cause; that the tables turn friction over a range of speeds may be.
     """
     assert np.abs(last("bracing", 0.01)).max() < 0.01
     assert np.abs(last("bracing", 0.05)).max() < 0.1

@@ -80,7 +80,6 @@ def test_march_with_shared_bodies(ports: list[tuple[int, int]], shaft: int) -> N
         errors.append(
             np.abs(march.state().speeds - exact.y[n:, -1]).max() / np.ptp(exact.y[n:], axis=1).max()
         )
-    print(errors)
     assert errors[2] < 5e-4
     assert errors[1] < 0.3 * errors[0]  # second order: 0.25
     assert errors[2] < 0.1 * errors[1]
