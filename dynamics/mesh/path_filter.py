@@ -5,10 +5,11 @@ A march sees a mesh at the ends of its steps only. Teeth that come in and out ex
 as a slow force. Here the potential of a mesh loses what the steps do not resolve before it is tabulated; it stays a
 potential. The force of the unfiltered law is kept beside it, to be recorded.
 
-The march takes the torque within a step as the cubic through its four last values (``hold_response``). The table
-anticipates what that makes of each of its harmonics.
+The march holds the torque within a step by Numerov's method (`dynamics.response.step_hold`). The table anticipates what
+that makes of each of its harmonics (``hold_response``).
 
-Source: Shannon 1949; the response of an interpolation as in Unser, IEEE Signal Process. Mag. 16, 1999.
+Source: Shannon 1949; Numerov's method as in Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I,
+III.10.
 """
 
 from dataclasses import dataclass
@@ -19,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 KEPT, LOST = 0.3, 0.7
 """Cycles in a step up to which all is kept, and from which all is lost."""
@@ -29,8 +29,6 @@ LEAST_CELLS = 128
 """Cells of a filtered base pitch, for the force that is recorded."""
 TAIL = 4.0
 """Steps that a filtered pair reaches beyond its path."""
-HOLD = (-2.0, -1.0, 0.0, 1.0)
-"""Instants, in steps from the start of a step, through which the torque within it is a cubic."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +40,7 @@ class PathFilter:
 
     step: float
 
-    def response(self, cycles: NDArray[np.floating[Any]]) -> ComplexArray:
+    def response(self, cycles: NDArray[np.floating[Any]]) -> Array:
         """Factor of parts of the potential that have so many cycles per path [1/m]."""
         per_step = cycles * self.step
         kept = np.clip((np.abs(per_step) - KEPT) / (LOST - KEPT), 0.0, 1.0)
@@ -59,14 +57,11 @@ class PathFilter:
         return min(max(wanted, LEAST_CELLS), most)
 
 
-def hold_response(cycles: Array) -> ComplexArray:
-    """What the hold of the march makes of an oscillation with so many cycles in a step: a factor, 1 for slow ones."""
-    points, weights = np.polynomial.legendre.leggauss(12)
-    at, weights = 0.5 * (points + 1.0), 0.5 * weights
-    total = np.zeros(np.shape(cycles), complex)
-    for node in HOLD:
-        others = [other for other in HOLD if other != node]
-        share = np.prod([(at - other) / (node - other) for other in others], axis=0)
-        turned = np.exp(2j * np.pi * np.multiply.outer(cycles, node - at))
-        total += turned @ (weights * share)
-    return total
+def hold_response(cycles: Array) -> Array:
+    """What the hold of the march makes of an oscillation with so many cycles in a step: displacement of a free mass
+    over the exact one, 1 for slow ones.
+
+    Numerov's x_1 - 2 x_0 + x_-1 = h^2 / 12 (f_1 + 10 f_0 + f_-1) with f = cos(theta n), exact -f / omega^2.
+    """
+    angle = np.maximum(2.0 * np.pi * np.abs(cycles), 1e-3)
+    return np.asarray(angle**2 * (10.0 + 2.0 * np.cos(angle)) / (24.0 * (1.0 - np.cos(angle))))

@@ -21,7 +21,7 @@ from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.periodic_response import TimeSettings, periodic_by_time
+from dynamics.response.periodic_response import DEFAULT_TIME, TimeSettings, periodic_by_time
 from dynamics.response.time_march import TimeMarch
 from dynamics.response.tooth_loss import Member, teeth_in_mesh
 
@@ -60,12 +60,16 @@ class Trip:
 
 @dataclass(frozen=True, kw_only=True)
 class SteadyStart:
-    """Steady state before an event: state, motor torque [N m], drag torques by name [N m]."""
+    """Steady state before an event: state, motor torque [N m], drag torques by name [N m].
+
+    doubts : why it is not steady; empty where it is
+    """
 
     speed: float
     state: DriveState
     drive_torque: float
     drags: Mapping[str, float]
+    doubts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,12 +102,17 @@ def steady_start(
     speed: float,
     torque: float,
     drags: Mapping[str, float],
-    cutoff: float = DEFAULT_CUTOFF,
+    settings: TimeSettings = DEFAULT_TIME,
 ) -> SteadyStart:
     """Steady state at a speed of the first pinion [rad/s] and a torque of the first mesh [N m], by time integration."""
-    settings = TimeSettings(cutoff=cutoff)
     found = periodic_by_time(system, laws, speed, LoopLoad(torque=torque), drags, settings)
-    return SteadyStart(speed=speed, state=found.end, drive_torque=found.drive_torque, drags=dict(drags))
+    return SteadyStart(
+        speed=speed,
+        state=found.end,
+        drive_torque=found.drive_torque,
+        drags=dict(drags),
+        doubts=() if found.steady else tuple(found.warnings),
+    )
 
 
 class EventMarch:

@@ -347,9 +347,13 @@ class TimeMarch:
         return march
 
     def _mean_load(self, mean_force: Array) -> Array:
-        """Loads (n,) on the freedoms under mean forces of the meshes, with motor, twist and drags of this instant."""
+        """Loads (n,) on the freedoms under mean forces of the meshes, with motor, twist and drags of this instant;
+        loads that alternate have no mean."""
         carried = self._carried
-        load = slow_loads(self.system) @ carried.slow + drag_loads(self.system, self.drags) @ carried.drags
+        load = (
+            slow_loads(self.system)[:, :2] @ carried.slow[:2]
+            + drag_loads(self.system, self.drags) @ carried.drags
+        )
         for law, (pinion, wheel), force in zip(self.laws, self.system.mesh_ports, mean_force):
             load[pinion] -= law.base_radius_1 * force
             load[wheel] += law.base_radius_2 * force

@@ -7,6 +7,7 @@ Simplifications that all rigs share are listed in the report (`run.warnings.not_
 only add to the margin, as the heat that a housing would take from the cooler, are none.
 """
 
+import math
 from collections.abc import Callable, Iterator
 
 from rigdesign.base.units import show
@@ -137,7 +138,8 @@ def long_periods(solved: SolvedRig, check: Check) -> Omissions:
         yield Omission(f"{what} (numerics.response_period = {rig.case.numerics.response_period})")
     lines = lines_left_out(rig, laws, last.system)
     if lines and solved.lateral is not None and check.value is not None:
-        share = max(mesh.share(lines) for stage in solved.lateral.of("held") for mesh in stage.meshes)
+        shares = (mesh.share(lines) for stage in solved.lateral.of("held") for mesh in stage.meshes)
+        share = max((one for one in shares if math.isfinite(one)), default=0.0)
         yield Omission(
             f"unbalance, bow and run-out of {', '.join(lines)}: {100.0 * share:.2g} % of the mesh force by its linear "
             f"response (numerics.response_period = {rig.case.numerics.response_period})",

@@ -116,9 +116,9 @@ def _displacements(
     springs = _elastic(reduced.n_rigid, stiffness, np.column_stack([teeth, standing]))
     rest = np.zeros(reduced.size)
     for bearing in drivetrain.bearings:
-        ports = reduced.ports[bearing.name][:2]
-        beyond = coefficients[bearing.name].position - ports @ springs.sum(axis=1)
-        rest += ports.T @ (running.bearings[bearing.name].padded()[0][:2, :2] @ beyond)
+        ports = reduced.ports[bearing.name]
+        beyond = coefficients[bearing.name].position - ports[:2] @ springs.sum(axis=1)
+        rest += ports.T @ (running.bearings[bearing.name].padded()[0][:, :2] @ beyond)
     return springs + np.outer(_elastic(reduced.n_rigid, stiffness, rest), [0.0, 1.0])
 
 

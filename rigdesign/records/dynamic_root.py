@@ -190,6 +190,8 @@ class _MeshCurves:
         strained = strain(own)
         speed = self.rig.shaft_speed(self.rig.mesh_gear(self.mesh, gear).shaft, self.state.speed)
         pinion = self.rig.shaft_speed(self.rig.mesh_gear(self.mesh, 0).shaft, self.state.speed)
+        # contact runs to the tip of the gear that drives, to the root of the driven one
+        turned = _sense(gear) * (1.0 if self.front else -1.0)
         return DynamicRootCurve(
             mesh=self.rig.mesh_labels[self.rig.mesh_names[self.mesh]],
             gear=dict(GEARS)[gear],
@@ -202,7 +204,7 @@ class _MeshCurves:
             dynamic=tuple(own.tolist()),
             quasi_static=tuple(quasi.tolist()),
             strain=tuple(strained.tolist()),
-            strain_rate=tuple((speed * np.gradient(strained, angle)).tolist()),
+            strain_rate=tuple((turned * speed * np.gradient(strained, angle)).tolist()),
             source=source,
         )
 

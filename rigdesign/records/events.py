@@ -16,11 +16,13 @@ from dynamics.response.event_march import (
     Brake,
     EventHistory,
     EventMarch,
+    SteadyStart,
     Trip,
     steady_start,
     time_to_standstill,
 )
 from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.periodic_response import TimeSettings
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.tooth_loss import without_teeth
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
@@ -118,11 +120,22 @@ class _EventPlace:
 
     def march(self) -> EventMarch:
         """From the steady state on."""
-        start = steady_start(
-            self.system, self.laws, self.pinion_speed, signed_torque(self.rig, self.point), self.drags,
-            self.rig.highest_mode,
-        )  # fmt: skip
+        start = self.start
         return EventMarch(self.system, self.laws, start, Watched(self.channels), self.rig.highest_mode)
+
+    @cached_property
+    def start(self) -> SteadyStart:
+        """Steady state before the event."""
+        settings = TimeSettings(period=self.rig.case.numerics.response_period, cutoff=self.rig.highest_mode)
+        torque = signed_torque(self.rig, self.point)
+        return steady_start(self.system, self.laws, self.pinion_speed, torque, self.drags, settings)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the march leaves out, and doubts about its start."""
+        names = dict.fromkeys(load.name for load in self.system.periodic_loads)
+        left_out = (f"loads that alternate with a shaft left out: {', '.join(names)}",) if names else ()
+        return (*left_out, *self.start.doubts)
 
     def drag(self, drive_speed: float) -> float:
         """Torque on the motor of all drags at a speed of it [N m]; of linear bearing drag as well."""
@@ -144,7 +157,7 @@ class _EventPlace:
         for share in DRAG_SHARES:
             found = drags_at(self.rig, self.warm, self.coupling_state, share * self.point.speed)
             torques.append(
-                -sum(float(self.system.drag_loads[k] @ self._ratios) * value for k, value in found.items())
+                -sum(float(self.system.drag_loads[k] @ self._ratios) * max(v, 0.0) for k, v in found.items())
             )
         return np.array(DRAG_SHARES), np.array(torques)
 
@@ -161,6 +174,7 @@ class _EventPlace:
             peaks=tuple(self._peaks(history)),
             reversals=tuple(self._reversals(history)),
             tripped=history.tripped,
+            notes=self.notes,
             time=[float(history.time[slot[-1]]) for slot in slots],
             curves=(
                 *(
@@ -270,7 +284,7 @@ def _tooth_loss(place: _EventPlace, event: ToothLoss) -> EventRecord:
         standstill = event.trip_delay + time_to_standstill(
             place.system, place.laws, place.drive_speed, brake, place.drag
         )
-    return replace(record, standstill=standstill, notes=notes)
+    return replace(record, standstill=standstill, notes=(*record.notes, *notes))
 
 
 def _trip(place: _EventPlace, event: ToothLoss) -> tuple[Trip | None, tuple[str, ...]]:
@@ -322,7 +336,7 @@ def _overspeed(place: _EventPlace, test: PointResult) -> EventRecord:
     speeds = [share * place.pinion_speed for share in (0.97, 1.0)]
     curve = periodic_response(
         place.system, place.laws, speeds, LoopLoad(torque=signed_torque(rig, place.point)), place.drags,
-        SweepSettings(cutoff=rig.highest_mode),
+        SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )  # fmt: skip
     notes: tuple[str, ...] = tuple(reason for _, reason in curve.failed)
     factors: dict[str, float] = {}

@@ -39,7 +39,7 @@ def slip_torque(pressure: float, diameter: float, length: float, friction: float
 
 
 def _capacity(rig: Rig, name: str, place: GearInMesh, point: PointResult, peak: float) -> PressFitCapacity:
-    entry = rig.mesh_gear(place.mesh, place.index)
+    entry, box = rig.mesh_gear(place.mesh, place.index), rig.mesh(rig.mesh_names[place.mesh])[0]
     disc, fit = seated_gear(rig, place)
     assert fit is not None
     state = point.last.coupling_state
@@ -62,7 +62,7 @@ def _capacity(rig: Rig, name: str, place: GearInMesh, point: PointResult, peak: 
         pressure_at_rest=seat_pressure(disc, 0.0, fit),
         pressure=pressure,
         friction=FRICTION,
-        slip_torque=slip_torque(pressure, entry.bore_diameter, entry.face_width, FRICTION),
+        slip_torque=slip_torque(pressure, entry.bore_diameter, box.body_width(name.split(".")[1]), FRICTION),
         peak_torque=peak,
     )
 

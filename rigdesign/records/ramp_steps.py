@@ -34,7 +34,7 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
     """From rest to the test point and back."""
     case = rig.case
     test, torque = rig.pinion_speed(case.schedule.test_speed), case.schedule.test_torque
-    start = case.limits.bearing.start_torque_limit or TOUCHING * torque
+    start = min(case.limits.bearing.start_torque_limit or TOUCHING * torque, USUAL_SHARE * torque)
     top = _highest_resonance(found)
     yield RampStep(
         action="brace at rest",

@@ -133,8 +133,8 @@ def _meshing(
                     ShaftAxis(
                         lateral=axis.lateral + side * pair.centre_distance,
                         vertical=axis.vertical,
-                        start=axis.place(known.position or 0.0) - (other.position or 0.0),
-                        direction=1.0,
+                        start=axis.place(known.position or 0.0) - axis.direction * (other.position or 0.0),
+                        direction=axis.direction,
                         sense=-axis.sense,
                     ),
                 )

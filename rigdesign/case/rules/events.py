@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.events import Overspeed, ToothLoss
+from rigdesign.case.events import EmergencyStop, Overspeed, ToothLoss
 from rigdesign.case.faults import unknown, written
 
 if TYPE_CHECKING:
@@ -41,6 +41,16 @@ def event_faults(case: "Case") -> Iterator[Fault]:
                 f"{at}.torque", show(event.torque, "torque"),
                 f"is not on the ramp: the schedule goes up to {show(most, 'torque')}",
                 "state a torque above 0 and up to it, or leave it out for the test torque",
+            )  # fmt: skip
+        if (
+            isinstance(event, EmergencyStop)
+            and event.stop_time is not None
+            and event.stop_time <= event.brake_onset
+        ):
+            yield Fault(
+                f"{at}.stop_time", show(event.stop_time, "time"),
+                f"is not above brake_onset {show(event.brake_onset, 'time')}, in which the brake comes on",
+                "state a longer stop_time, or a shorter brake_onset",
             )  # fmt: skip
         if isinstance(event, ToothLoss):
             yield from _tooth_loss(case, at, event)
