@@ -54,15 +54,15 @@ def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
     assert expected.agrees(entry["utilisation"], check.utilisation), (check.utilisation, entry["utilisation"])
 
 
-@pytest.mark.parametrize(("name", "fails"), [("uhcf_prototype", 3), ("loop_1to1", 0)])
+@pytest.mark.parametrize(("name", "fails"), [("uhcf_prototype", 4), ("loop_1to1", 0)])
 def test_the_terminal_says_what_decides_on_one_screen(
     name: str, fails: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Under 26 lines of at most 80 columns, and two for each failing check beside them."""
+    """Under 26 lines of at most 80 columns, and three for each failing check."""
     monkeypatch.setenv("COLUMNS", "80")
     print_checks(shipped(name), Path("out"))
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) < 26 + 2 * fails and all(len(line) <= 80 for line in lines)
+    assert len(lines) < 26 + 3 * fails and all(len(line) <= 80 for line in lines)
     assert lines[1].startswith(f"verdict: {shipped(name).verdict} (")
     assert sum(line.startswith("fail: ") for line in lines) == fails
     assert lines[-1] == "report: out/report.html"
@@ -121,11 +121,11 @@ def test_expected_results_are_carried_over_with_their_reasons() -> None:
     ]
 
 
-def test_the_report_of_the_prototype_stays_below_three_megabytes() -> None:
-    """With its turnable picture, the drawing library in it, and a still picture of every field."""
+def test_the_report_of_the_prototype_stays_below_three_and_a_half_megabytes() -> None:
+    """With its turnable picture, the drawing library in it, a still picture of every field and the vibration figures."""
     page = report_html(prototype())
     assert 'id="viewer-library"' in page
-    assert len(page.encode("utf-8")) < 3e6
+    assert len(page.encode("utf-8")) < 3.5e6
 
 
 def test_heat_of_the_rig_closes() -> None:
@@ -157,7 +157,7 @@ def test_given_losses_leave_the_dynamic_checks_out() -> None:
     assert skipped == {
         check.id
         for check in result.checks
-        if check.id.startswith(("dynamics.", "specimen.root_stress", "strength.", "flank."))
+        if check.id.startswith(("dynamics.", "lateral.", "specimen.root_stress", "strength.", "flank."))
         or check.id in ("bought_part.torque_flange", "bought_part.motor", "bought_part.load_unit")
     }
     assert result.losses and all(row.basis == "input" for row in result.losses)
