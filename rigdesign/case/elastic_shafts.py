@@ -62,7 +62,8 @@ def _hands(at: str, box: Gearbox) -> Iterator[AssumptionRecord]:
     """Hands that no key states, a record for every train of single-helical gears."""
     hands = helix_hands(box)
     for mesh in box.meshes.values():
-        if has_hands(mesh) and mesh.pinion not in hands:
+        listed = mesh.axis_inclination or mesh.axis_skew  # with the ends of the face that they open
+        if has_hands(mesh) and mesh.pinion not in hands and not listed:
             yield AssumptionRecord(
                 path=f"{at}.gears.{mesh.pinion}.helix_hand",
                 value="right",

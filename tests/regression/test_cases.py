@@ -122,7 +122,7 @@ def test_expected_results_are_carried_over_with_their_reasons() -> None:
 
 
 def test_the_report_of_the_prototype_stays_below_three_and_a_half_megabytes() -> None:
-    """With its turnable picture, the drawing library in it, a still picture of every field and the vibration figures."""
+    """With its turnable picture, the drawing library in it, a still picture of every field and of the vibration."""
     page = report_html(prototype())
     assert 'id="viewer-library"' in page
     assert len(page.encode("utf-8")) < 3.5e6
