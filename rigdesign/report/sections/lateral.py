@@ -52,10 +52,10 @@ def _values(result: RunResult, draw: Draw) -> Values:
 
 def _modes(stage: dict[str, Any]) -> list[dict[str, Any]]:
     """Lateral and torsional modes of a stage, the lowest first."""
-    told = [mode for mode in stage["modes"] if mode["family"] in ("lateral", "torsion")]
+    listed = [mode for mode in stage["modes"] if mode["family"] in ("lateral", "torsion")]
     highest = HIGHEST_RATIO * stage["speed_rpm"] / 60.0
-    near = [mode for mode in told if mode["frequency_Hz"] <= highest]
-    shown = near if len(near) >= LEAST_MODES else told[:LEAST_MODES]
+    near = [mode for mode in listed if mode["frequency_Hz"] <= highest]
+    shown = near if len(near) >= LEAST_MODES else listed[:LEAST_MODES]
     return [
         {
             "mode": mode["mode"],
