@@ -223,7 +223,10 @@ def smooth(law: MeshLaw) -> MeshLaw:
         stiffness=np.full((1, 5), law.mean_stiffness),
         gap=np.zeros((1, 5)),
         slice_shift=np.zeros(1),
+        slice_face=np.zeros(1),
         deviation_1=np.zeros((1, 5)),
         deviation_2=np.zeros((1, 5)),
+        back_deviation_1=None,
+        back_deviation_2=None,
         friction=0.0,
     )
