@@ -272,9 +272,8 @@ class TimeIntegration:
         done, block = 0, None
         before = march.accounts()
         while done < most and not search.steady:
-            if (
-                done >= most // 2
-            ):  # a block of 12 periods repeats for subharmonic motions of order 2, 3, 4, 6, 12
+            if self.settings.period == "mesh" and done >= most // 2:
+                # a block of 12 periods repeats for subharmonic motions of order 2, 3, 4, 6, 12
                 per_block = LONGEST * ceil(per_block / LONGEST)
             before = march.accounts()
             block = search.block(per_block, tables)

