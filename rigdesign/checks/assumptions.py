@@ -1,6 +1,7 @@
 """Which assumed inputs a check depends on: those its family declares (`registry.RuleFamily`) and its own limit."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import INPUTS, MOVE_NO_CHECK, OF_ONE_GEARBOX, Influence
@@ -79,6 +80,7 @@ def _computed_films(case: Case) -> list[str]:
     ]
 
 
+@lru_cache(maxsize=1 << 16)
 def is_under(path: str, part: str) -> bool:
     """Whether a path of the case is the part or lies under it."""
     names, wanted = path.split("."), part.split(".")

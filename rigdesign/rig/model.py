@@ -30,7 +30,14 @@ from rigdesign.rig.housing_seats import housing_supports
 from rigdesign.rig.influence_store import Progress
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
-from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
+from rigdesign.rig.resolution import (
+    AS_RULED,
+    Coarsening,
+    counted_frequency,
+    highest_bending_mode,
+    highest_mode,
+    with_elements,
+)
 from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, shaft_axes
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
@@ -176,6 +183,15 @@ class Rig:
         rig.__dict__["models"] = models
         return rig
 
+    def coarsened(self, coarsening: Coarsening) -> "Rig":
+        """This rig with its loop divided otherwise; what the division leaves as it is, is not computed again."""
+        rig = replace(self, coarsening=coarsening)
+        kept = ["models", "topographies", "axes", "_seats"]
+        if coarsening.elements == self.coarsening.elements:
+            kept += ["drivetrain", "elastic"]
+        rig.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
+        return rig
+
     @cached_property
     def conduction(self) -> Mapping[str, ConductionSetup]:
         """Conduction matrices of every housing, assembled once."""
@@ -237,7 +253,7 @@ class Rig:
         return ElasticDrivetrain(
             rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
-            cutoff=self.highest_mode,
+            cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain)),
             pressed=frozenset(pressed_bearings(self.case)),
         )
 

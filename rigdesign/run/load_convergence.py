@@ -11,9 +11,12 @@ itself is not marched again. Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 12
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks.dynamics import loaded_stages
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.loads import BracingState, LoadedCircuit, mesh_models, respond
@@ -28,6 +31,7 @@ HALVED = (Coarsening(slices=2), Coarsening(elements=2))
 ORDER = 2.0
 RPM = math.pi / 30.0
 Value = Callable[[CurvePoint, int], float]
+Place = tuple[str, float, float, str]
 Rigs = tuple[Rig, ...]
 """As the result has it, with half the slices, with elements twice as long."""
 
@@ -41,33 +45,52 @@ class _Loaded:
     drags: Mapping[str, float]
     setting: BracingState
 
-    def _circuit(self, rig: Rig) -> LoadedCircuit:
-        bearings = solve_bearings(rig, self.point, self.coupling_state)
-        return LoadedCircuit(
-            self.point,
-            mesh_models(rig, self.point, self.coupling_state),
-            self.drags,
-            self.setting,
-            loop_system(rig, self.point, self.coupling_state, bearings),
-        )
+    @property
+    def place(self) -> Place:
+        """What tells it from other points of the rig: stage, speed [rad/s], torque [N m] and kind of bracing."""
+        return self.point.stage, self.point.speed, self.point.torque, self.setting.mode
 
     def responses(self, rigs: Rigs) -> tuple[CurvePoint, ...]:
         """Of each rig; nothing where one of them finds none."""
+        systems: dict[int, LinearSystem] = {}
         try:
-            return tuple(respond(rig, self._circuit(rig)) for rig in rigs)
+            return tuple(respond(rig, self._circuit(rig, systems)) for rig in rigs)
         except DynamicsNotConverged:
             return ()
 
+    def _circuit(self, rig: Rig, systems: dict[int, LinearSystem]) -> LoadedCircuit:
+        """Rigs with shaft elements of one length share their matrices."""
+        elements = rig.coarsening.elements
+        if elements not in systems:
+            bearings = solve_bearings(rig, self.point, self.coupling_state)
+            systems[elements] = loop_system(rig, self.point, self.coupling_state, bearings)
+        models = mesh_models(rig, self.point, self.coupling_state)
+        return LoadedCircuit(self.point, models, self.drags, self.setting, systems[elements])
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """The error of one check: its key, its mesh, where the response behind it is, and what it takes from it."""
+
+    key: str
+    mesh: int
+    loaded: _Loaded
+    value: Value
+
 
 def load_errors(solved: SolvedRig) -> tuple[DiscretisationRow, ...]:
-    """Discretisation errors of the checks on dynamic loads by id; none without loads or where no response is found."""
+    """Discretisation errors of the checks on dynamic loads by id; none without loads or where no response is found.
+
+    Checks that look at the same place share its responses; the places are solved on all cores.
+    """
     if solved.run is None:
         return ()
-    rigs = (solved.rig, *(replace(solved.rig, coarsening=halved) for halved in HALVED))
-    rows = [*_held(solved, rigs)]
-    for mesh in range(len(solved.rig.mesh_names)):
-        rows += _run(solved, rigs, mesh)
-    return tuple(rows)
+    rigs = (solved.rig, *(solved.rig.coarsened(halved) for halved in HALVED))
+    wanted = [*_held(solved), *_in_the_run(solved)]
+    places = {one.loaded.place: one.loaded for one in wanted}
+    with BackgroundTasks([partial(loaded.responses, rigs) for loaded in places.values()]) as tasks:
+        found = dict(zip(places, tasks.results(), strict=True))
+    return tuple(_row(solved, one, found[one.loaded.place]) for one in wanted if found[one.loaded.place])
 
 
 def missing_load_errors(solved: SolvedRig) -> tuple[str, ...]:
@@ -86,35 +109,29 @@ def missing_load_errors(solved: SolvedRig) -> tuple[str, ...]:
     return tuple(name for name in wanted if name not in known)
 
 
-def _held(solved: SolvedRig, rigs: Rigs) -> Iterator[DiscretisationRow]:
+def _held(solved: SolvedRig) -> Iterator[_Wanted]:
     """K_V of every mesh at the held stage where it is highest."""
-    found: dict[str, tuple[CurvePoint, ...]] = {}
     for mesh in range(len(solved.rig.mesh_names)):
         worst = max(
             (point for point in solved.points if point.last.response is not None),
             key=lambda point: _factor(point.last.response, mesh) if point.last.response else 0.0,
         )
-        stage, last = worst.point.stage, worst.last
         assert worst.setting is not None
-        if stage not in found:
-            loaded = _Loaded(worst.point, last.coupling_state, last.drags, worst.setting)
-            found[stage] = loaded.responses(rigs)
-        yield from _row(solved, "dynamic_factor", mesh, found[stage], _factor)
+        loaded = _Loaded(worst.point, worst.last.coupling_state, worst.last.drags, worst.setting)
+        yield _Wanted("dynamic_factor", mesh, loaded, _factor)
 
 
-def _run(solved: SolvedRig, rigs: Rigs, mesh: int) -> Iterator[DiscretisationRow]:
-    """Highest peak and least share of the time run, in the stages that the checks look at."""
-    loads = loaded_stages(solved, mesh)
-    if not loads:
-        return
-    peak = max(loads, key=lambda load: load.peak)
-    least = min(loads, key=lambda load: load.least_share)
-    for key, stage, speed, mean, value in (
-        ("ramp_peak", peak.stage, peak.speed, peak.mean, _factor),
-        ("contact_margin", least.stage, least.least_share_speed, least.least_share_mean, _least),
-    ):
-        loaded = _at(solved, mesh, stage, speed, mean)
-        yield from _row(solved, key, mesh, loaded.responses(rigs), value)
+def _in_the_run(solved: SolvedRig) -> Iterator[_Wanted]:
+    """Highest peak and least share of every mesh in the time run, in the stages that the checks look at."""
+    for mesh in range(len(solved.rig.mesh_names)):
+        loads = loaded_stages(solved, mesh)
+        if loads:
+            peak = max(loads, key=lambda load: load.peak)
+            least = min(loads, key=lambda load: load.least_share)
+            at_peak = _at(solved, mesh, peak.stage, peak.speed, peak.mean)
+            at_least = _at(solved, mesh, least.stage, least.least_share_speed, least.least_share_mean)
+            yield _Wanted("ramp_peak", mesh, at_peak, _factor)
+            yield _Wanted("contact_margin", mesh, at_least, _least)
 
 
 def _at(solved: SolvedRig, mesh: int, stage: str, speed: float, torque: float) -> _Loaded:
@@ -136,23 +153,19 @@ def _at(solved: SolvedRig, mesh: int, stage: str, speed: float, torque: float) -
     )
 
 
-def _row(
-    solved: SolvedRig, key: str, mesh: int, responses: tuple[CurvePoint, ...], value: Value
-) -> Iterator[DiscretisationRow]:
-    """Error of the check ``key`` of a mesh from the responses of the rigs."""
-    if not responses:
-        return
+def _row(solved: SolvedRig, wanted: _Wanted, responses: tuple[CurvePoint, ...]) -> DiscretisationRow:
+    """Error of a check from the responses of the rigs."""
     numerics = solved.case.numerics
     ruled = (
         numerics.slices_spur is None and numerics.slices_helical is None,
         numerics.shaft_element_length is None,
     )
-    fine, *halved = (value(response, mesh) for response in responses)
+    fine, *halved = (wanted.value(response, wanted.mesh) for response in responses)
     shares = [1.0 / (2.0**ORDER - 1.0) if rule else 1.0 for rule in ruled]
     parts = [share * abs(fine - other) for share, other in zip(shares, halved, strict=True)]
-    yield DiscretisationRow(
-        quantity=f"dynamics.{key}.{solved.label(mesh)}", gearbox="", stage="", value=fine, error=sum(parts),
-        unit="-", order=ORDER if all(ruled) else None,
+    return DiscretisationRow(
+        quantity=f"dynamics.{wanted.key}.{solved.label(wanted.mesh)}", gearbox="", stage="", value=fine,
+        error=sum(parts), unit="-", order=ORDER if all(ruled) else None,
         method=f"periodic response at {responses[0].speed / RPM:.0f} rpm of the first pinion, half the slices "
         f"{halved[0]:.4f}, elements twice as long {halved[1]:.4f}"
         + ("" if all(ruled) else "; whole change where the case states slices or element length"),

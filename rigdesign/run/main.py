@@ -7,12 +7,14 @@ they give and make the last digits of a result depend on the machine's load.
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from types import MappingProxyType
 
 from threadpoolctl import threadpool_limits
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
 from rigdesign.checks import all_checks
@@ -206,16 +208,17 @@ def _doubts(case: Case) -> list[Finding]:
 
 def losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[PlacedLoss]]:
     """Losses at the end of every rotating stage: coupled at the held ones, with their warm rig at the others."""
-    held = {point.point.stage: point for point in points}
     test = governing_point(points)
-    losses: dict[str, Sequence[PlacedLoss]] = {}
-    for stage in rig.case.schedule.resolved():
-        if stage.name in held:
-            losses[stage.name] = held[stage.name].last.losses
-        elif stage.speed_end > 0.0:
-            point = OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
-            losses[stage.name] = stage_losses(rig, point, test, dynamic=True).losses
-    return losses
+    losses: dict[str, Sequence[PlacedLoss]] = {point.point.stage: point.last.losses for point in points}
+    others = [
+        OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
+        for stage in rig.case.schedule.resolved()
+        if stage.speed_end > 0.0 and stage.name not in losses
+    ]
+    solve = partial(stage_losses, rig, test=test, dynamic=True)
+    with BackgroundTasks([partial(solve, point) for point in others]) as tasks:
+        losses |= {found.point.stage: found.losses for found in tasks.results()}
+    return {stage.name: losses[stage.name] for stage in rig.case.schedule.resolved() if stage.name in losses}
 
 
 def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:

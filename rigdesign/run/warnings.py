@@ -17,7 +17,6 @@ from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
-from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
@@ -236,7 +235,7 @@ def _sampling(solved: SolvedRig) -> Iterator[str]:
         speed = solved.rig.drive_speed(solved.test.point.speed)
         audits = sampling_audit(drivetrain, speed, solved.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
-        modes = held_modes(solved.rig, solved.test)
+        modes = () if solved.loads is None else solved.loads.modes
         yield from (
             f"mode of {mode.frequency:.0f} Hz ({mode.name}): damping ratio = {mode.damping_ratio:.3g}, limit 0: it is "
             f"unstable at stage {solved.test.point.stage}, the shaft whirls; load its bearings more or change them"
