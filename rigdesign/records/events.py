@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_channels import Channel, Watched, elastic_channels, torsional_channels
+from dynamics.response.event_channels import Channel, Watched, bearing_channels, torque_channels
 from dynamics.response.event_march import (
     Brake,
     EventHistory,
@@ -37,6 +37,7 @@ from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.resonances import LEAST_GAIN
+from rigdesign.records.section_torques import twist_rows_of
 from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal
 from rigdesign.rig.model import Rig
 
@@ -98,12 +99,10 @@ class _EventPlace:
         )
         bearings = solve_bearings(rig, point, state)
         system = loop_system(rig, point, state, bearings)
-        assert rig.drivetrain is not None
-        channels = (
-            torsional_channels(rig.drivetrain, system)
-            if rig.shaft_model == "torsional"
-            else elastic_channels(rig.elastic.seen, system, running_state(rig, point, state, bearings))
-        )
+        channels = torque_channels(twist_rows_of(rig, system))
+        if rig.shaft_model != "torsional":
+            running = running_state(rig, point, state, bearings)
+            channels += bearing_channels(rig.elastic.seen, system, running)
         laws = periodic_laws(rig, shifted_laws(rig, mesh_models(rig, point, state), CONTROLLED))
         drags = drags_at(rig, test.last, state, speed)
         return cls(name, event.kind, rig, test.last, point, state, system, laws, channels, drags)
