@@ -119,8 +119,7 @@ class _EventPlace:
 
     def march(self) -> EventMarch:
         """From the steady state on."""
-        start = self.start
-        return EventMarch(self.system, self.laws, start, Watched(self.channels), self.rig.highest_mode)
+        return EventMarch(self.system, self.laws, self.start, Watched(self.channels), self.rig.highest_mode)
 
     @cached_property
     def start(self) -> SteadyStart:
