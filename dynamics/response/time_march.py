@@ -68,7 +68,7 @@ class TimeMarch:
         laws : of the meshes, in the order of ``system.mesh_ports``
         start : angles, speeds and twist of the first instant
         settings : steps and what is kept
-        loads : motor and drag torques of the first instant; their names say which drags may act
+        loads : torques that act at the first instant; the names of drags say which may act
         model : ``march_model`` of the same system, laws and drags, to be shared between runs; made when left out
 
         Raises
@@ -123,6 +123,7 @@ class TimeMarch:
                     )
         slow = np.zeros(n_slow)
         slow[:2] = loads.drive_torque, start.twist
+        slow[2:] = 0.0 if loads.periodic is None else loads.periodic
         braking = np.zeros(n_drags)
         braking[self._places] = list(loads.drag_torques.values())
         speeds = columns.T @ start.speeds

@@ -22,12 +22,11 @@ from dynamics.response.event_channels import Watched, bearing_channels, torque_c
 from dynamics.response.event_march import (
     Brake,
     EventMarch,
-    SteadyStart,
     Trip,
-    steady_start,
     time_to_standstill,
 )
 from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.steady_start import SteadyStart, steady_start
 from dynamics.response.tooth_loss import teeth_in_mesh, without_teeth
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.rig import prototype, prototype_laws
