@@ -372,9 +372,9 @@ class TimeMarch:
             self._apart[mesh] = past * self._apart[mesh] - moved
         self._apart_since = 0
 
-    def preset_speed_integral(self, torque: float) -> None:
-        """Let the speed controller start from a motor torque [N m]."""
-        self._carried.controller[0] = torque
+    def preset_integrals(self, torque: float, twist: float = 0.0) -> None:
+        """Let the controllers start from a motor torque [N m] and a twist beside that given [rad]."""
+        self._carried.controller[:2] = torque, twist
 
     def pinion_angle(self) -> float:
         """Angle of the pinion of the first mesh at this instant [rad]."""

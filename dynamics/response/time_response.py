@@ -33,6 +33,7 @@ from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
 from dynamics.response.march_loads import march_model
 from dynamics.response.time_march import CREEP_SHARE, TimeMarch
+from dynamics.response.turning_start import turning_start
 
 Array = NDArray[np.float64]
 
@@ -124,7 +125,8 @@ def run_schedule(
     drags: Mapping[str, DragCurve] | None = None,
     sampling: Sampling = DEFAULT_SAMPLING,
 ) -> TimeResponse:
-    """March over a schedule, from a rigid rotation at its first speed, wound up by its first torque.
+    """March over a schedule, from a rigid rotation at its first speed, wound up by its first torque and bent by the
+    loads that alternate with a shaft (``turning_start``).
 
     Parameters
     ----------
@@ -162,11 +164,12 @@ def run_schedule(
         twist=None if command.twist is None else float(command.twist[0]),
     )
     rises = {name: _steepest(curve) for name, curve in curves.items()}
-    wound = wound_state(system, laws, float(command.speed[0]), load, drag_now)
+    turning = turning_start(system, laws, float(command.speed[0]))
+    wound = wound_state(system, laws, float(command.speed[0]), load, drag_now, turning.load)
     march = TimeMarch(
         system,
         laws,
-        wound.state,
+        replace(wound.state, speeds=wound.state.speeds + turning.speeds),
         MarchSettings(
             step=1.0 / sample_rate / substeps,
             substeps=substeps,
@@ -174,17 +177,18 @@ def run_schedule(
             accounts=sampling.keep_accounts,
             record_all=False,
         ),
-        DriveLoads(drive_torque=wound.drive_torque, drag_torques=drag_now),
+        DriveLoads(drive_torque=wound.drive_torque, drag_torques=drag_now, periodic=turning.values),
         march_model(system, laws, names, sampling.cutoff, rises),
     )
     models = {id(system): march.model}
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
     control = motor.speed_control or default_speed_control(system, laws, float(limits[0]))
-    march.preset_speed_integral(wound.drive_torque)
     bracing = None if command.torque is None else TorqueControl(stiffness=wound.loop_stiffness)
     feed_forward = (
         (np.zeros(1), np.zeros(1)) if command.torque is None else _twists(system, laws, command.torque)
     )
+    ahead = 0.0 if load.torque is None else wound.state.twist - float(np.interp(load.torque, *feed_forward))
+    march.preset_integrals(wound.drive_torque, ahead)
     tables = drag_tables(curves)
     inertia = float(ratios @ system.inertia @ ratios) / drive_ratio**2
 
