@@ -35,9 +35,9 @@ from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.resonances import LEAST_GAIN
-from rigdesign.records.section_torques import twist_rows_of
 from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal
 from rigdesign.rig.model import Rig
 
