@@ -1,6 +1,7 @@
 """Rows of the torques in shafts and joints of the elastic rig, on the freedoms of its linear system."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +33,7 @@ def elastic_twist_rows(seen: SeenRig, system: LinearSystem) -> TwistRows:
     springs = []
     for spring in _springs(model):
         row = seen.reduced.rows(spring.row) @ back
-        springs.append(TwistSpring(spring.section, row, spring.stiffness, spring.damping))
+        springs.append(replace(spring, row=row))
     return twist_rows(springs, model.rig.drivetrain.bracing_coupling)
 
 
@@ -55,10 +56,10 @@ def _springs(model: ElasticModel) -> Iterator[TwistSpring]:
 def _elements(model: ElasticModel, shaft: Shaft) -> Iterator[TwistSpring]:
     nodes = model.freedoms.nodes[shaft.name]
     lengths = np.diff(nodes.positions)
-    for i, section in enumerate(section_of_elements(shaft, nodes.positions)):
+    for i, (section, middle) in enumerate(section_of_elements(shaft, nodes.positions)):
         assert section.section is not None
         row = np.zeros(model.size)
         first = nodes.first + 6 * i + TURN
         row[first], row[first + 6] = 1.0, -1.0
         stiffness = shaft.shear_modulus * section.section.polar_moment / float(lengths[i])
-        yield TwistSpring(section, row, stiffness, shaft.damping_time * stiffness)
+        yield TwistSpring(section, row, stiffness, shaft.damping_time * stiffness, middle)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import pinion_ratios
@@ -70,6 +71,7 @@ class Sampling:
     keep_accounts : integrate the energy of every joint and contact; without it the run is about twice as fast and
         its energy balance is None
     cutoff : modes above this frequency keep their static effect only [Hz]
+    sections : springs whose largest alternating torque is sought; none when left out
 
     Raises DynamicsInputError for fewer than 4 internal steps.
     """
@@ -81,6 +83,7 @@ class Sampling:
     keep_channels: bool = True
     keep_accounts: bool = True
     cutoff: float = DEFAULT_CUTOFF
+    sections: TwistRows | None = None
 
     def __post_init__(self) -> None:
         if self.substeps < LEAST_SUBSTEPS:

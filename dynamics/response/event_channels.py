@@ -4,18 +4,14 @@ Each channel is a row, or two across a shaft, on angles and speeds of the freedo
 any instant of a march.
 """
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import Drivetrain, joints
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.shaft import discretise, element_sections
-from dynamics.elastic_rig.beam import elements_of, stiffness_matrices
+from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.elastic_rig.running_state import RunningState
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.response.march_inputs import DriveState
@@ -39,102 +35,41 @@ class Channel:
     twist: float = 0.0
 
 
-def torsional_channels(drivetrain: Drivetrain, system: LinearSystem) -> tuple[Channel, ...]:
-    """Torques of all elements of the shafts and of the couplings; the system is ``assemble`` of the drivetrain."""
-    n, found, count = len(system.inertia), [], dict.fromkeys((s.name for s in drivetrain.shafts), 0)
-    names = {shaft.name: _element_names(drivetrain, shaft.name) for shaft in drivetrain.shafts}
-    for joint in joints(drivetrain):
-        if joint.kind not in ("shaft", "coupling"):
-            continue
-        row = np.zeros((1, n))
-        row[0, joint.dof_a], row[0, joint.dof_b] = 1.0, -1.0
-        braced = joint.kind == "coupling" and joint.name == drivetrain.bracing_coupling
-        place = joint.name
-        if joint.kind == "shaft":
-            place = names[joint.name][count[joint.name]]
-            count[joint.name] += 1
-        found.append(
-            Channel(
-                place=place,
-                kind="shaft" if joint.kind == "shaft" else "coupling",
-                angle=joint.stiffness * row,
-                speed=joint.damping * row,
-                twist=-joint.stiffness if braced else 0.0,
+def torque_channels(rows: TwistRows) -> tuple[Channel, ...]:
+    """Torques of all elements of the shafts and of the couplings, on the freedoms of ``rows``."""
+    found = []
+    for i, (section, middle) in enumerate(zip(rows.sections, rows.middle)):
+        if section.kind == "shaft" or section.kind == "coupling":
+            place = f"{section.part} {1e3 * middle:.1f} mm" if section.kind == "shaft" else section.part
+            found.append(
+                Channel(
+                    place=place,
+                    kind=section.kind,
+                    angle=rows.stiffness[i] * rows.rows[i : i + 1],
+                    speed=rows.damping[i] * rows.rows[i : i + 1],
+                    twist=float(-rows.stiffness[i] * rows.bracing[i]),
+                )
             )
-        )
     return tuple(found)
 
 
-def elastic_channels(seen: SeenRig, system: LinearSystem, state: RunningState) -> tuple[Channel, ...]:
-    """Torques as of the torsional rig, force on every bearing, and velocity of every journal against its seat.
+def bearing_channels(seen: SeenRig, system: LinearSystem, state: RunningState) -> tuple[Channel, ...]:
+    """Force on every bearing, and velocity of every journal against its seat.
 
     system : of ``seen`` at this running state. The force of a film is its tangent times the displacement by the
     meshes; the weight of the shafts is left out.
     """
-    model = seen.reduced.model
     back = np.linalg.inv(system.coordinates.freedoms)
-
-    def own(rows: Array) -> Array:
-        return np.asarray(seen.reduced.rows(np.atleast_2d(rows)) @ back)
-
-    found = [*_beams(seen, own)]
-    for joint in model.joints:
-        if joint.kind == "coupling" and "turn" in joint.directions:
-            turn = joint.directions.index("turn")
-            braced = joint.name == model.rig.drivetrain.bracing_coupling
-            found.append(
-                Channel(
-                    place=joint.name,
-                    kind="coupling",
-                    angle=own(joint.load("turn")),
-                    speed=own(joint.damping[turn] @ joint.rows),
-                    twist=-float(joint.stiffness[turn, turn]) if braced else 0.0,
-                )
-            )
+    zero = np.zeros((2, len(system.inertia)))
+    found = []
     for name, coefficients in state.bearings.items():
         stiffness, damping = coefficients.padded()
-        rows = own(model.ports[name])
-        zero = np.zeros((2, len(system.inertia)))
+        rows = np.asarray(seen.reduced.rows(seen.reduced.model.ports[name]) @ back)
         found.append(
             Channel(place=name, kind="bearing", angle=stiffness[:2] @ rows, speed=damping[:2] @ rows)
         )
         found.append(Channel(place=name, kind="journal velocity", angle=zero, speed=rows[:2]))
     return tuple(found)
-
-
-def _beams(seen: SeenRig, own: Callable[[Array], Array]) -> Iterator[Channel]:
-    rig = seen.reduced.model.rig
-    for shaft in rig.drivetrain.shafts:
-        nodes = seen.reduced.model.freedoms.nodes[shaft.name]
-        elements = elements_of(
-            shaft, np.diff(nodes.positions), element_sections(shaft, nodes.positions), rig.shear, rig.torsional_inertia
-        )  # fmt: skip
-        springs = stiffness_matrices(elements)[:, 3, 3]
-        rows = np.zeros((len(nodes.positions), seen.reduced.model.size))
-        rows[np.arange(len(rows)), nodes.first + 3 + 6 * np.arange(len(rows))] = 1.0
-        turns = own(rows)
-        for i, spring in enumerate(springs):
-            row = float(spring) * (turns[i] - turns[i + 1])[None, :]
-            yield Channel(
-                place=_named(shaft.name, nodes.positions[i], nodes.positions[i + 1]),
-                kind="shaft",
-                angle=row,
-                speed=shaft.damping_time * row,
-            )
-
-
-def _element_names(drivetrain: Drivetrain, shaft: str) -> list[str]:
-    places = [(part.shaft, part.position) for part in drivetrain.gears]
-    places += [(part.shaft, part.position) for part in drivetrain.bearings]
-    places += [(part.shaft, part.position) for part in drivetrain.drag_places]
-    places.append((drivetrain.motor.shaft, drivetrain.motor.position))
-    stations = tuple(position for own, position in places if own == shaft)
-    positions = discretise(drivetrain.shaft(shaft), stations).positions
-    return [_named(shaft, a, b) for a, b in pairwise(positions)]
-
-
-def _named(shaft: str, start: float, end: float) -> str:
-    return f"{shaft} {500.0 * (start + end):.1f} mm"
 
 
 class Watched:

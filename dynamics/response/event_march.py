@@ -1,10 +1,10 @@
 """March through an event: teeth lost at an instant, the motor off and the brake on, what parts of the rig feel.
 
 It starts from the steady state at a speed and torque, with the twist of the bracing held: nothing that braces follows
-within the milliseconds of an event.
+within the milliseconds of an event. Loads that alternate with a shaft act before and after it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,22 +13,22 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.event_channels import Watched
 from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
+from dynamics.response.march_inputs import DriveLoads
 from dynamics.response.march_loads import march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.periodic_response import DEFAULT_TIME, TimeSettings, periodic_by_time
+from dynamics.response.steady_start import SAMPLE_RATE, SteadyStart, constant_drags, march_settings
 from dynamics.response.time_march import TimeMarch
 from dynamics.response.tooth_loss import Member, teeth_in_mesh
+from dynamics.response.turning_loads import TurningLoads, acting
 
 Array = NDArray[np.float64]
 
-SAMPLE_RATE, SUBSTEPS = 80e3, 4
-"""Samples of the channels per second, and internal steps in one."""
+BEFORE = 0.03
+"""Time before the event over which means are taken at most, beyond a mesh period [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,26 +59,13 @@ class Trip:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SteadyStart:
-    """Steady state before an event: state, motor torque [N m], drag torques by name [N m].
-
-    doubts : why it is not steady; empty where it is
-    """
-
-    speed: float
-    state: DriveState
-    drive_torque: float
-    drags: Mapping[str, float]
-    doubts: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
 class EventHistory:
     """Samples from the instant of the event on, n of them.
 
     time : (n,) [s]; speed : (n,) of the first pinion [rad/s]; drive : (n,) motor torque [N m]
     least, greatest : (n_meshes, n) torque at the pinion in every sample, positive on its front flank [N m]
-    values : (n_channels, n); before : (n_channels,) mean over a mesh period before the event
+    values : (n_channels, n); before : (n_channels,) mean over a mesh period before the event, over a turn of the first
+        pinion, ``BEFORE`` [s] at most, where loads alternate with a shaft
     before_torque : (n_meshes,) mean then; open_share : (n_meshes,) share of the time without contact
     tripped : first crossing of the limit [s], None without one; braked : begin of the brake [s], None
     """
@@ -96,25 +83,6 @@ class EventHistory:
     braked: float | None
 
 
-def steady_start(
-    system: LinearSystem,
-    laws: Sequence[MeshLaw],
-    speed: float,
-    torque: float,
-    drags: Mapping[str, float],
-    settings: TimeSettings = DEFAULT_TIME,
-) -> SteadyStart:
-    """Steady state at a speed of the first pinion [rad/s] and a torque of the first mesh [N m], by time integration."""
-    found = periodic_by_time(system, laws, speed, LoopLoad(torque=torque), drags, settings)
-    return SteadyStart(
-        speed=speed,
-        state=found.end,
-        drive_torque=found.drive_torque,
-        drags=dict(drags),
-        doubts=() if found.steady else tuple(found.warnings),
-    )
-
-
 class EventMarch:
     """Marches of one drivetrain from one steady state through events."""
 
@@ -130,6 +98,7 @@ class EventMarch:
         self._system, self._laws, self._start, self._watched = system, tuple(laws), start, watched
         self._model = march_model(system, laws, tuple(start.drags), cutoff)
         self._cutoff = cutoff
+        self._turning = TurningLoads(system)
 
     def run(
         self,
@@ -163,26 +132,30 @@ class EventMarch:
         return teeth_in_mesh(law, float(pinion), float(approach), member, count)
 
     def _period(self) -> float:
-        return 2.0 * np.pi / self._start.speed / self._laws[0].teeth_1
+        """Time before the event over which means are taken [s]."""
+        turn, teeth = float(2.0 * np.pi / self._start.speed), self._laws[0].teeth_1
+        whole = int(BEFORE / turn * teeth) if acting(self._system.periodic_loads) else 1
+        return turn / teeth * min(max(whole, 1), teeth)
 
     def _marched(
         self, laws: tuple[MeshLaw, ...], duration: float, trip: Trip | None, brake: Brake | None
     ) -> dict[str, Any]:
-        start, watched = self._start, self._watched
+        start, watched, turning = self._start, self._watched, self._turning
+        speeds = turning.speeds(start.state.speeds)
+        angles = start.angle * pinion_ratios(self._system, laws)[turning.dofs]
         march = TimeMarch(
             self._system,
             laws,
             start.state,
-            MarchSettings(
-                step=1.0 / SAMPLE_RATE / SUBSTEPS, substeps=SUBSTEPS, cutoff=self._cutoff, accounts=False,
-                record_all=False,
+            march_settings(self._cutoff),
+            DriveLoads(
+                drive_torque=start.drive_torque,
+                drag_torques=start.drags,
+                periodic=turning.values(angles, speeds),
             ),
-            DriveLoads(drive_torque=start.drive_torque, drag_torques=start.drags),
             self._model,
-        )  # fmt: skip
-        tables = DragTables(
-            torque=np.array([[value, value] for value in start.drags.values()]).reshape(len(start.drags), 2)
         )
+        tables = constant_drags(start.drags)
         n = max(2, round(duration * SAMPLE_RATE))
         radius = np.array([law.base_radius_1 for law in laws])
         values, speed, drive = np.empty((len(watched.channels), n)), np.empty(n), np.empty(n)
@@ -197,10 +170,13 @@ class EventMarch:
                 since = now - tripped - trip.delay
                 share = float(np.clip(since / brake.onset, 0.0, 1.0)) if brake.onset else float(since >= 0.0)
                 drive[i] += share * (-brake.torque - start.drive_torque)
-            given = np.zeros((1, 4 + len(self._system.periodic_loads)))
-            given[0, 0], given[0, 1] = drive[i], start.state.twist
+            angles = angles + speeds / SAMPLE_RATE
+            given = np.concatenate(([drive[i], start.state.twist, 0.0, 0.0], turning.values(angles, speeds)))[
+                None
+            ]
             block = march.advance(given, drags=tables)
             state = march.state()
+            speeds = turning.speeds(state.speeds)
             values[:, i], speed[i] = watched.read(state), state.speeds[first]
             torque = radius[:, None] * block.force
             least[:, i], greatest[:, i] = torque.min(axis=1), torque.max(axis=1)
@@ -222,6 +198,10 @@ def time_to_standstill(
     drag: Callable[[float], float],
 ) -> float:
     """Time in which the rig comes to rest [s], as a rigid rotation.
+
+    Enough for the time: brake and drags act for seconds on the momentum of the lines, in which vibration leaves no
+    trace but the power of its damping. Not for forces on the way: what the rig feels as it passes its resonances while
+    it slows down is that of a ``run_down`` stage of the time run.
 
     speed : of the drive freedom [rad/s]; drag : torque on that freedom of all losses at a speed of it [N m]
 

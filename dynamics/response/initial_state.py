@@ -50,6 +50,7 @@ def wound_state(
     speed: float,
     load: LoopLoad,
     drag_torques: Mapping[str, float] | None = None,
+    outer: Array | None = None,
 ) -> WoundLoop:
     """Rigid rotation, wound up by the load of the loop.
 
@@ -60,6 +61,7 @@ def wound_state(
     speed : of the pinion of the first mesh [rad/s]
     load : torque of the first mesh, or bracing twist
     drag_torques : by name of ``system.drag_loads`` [N m]
+    outer : (n,) further load on each freedom, none when left out
 
     Raises
     ------
@@ -74,7 +76,11 @@ def wound_state(
             f"control_mesh = {load.control_mesh}: time integration controls mesh 0; use harmonic balance alone"
         )
     ratios = pinion_ratios(system, laws)
-    winding = _Winding(system, laws, ratios, speed, drag_torques or {})
+    braked = sum(
+        (value * system.drag_loads[name] for name, value in (drag_torques or {}).items()),
+        np.zeros(len(ratios)),
+    )
+    winding = _Winding(system, laws, ratios, speed, braked if outer is None else braked + outer)
     unknowns = winding.solve(load.torque, load.twist)
     n = len(system.inertia)
     state = DriveState(angles=unknowns[:n], speeds=speed * ratios, twist=float(unknowns[n + 1]))
@@ -90,7 +96,7 @@ class _Winding:
         laws: Sequence[MeshLaw],
         ratios: Array,
         speed: float,
-        drags: Mapping[str, float],
+        load: Array,
     ) -> None:
         self._laws = [law._replace(friction=0.0, damping=0.0) for law in laws]
         self._packed = [pack_meshes([law]) for law in self._laws]
@@ -99,9 +105,7 @@ class _Winding:
         self._approach = np.zeros((len(laws), n))
         for row, law, (pinion, wheel) in zip(self._approach, laws, system.mesh_ports):
             row[pinion], row[wheel] = law.base_radius_1, -law.base_radius_2
-        self._load = -system.damping @ (speed * ratios)
-        for name, value in drags.items():
-            self._load = self._load + system.drag_loads[name] * value
+        self._load = load - system.damping @ (speed * ratios)
         self._linear = np.zeros((n + 2, n + 2))
         self._linear[:n, :n] = system.stiffness
         self._linear[system.drive_dof, n] = -1.0

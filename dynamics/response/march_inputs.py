@@ -53,10 +53,12 @@ class DriveLoads:
     drive_torque : of the motor [N m]
     drag_torques : by name of ``system.drag_loads``, positive against positive rotation [N m]; a drag that may act
         later is named here, if only with 0
+    periodic : (n_periodic_loads,) value of each entry of ``system.periodic_loads``; zeros when left out
     """
 
     drive_torque: float = 0.0
     drag_torques: Mapping[str, float] = field(default_factory=dict)
+    periodic: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

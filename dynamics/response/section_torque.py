@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.periodic_load import harmonic_loads
+from dynamics.drivetrain.periodic_load import harmonic_loads, within_period
 from dynamics.drivetrain.static_loop import line_ratios
 from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
@@ -55,7 +55,7 @@ class SectionTorques:
         form = self.system.form
         ports = self.system.mesh_ports.ravel()
         states = form.loads[:, ports] @ spectrum[:, 1 : top + 1]
-        states += self._driven(wave, base, drive_speed, top)
+        states += self._driven(point, base, drive_speed, top)
         states /= 1j * omega - form.poles[:, None]
         rate = self.seen @ states
         rows = self.rows
@@ -73,8 +73,13 @@ class SectionTorques:
             found += [reaction.torque_1, reaction.torque_2]
         return np.array(found)
 
-    def _driven(self, wave: Waveform, base: float, drive_speed: float, top: int) -> Complex:
-        """Modal loads (n_states, top) of loads that alternate with a shaft, in phase with the pinion."""
+    def _driven(self, point: CurvePoint, base: float, drive_speed: float, top: int) -> Complex:
+        """Modal loads (n_states, top) of loads that alternate with a shaft, in phase with the pinion.
+
+        Those alone that the response was found with, which the asked period holds: not those that fit into the longer
+        time that a subharmonic motion, or one without a period, is shown for.
+        """
+        wave = point.wave
         form = self.system.form
         loads = np.zeros((form.poles.size, top), complex)
         if not self.system.periodic_loads:
@@ -82,9 +87,11 @@ class SectionTorques:
         pinion = float(self.ratios[self.system.mesh_ports[0, 0]])
         lead = float(np.mean(wave.angle[0] / pinion - drive_speed * (wave.time - wave.time[0])))
         turns = drive_speed / base
-        for harmonic, load in harmonic_loads(
-            self.system.periodic_loads, self.ratios, turns, drive_speed
-        ).items():
+        asked = (
+            turns / point.motion.periods if point.motion.periods else 1.0 / (self.laws[0].teeth_1 * pinion)
+        )
+        held = within_period(self.system.periodic_loads, self.ratios, asked)
+        for harmonic, load in harmonic_loads(held, self.ratios, turns, drive_speed).items():
             if harmonic <= top:
                 phase = np.exp(1j * lead * harmonic / turns)
                 loads[:, harmonic - 1] += 0.5 * phase * (form.loads @ load)

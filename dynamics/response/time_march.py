@@ -30,6 +30,7 @@ from dynamics.response.march_record import Block as Block
 from dynamics.response.march_tables import MarchTables
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import discretise, modal_state, scaled_state
+from dynamics.response.state_reader import Glance, StateReader, Stretch, inputs_of
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ class TimeMarch:
         laws : of the meshes, in the order of ``system.mesh_ports``
         start : angles, speeds and twist of the first instant
         settings : steps and what is kept
-        loads : motor and drag torques of the first instant; their names say which drags may act
+        loads : torques that act at the first instant; the names of drags say which may act
         model : ``march_model`` of the same system, laws and drags, to be shared between runs; made when left out
 
         Raises
@@ -90,6 +91,8 @@ class TimeMarch:
         self._settings = settings
         self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
         self._marched = 0
+        self._reader: StateReader | None = None
+        self.glances: list[Glance] = []
         self._apart, self._apart_since = np.zeros(len(self.laws)), 0
         self._names = system.dofs
         self._record_all = settings.record_all
@@ -123,6 +126,7 @@ class TimeMarch:
                     )
         slow = np.zeros(n_slow)
         slow[:2] = loads.drive_torque, start.twist
+        slow[2:] = 0.0 if loads.periodic is None else loads.periodic
         braking = np.zeros(n_drags)
         braking[self._places] = list(loads.drag_torques.values())
         speeds = columns.T @ start.speeds
@@ -202,13 +206,20 @@ class TimeMarch:
         for first in range(0, n_samples, SEGMENT):
             part = slice(first, min(first + SEGMENT, n_samples))
             count = part.stop - part.start
+            commands = kernels.Commands(
+                given=given[part], offsets=held[part], control=control, drags=drag_laws
+            )
             histories.append(np.empty((n_meshes, 6 if self._record_all else 1, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
             self.tables = self._tables.at(self._pinion_speeds())
+            if self._reader is not None:
+                time, steps = (self._marched + first) * sample_time, kernels.Steps(self.step, self.substeps)
+                stretch = Stretch(self.tables, self.propagator.modes, commands, self._carried, steps)
+                self.glances.append(Glance(time, self._reader, stretch, history_rows=histories[-1].shape[1]))
             self.unconverged += kernels.march(
                 self.tables,
                 self.propagator.modes,
-                kernels.Commands(given=given[part], offsets=held[part], control=control, drags=drag_laws),
+                commands,
                 self._carried,
                 kernels.Steps(self.step, self.substeps),
                 kernels.MarchRecord(histories[-1], all_samples[-1]),
@@ -332,7 +343,7 @@ class TimeMarch:
         loads = DriveLoads(drive_torque=float(self._carried.slow[0]), drag_torques=drags)
         state = self.state()
         march = TimeMarch(system, self.laws, state, self._settings, loads, model)
-        march._marched, march.unconverged = self._marched, self.unconverged
+        march._marched, march.unconverged, march.glances = self._marched, self.unconverged, self.glances
         march.tables, march._tables = self.tables, self._tables
         march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried
@@ -371,9 +382,16 @@ class TimeMarch:
             self._apart[mesh] = past * self._apart[mesh] - moved
         self._apart_since = 0
 
-    def preset_speed_integral(self, torque: float) -> None:
-        """Let the speed controller start from a motor torque [N m]."""
-        self._carried.controller[0] = torque
+    def watch(self, reader: StateReader | None) -> None:
+        """Keep a glance at torques at the start of every segment of a march from now on, in ``glances``.
+
+        reader : of the model and propagator of this march
+        """
+        self._reader = reader
+
+    def preset_integrals(self, torque: float, twist: float = 0.0) -> None:
+        """Let the controllers start from a motor torque [N m] and a twist beside that given [rad]."""
+        self._carried.controller[:2] = torque, twist
 
     def pinion_angle(self) -> float:
         """Angle of the pinion of the first mesh at this instant [rad]."""
@@ -396,5 +414,4 @@ class TimeMarch:
         )
 
     def _inputs(self) -> Array:
-        carried = self._carried
-        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
+        return inputs_of(self._carried)

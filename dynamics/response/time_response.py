@@ -32,7 +32,9 @@ from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
 from dynamics.response.march_loads import march_model
+from dynamics.response.state_reader import SectionPeaks, StateReader, section_peaks
 from dynamics.response.time_march import CREEP_SHARE, TimeMarch
+from dynamics.response.turning_start import turning_start
 
 Array = NDArray[np.float64]
 
@@ -85,6 +87,7 @@ class TimeResponse:
     drive_limited_share : share of samples at the torque limit of the motor
     speed_missed : lag behind the speed command at the end of the schedule [rad/s]
     end : state at the end; unconverged_steps : contact iterations that ended early
+    sections : largest alternating torque of the springs asked for, None if none were
     """
 
     time: Array
@@ -103,6 +106,7 @@ class TimeResponse:
     end: DriveState
     unconverged_steps: int
     warnings: tuple[str, ...] = field(default=())
+    sections: SectionPeaks | None = None
 
     def mean_speed(self, end: float, window: float) -> float:
         """Mean speed of the first pinion over the ``window`` [s] before ``end`` [s], by the angle it turned [rad/s].
@@ -124,7 +128,8 @@ def run_schedule(
     drags: Mapping[str, DragCurve] | None = None,
     sampling: Sampling = DEFAULT_SAMPLING,
 ) -> TimeResponse:
-    """March over a schedule, from a rigid rotation at its first speed, wound up by its first torque.
+    """March over a schedule, from a rigid rotation at its first speed, wound up by its first torque and bent by the
+    loads that alternate with a shaft (``turning_start``).
 
     Parameters
     ----------
@@ -162,11 +167,12 @@ def run_schedule(
         twist=None if command.twist is None else float(command.twist[0]),
     )
     rises = {name: _steepest(curve) for name, curve in curves.items()}
-    wound = wound_state(system, laws, float(command.speed[0]), load, drag_now)
+    turning = turning_start(system, laws, float(command.speed[0]))
+    wound = wound_state(system, laws, float(command.speed[0]), load, drag_now, turning.load)
     march = TimeMarch(
         system,
         laws,
-        wound.state,
+        replace(wound.state, speeds=wound.state.speeds + turning.speeds),
         MarchSettings(
             step=1.0 / sample_rate / substeps,
             substeps=substeps,
@@ -174,17 +180,29 @@ def run_schedule(
             accounts=sampling.keep_accounts,
             record_all=False,
         ),
-        DriveLoads(drive_torque=wound.drive_torque, drag_torques=drag_now),
+        DriveLoads(drive_torque=wound.drive_torque, drag_torques=drag_now, periodic=turning.values),
         march_model(system, laws, names, sampling.cutoff, rises),
     )
     models = {id(system): march.model}
+    readers: dict[int, StateReader] = {}
+
+    def watched(own: TimeMarch) -> TimeMarch:
+        """The march with the sections asked for read in it."""
+        if sampling.sections is not None:
+            key = id(own.system)
+            readers[key] = readers.get(key) or StateReader(sampling.sections, own.model, own.propagator)
+            own.watch(readers[key])
+        return own
+
+    watched(march)
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
     control = motor.speed_control or default_speed_control(system, laws, float(limits[0]))
-    march.preset_speed_integral(wound.drive_torque)
     bracing = None if command.torque is None else TorqueControl(stiffness=wound.loop_stiffness)
     feed_forward = (
         (np.zeros(1), np.zeros(1)) if command.torque is None else _twists(system, laws, command.torque)
     )
+    ahead = 0.0 if load.torque is None else wound.state.twist - float(np.interp(load.torque, *feed_forward))
+    march.preset_integrals(wound.drive_torque, ahead)
     tables = drag_tables(curves)
     inertia = float(ratios @ system.inertia @ ratios) / drive_ratio**2
 
@@ -230,7 +248,7 @@ def run_schedule(
         if band is not march.system:
             if id(band) not in models:
                 models[id(band)] = march_model(band, laws, names, sampling.cutoff, rises)
-            march = march.continued(band, models[id(band)], block.force.mean(axis=1))
+            march = watched(march.continued(band, models[id(band)], block.force.mean(axis=1)))
         dynamic = radius * block.force
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
         if sampling.keep_channels:
@@ -244,6 +262,7 @@ def run_schedule(
     accounts = march.accounts()
     speed = drive_speed / drive_ratio
     limited = np.abs(slow[:, 0]) >= limit_at * (1.0 - 1e-9)
+    windows = statistics.windows(float(command.time[0]))
     warnings = []
     if march.unconverged:
         warnings.append(
@@ -258,7 +277,7 @@ def run_schedule(
         angle=angle,
         drag_torque=dict(zip(names, braking.T)),
         torque=np.hstack(torques) if sampling.keep_channels else np.empty((len(laws), 0)),
-        windows=statistics.windows(float(command.time[0])),
+        windows=windows,
         lift_off=statistics.lift_off(float(command.time[0])),
         energy=None
         if not sampling.keep_accounts
@@ -277,7 +296,17 @@ def run_schedule(
         end=march.state(),
         unconverged_steps=march.unconverged,
         warnings=tuple(warnings),
+        sections=_section_peaks(march, windows, slow[:, 0], float(command.time[0])) if readers else None,
     )
+
+
+def _section_peaks(march: TimeMarch, windows: EnvelopeWindows, drive: Array, start: float) -> SectionPeaks:
+    """Largest alternating torques of the sections that the march has looked at; drive : (n,) motor torque [N m]."""
+    at = start + np.array([glance.time for glance in march.glances])
+    sampled = start + march.step * march.substeps * np.arange(1, len(drive) + 1)
+    carried = [np.interp(at, windows.time - 0.5 * windows.duration, torque) for torque in windows.mean]
+    found = section_peaks(march.glances, np.column_stack([*carried, np.interp(at, sampled, drive)]))
+    return replace(found, time=start + found.time)
 
 
 def _chunks(

@@ -21,6 +21,7 @@ from rigdesign.coupling.loads import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.rig.drivetrain import mesh_frequency
 from rigdesign.rig.model import Rig
 
@@ -88,8 +89,9 @@ def run_ramp(
     controlled = setting.mode == "torque_controlled"
     laws = shifted_laws(rig, warm.models, setting)
     top = max(stage.speed_end for stage in rig.case.schedule.resolved())
+    loop = loop_over_speed(rig, warm, (0.0, top), partial(torque_share_at, rig, warm))
     response = run_schedule(
-        loop_over_speed(rig, warm, (0.0, top), partial(torque_share_at, rig, warm)),
+        loop,
         laws,
         RunCommand(
             time=command.time,
@@ -106,6 +108,7 @@ def run_ramp(
             keep_channels=command.time[-1] * numerics.sample_rate <= MOST_SAMPLES,
             keep_accounts=False,
             cutoff=_cutoff(rig),
+            sections=None if rig.shaft_model == "torsional" else twist_rows_of(rig, loop.at(0.0)),
         ),
     )
     require_speeds(rig, schedule, response)

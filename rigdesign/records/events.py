@@ -11,19 +11,18 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_channels import Channel, Watched, elastic_channels, torsional_channels
+from dynamics.response.event_channels import Channel, Watched, bearing_channels, torque_channels
 from dynamics.response.event_march import (
     Brake,
     EventHistory,
     EventMarch,
-    SteadyStart,
     Trip,
-    steady_start,
     time_to_standstill,
 )
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.periodic_response import TimeSettings
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.response.steady_start import SteadyStart, steady_start
 from dynamics.response.tooth_loss import without_teeth
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -32,9 +31,11 @@ from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import BracingState, mesh_models, shifted_laws, signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import loop_system, running_state
+from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.resonances import LEAST_GAIN
 from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal
@@ -98,12 +99,10 @@ class _EventPlace:
         )
         bearings = solve_bearings(rig, point, state)
         system = loop_system(rig, point, state, bearings)
-        assert rig.drivetrain is not None
-        channels = (
-            torsional_channels(rig.drivetrain, system)
-            if rig.shaft_model == "torsional"
-            else elastic_channels(rig.elastic.seen, system, running_state(rig, point, state, bearings))
-        )
+        channels = torque_channels(twist_rows_of(rig, system))
+        if rig.shaft_model != "torsional":
+            running = running_state(rig, point, state, bearings)
+            channels += bearing_channels(rig.elastic.seen, system, running)
         laws = periodic_laws(rig, shifted_laws(rig, mesh_models(rig, point, state), CONTROLLED))
         drags = drags_at(rig, test.last, state, speed)
         return cls(name, event.kind, rig, test.last, point, state, system, laws, channels, drags)
@@ -120,8 +119,7 @@ class _EventPlace:
 
     def march(self) -> EventMarch:
         """From the steady state on."""
-        start = self.start
-        return EventMarch(self.system, self.laws, start, Watched(self.channels), self.rig.highest_mode)
+        return EventMarch(self.system, self.laws, self.start, Watched(self.channels), self.rig.highest_mode)
 
     @cached_property
     def start(self) -> SteadyStart:
@@ -132,10 +130,15 @@ class _EventPlace:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the march leaves out, and doubts about its start."""
-        names = dict.fromkeys(load.name for load in self.system.periodic_loads)
-        left_out = (f"loads that alternate with a shaft left out: {', '.join(names)}",) if names else ()
-        return (*left_out, *self.start.doubts)
+        """Loads that the period of the steady state does not hold, and doubts about it."""
+        start = self.start
+        settled: tuple[str, ...] = ()
+        if start.settled:
+            settled = (
+                f"{', '.join(start.settled)}: the period of the steady state holds no whole waves of it; brought up "
+                f"during {start.settling:.3g} s before the event",
+            )
+        return (*settled, *start.doubts)
 
     def drag(self, drive_speed: float) -> float:
         """Torque on the motor of all drags at a speed of it [N m]; of linear bearing drag as well."""
@@ -339,6 +342,9 @@ def _overspeed(place: _EventPlace, test: PointResult) -> EventRecord:
         SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )  # fmt: skip
     notes: tuple[str, ...] = tuple(reason for _, reason in curve.failed)
+    missing = [*loads_left_out(rig, place.laws, place.system), *lines_left_out(rig, place.laws, place.system)]
+    if missing:
+        notes = (*notes, f"loads that the period of the response does not hold: {', '.join(missing)}")
     factors: dict[str, float] = {}
     peaks: tuple[EventPeak, ...] = ()
     at = [point for point in curve.points if point.speed == speeds[-1]]

@@ -1,4 +1,4 @@
-"""Dynamic torque in every section of the shafts, every joint and mesh: held stages and over speed.
+"""Dynamic torque in every section of the shafts, every joint and mesh: held stages, over speed, in the time run.
 
 From the periodic responses: the forces of the meshes drive the linear loop between them. Over speed the loop has the
 matrices of the nearest of a few speeds (`loop_states`), the forces are those of every speed.
@@ -9,16 +9,16 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.twist_rows import TorqueSection, TwistRows, torsional_twist_rows
-from dynamics.elastic_rig.twist_rows import elastic_twist_rows
+from dynamics.drivetrain.twist_rows import TorqueSection, TwistRows
 from dynamics.response.section_torque import SectionTorques, section_torques
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.loads import laws_of, shifted_laws
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.twist_rows import twist_rows_of as twist_rows_of
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import LoopState, nearest
+from rigdesign.records.run_torques import place_of, run_torques
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.section_torques import (
     HeldTorque,
@@ -47,6 +47,7 @@ def section_torque_record(
         torque=next(iter(run.curves.named)),
         speeds=tuple(point.speed for point in points),
         curves=tuple(_curves(rig, run, points, states)),
+        run=run_torques(rig, run.ramp, twist_rows_of(rig, states[0].system).sections),
     )
 
 
@@ -60,14 +61,6 @@ def chosen(points: Sequence[CurvePoint], most: int) -> list[CurvePoint]:
     rest = max(2, most - len(peaks))
     even = set(np.linspace(0, len(points) - 1, rest).round().astype(int).tolist())
     return [points[i] for i in sorted(peaks | even)]
-
-
-def twist_rows_of(rig: Rig, system: LinearSystem) -> TwistRows:
-    """Rows of the torques on the freedoms of a system of the rig."""
-    assert rig.drivetrain is not None
-    if rig.shaft_model == "torsional":
-        return torsional_twist_rows(rig.drivetrain)
-    return elastic_twist_rows(rig.elastic.seen, system)
 
 
 def _held(rig: Rig, point: PointResult, loads: DynamicLoads) -> Iterator[HeldTorque]:
@@ -116,13 +109,7 @@ def _swings(rows: TwistRows, torque: Array) -> Iterator[tuple[TorquePlace, Torqu
         members.setdefault(section, []).append(i)
     for section, own in members.items():
         worst = own[int(np.argmax(peak[own]))]
-        of_shaft = section.kind == "shaft"
-        place = TorquePlace(
-            kind=section.kind,
-            part=section.part,
-            start=section.start if of_shaft else None,
-            end=section.end if of_shaft else None,
-        )
+        place = place_of(section)
         swing = TorqueSwing(
             mean=abs(float(torque[worst].mean())),
             half_peak_to_peak=0.5 * float(np.ptp(torque[worst])),

@@ -162,8 +162,9 @@ class DynamicsResult:
     section_torques: dict[str, Any] | None = None
     """Torque in every section of the shafts, joint and mesh, from the periodic responses: {held: [{place, kind, part,
     from_mm, to_mm, stage, speed_rpm, mean_Nm, half_peak_to_peak_Nm, peak_Nm, time_run_peak_Nm, shear_stress_MPa}],
-    over_speed: {torque, speed_rpm, places: [{place, ..., mean_Nm, half_peak_to_peak_Nm, peak_Nm}]}}; of a section
-    where it is highest."""
+    over_speed: {torque, speed_rpm, places: [{place, ..., mean_Nm, half_peak_to_peak_Nm, peak_Nm}]}, time_run: [{place,
+    ..., mean_Nm, half_peak_to_peak_Nm, time_s, speed_rpm, stage}]}; of a section where it is highest. Of the time run
+    where one of 40 instants a second finds the torque furthest from its mean; shafts that bend only."""
     dynamic_root: dict[str, Any] | None = None
     """Root stress in motion over the rolling angle at the held stages and the speeds of numerics.root_stress_speeds:
     {curves: [{gearbox, gear, gauge (empty: the most stressed point), stage (empty: a speed asked for),

@@ -60,6 +60,22 @@ class TorqueOverSpeed:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RunTorque:
+    """Largest alternating torque at one place in the time run, of those at 40 instants a second."""
+
+    place: TorquePlace
+    half_peak_to_peak: float
+    """Over the milliseconds from that instant on [N m]."""
+    mean: float
+    """Of the same time, never negative [N m]."""
+    time: float
+    """[s]"""
+    speed: float
+    """[rad/s]"""
+    stage: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class SectionTorqueRecord:
     """All places at the held stages, and over speed under the torque of the governing one."""
 
@@ -69,3 +85,5 @@ class SectionTorqueRecord:
     speeds: tuple[float, ...]
     """(s,) [rad/s]"""
     curves: tuple[TorqueOverSpeed, ...]
+    run: tuple[RunTorque, ...] = ()
+    """Sections and joints; none where the time run did not look at them."""

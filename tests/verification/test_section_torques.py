@@ -1,11 +1,14 @@
 """Torque in shafts and joints from the mesh forces: against the dynamic stiffness of all freedoms and Newton's law."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad
 from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_ports
@@ -15,6 +18,7 @@ from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.elastic_rig.twist_rows import elastic_twist_rows
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.motion_kind import Motion
 from dynamics.response.section_torque import section_torques
 from dynamics.response.speed_sweep import CurvePoint, periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, running
@@ -109,6 +113,36 @@ def test_means_are_those_of_the_meshes_and_the_motor(
     assert abs(mean["coupling", "pinion side"]) == pytest.approx(
         abs(mean["spline", "test_pinion_gear"]), abs=1e-3
     )
+
+
+@pytest.mark.parametrize(
+    "motion", [Motion(kind="subharmonic", periods=3), Motion(kind="quasi-periodic", periods=0)]
+)
+def test_loads_that_the_response_left_out_stay_out_of_a_longer_motion(
+    torsional: tuple[LinearSystem, CurvePoint, np.ndarray], motion: Motion
+) -> None:
+    """Three mesh periods hold one wave of an order 33 of 99 teeth, of which a response over one mesh knows nothing; one
+    of order 198 it knows. The same motion shown three times has three times the same torques."""
+    system, point, _ = torsional
+    gear = int(system.mesh_ports[0, 0])
+    load = np.eye(len(system.inertia))[gear]
+    orders = LoadOrder(order=33.0, amplitude=500.0), LoadOrder(order=198.0, amplitude=5.0)
+    wave = point.wave
+    count, step = wave.time.size, float(wave.time[1] - wave.time[0])
+    time = step * np.arange(3 * count, dtype=np.float64)
+    spread = {name: np.tile(getattr(wave, name), 3) for name in ("approach", "omega_1", "omega_2", "torque")}
+    turned = np.array([law.teeth_1 for law in laws()])[:, None]
+    angle = np.hstack([wave.angle + 2.0 * np.pi * period / turned for period in range(3)])
+    shown = replace(point, wave=replace(wave, time=time, angle=angle, **spread), motion=motion)
+    rows = torsional_twist_rows(prototype())
+
+    def torques(at: CurvePoint, *parts: LoadOrder) -> np.ndarray:
+        loads = (PeriodicLoad(name="ripple", load=load, dof=gear, parts=parts),) if parts else ()
+        return section_torques(replace(system, periodic_loads=loads), laws(), rows).over_period(at)
+
+    once = torques(point, *orders)
+    assert np.abs(once - torques(point)).max() > 0.1
+    assert torques(shown, *orders) == pytest.approx(np.tile(once, 3), abs=1e-6 * TORQUE)
 
 
 def test_elastic_rig_has_the_torques_of_its_full_matrices() -> None:

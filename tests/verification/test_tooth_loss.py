@@ -8,24 +8,25 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
+from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_directions, mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import RunningState
 from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.twist_rows import elastic_twist_rows
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import tooth_forces
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_channels import Watched, elastic_channels, torsional_channels
+from dynamics.response.event_channels import Watched, bearing_channels, torque_channels
 from dynamics.response.event_march import (
     Brake,
     EventMarch,
-    SteadyStart,
     Trip,
-    steady_start,
     time_to_standstill,
 )
 from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.steady_start import SteadyStart, steady_start
 from dynamics.response.tooth_loss import teeth_in_mesh, without_teeth
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.rig import prototype, prototype_laws
@@ -43,7 +44,7 @@ def torsional() -> tuple[LinearSystem, tuple[MeshLaw, ...], SteadyStart, Watched
         system,
         laws,
         steady_start(system, laws, SPEED, TORQUE, {}),
-        Watched(torsional_channels(drivetrain, system)),
+        Watched(torque_channels(torsional_twist_rows(drivetrain))),
     )
 
 
@@ -174,7 +175,8 @@ def test_bearings_of_the_elastic_rig_carry_the_mesh_force() -> None:
     )
     state = RunningState(speed=SPEED, bearings=bearings(rig))
     system = seen.system(state)
-    watched = Watched(elastic_channels(seen, system, state))
+    channels = torque_channels(elastic_twist_rows(seen, system)) + bearing_channels(seen, system, state)
+    watched = Watched(channels)
     start = steady_start(system, laws, SPEED, TORQUE, {})
     history = EventMarch(system, laws, start, watched).run(1e-3)
     own = [watched.index(f"test_pinion {end}", "bearing") for end in ("front", "rear")]
@@ -189,7 +191,7 @@ def test_bearings_of_the_elastic_rig_carry_the_mesh_force() -> None:
 def test_channels_of_a_rigid_rotation_show_nothing() -> None:
     drivetrain = prototype()
     system = assemble(drivetrain)
-    watched = Watched(torsional_channels(drivetrain, system))
+    watched = Watched(torque_channels(torsional_twist_rows(drivetrain)))
     rigid = line_shapes(np.argmax(np.abs(system.rigid), axis=1))
     for shape in rigid.T:
         for channel in watched.channels:

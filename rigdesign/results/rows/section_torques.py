@@ -3,12 +3,18 @@
 from collections.abc import Sequence
 from typing import Any
 
-from rigdesign.results.section_torques import HeldTorque, SectionTorqueRecord, TorquePlace, TorqueSwing
+from rigdesign.results.section_torques import (
+    HeldTorque,
+    RunTorque,
+    SectionTorqueRecord,
+    TorquePlace,
+    TorqueSwing,
+)
 from rigdesign.results.units import MM, MPA, RPM
 
 
 def section_torque_rows(record: SectionTorqueRecord) -> dict[str, Any]:
-    """Held stages, and all places over speed."""
+    """Held stages, all places over speed, and the largest of the time run."""
     return {
         "held": [_held(held) for held in record.held],
         "over_speed": {
@@ -16,6 +22,7 @@ def section_torque_rows(record: SectionTorqueRecord) -> dict[str, Any]:
             "speed_rpm": [speed * RPM for speed in record.speeds],
             "places": [_place(curve.place) | _columns(curve.swings) for curve in record.curves],
         },
+        "time_run": [_run(torque) for torque in record.run],
     }
 
 
@@ -28,6 +35,16 @@ def _held(held: HeldTorque) -> dict[str, Any]:
         "peak_Nm": held.swing.peak,
         "time_run_peak_Nm": held.run_peak,
         "shear_stress_MPa": None if held.shear_stress is None else held.shear_stress * MPA,
+    }
+
+
+def _run(torque: RunTorque) -> dict[str, Any]:
+    return _place(torque.place) | {
+        "mean_Nm": torque.mean,
+        "half_peak_to_peak_Nm": torque.half_peak_to_peak,
+        "time_s": torque.time,
+        "speed_rpm": torque.speed * RPM,
+        "stage": torque.stage,
     }
 
 
