@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 82bd4541
+# compiled from sources acfcc90a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

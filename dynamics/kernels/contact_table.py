@@ -43,14 +43,13 @@ N_TABLE_VALUES = 29
     C_GENERAL,
 ) = range(26)  # fmt: skip
 N_TABLE_COUNTS = 26
-# places in a row: a cell (CELL), its slopes over the path (CELL), closing dampers (2 LINES), tilting moment and its
-# derivative
-# over the tilt, second derivative of W over the path; levers of friction and what they gain by the reversal; the
-# approach at the start of the cell, slope and second derivative of the gap
-R_SLOPES, R_CLOSING, R_MOMENT, R_TILT, R_CURVES, R_FRICTION, R_GAIN, R_START, R_GAP_SLOPE, R_GAP_CURVE = (
-    8, 16, 24, 28, 32, 36, 40, 44, 45, 46,
+# places in a row: a cell (CELL), its slopes over the path (CELL), closing dampers (2 LINES), tilting moment, second
+# derivative of W over the path; levers of friction and what they gain by the reversal; the approach at the start of
+# the cell, slope and second derivative of the gap
+R_SLOPES, R_CLOSING, R_MOMENT, R_CURVES, R_FRICTION, R_GAIN, R_START, R_GAP_SLOPE, R_GAP_CURVE = (
+    8, 16, 24, 28, 32, 36, 40, 41, 42,
 )  # fmt: skip
-N_SCALED, N_ROW = 36, 48
+N_SCALED, N_ROW = 32, 44
 SCRATCH = 2 * CELL + 4 * LINES
 """Numbers behind the rows that tilt needs."""
 

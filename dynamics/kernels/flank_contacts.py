@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 82bd4541
+# compiled from sources acfcc90a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

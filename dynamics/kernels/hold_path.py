@@ -50,7 +50,6 @@ from dynamics.kernels.contact_table import (
     R_MOMENT,
     R_SLOPES,
     R_START,
-    R_TILT,
     SCRATCH,
     V_CLOSING,
     V_FRICTION,
@@ -70,7 +69,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 82bd4541
+# compiled from sources acfcc90a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -189,23 +188,21 @@ class _Plane(NamedTuple):
     values: tuple[float, float, float, float]
     """Of W and moment at both tilts."""
     slopes: tuple[float, float, float, float]
-    curves: tuple[float, float, float, float]
 
 
 @inlined
 def _plane(values: Array, counts: Integers, m: int, tilt: float) -> _Plane:
     if counts[m, C_PLANES] == 1:
-        return _Plane(0, 0.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+        return _Plane(0, 0.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
     per = values[m, V_PER_TILT]
     place = (tilt - values[m, V_TILT]) * per
     first = max(0, min(int(place), counts[m, C_PLANES] - 2))
     f = place - first
-    e, d, curve = 1.0 - f, 1.0 / per, 6.0 * per * per
+    e, d = 1.0 - f, 1.0 / per
     return _Plane(
         first, f,
         (e * e * (1.0 + 2.0 * f), d * f * e * e, f * f * (3.0 - 2.0 * f), -d * f * f * e),
         (-6.0 * per * f * e, e * (1.0 - 3.0 * f), 6.0 * per * f * e, f * (3.0 * f - 2.0)),
-        (curve * (2.0 * f - 1.0), per * (6.0 * f - 4.0), curve * (1.0 - 2.0 * f), per * (6.0 * f - 2.0)),
     )  # fmt: skip
 
 
@@ -316,9 +313,6 @@ def _tilt_row(
         rows[row + i] = plane.values[0] * a + plane.values[1] * b + plane.values[2] * c + plane.values[3] * d
         rows[row + R_MOMENT + i] = (
             plane.slopes[0] * a + plane.slopes[1] * b + plane.slopes[2] * c + plane.slopes[3] * d
-        )
-        rows[row + R_TILT + i] = (
-            plane.curves[0] * a + plane.curves[1] * b + plane.curves[2] * c + plane.curves[3] * d
         )
         at = row + LINES + i
         rows[at] = (1.0 - plane.share) * rows[at] + plane.share * rows[other + LINES + i]

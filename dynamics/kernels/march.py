@@ -3,10 +3,9 @@
 Arrays come from ``dynamics.response.propagator`` (discretised modes) and ``dynamics.mesh.contact_table`` (tables of the
 mesh laws); names, units and validation live above.
 
-Within a step the mesh torques are the cubics through their last four values, of which the newest is found
-implicitly. A step guesses the torques (the parabola through the last three), looks at the meshes at the angles this
-guess leads to, and takes a Newton step there (``mesh_solve``). Only where its remainder is too large are the meshes
-looked at again.
+Within a step the mesh torques are held as ``dynamics.response.step_hold`` says, their newest value found implicitly. A
+step guesses the torques (the parabola through the last three), looks at the meshes at the angles this guess leads to,
+and takes a Newton step there (``mesh_solve``). Only where its remainder is too large are the meshes looked at again.
 """
 
 import numpy as np
@@ -68,7 +67,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 82bd4541
+# compiled from sources acfcc90a
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

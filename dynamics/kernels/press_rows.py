@@ -17,7 +17,6 @@ from dynamics.kernels.contact_table import (
     R_MOMENT,
     R_SLOPES,
     R_START,
-    R_TILT,
     V_CLOSING,
     V_DAMP_TIME,
     V_DERIVATIVE,
@@ -34,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 82bd4541
+# compiled from sources acfcc90a
 Array = NDArray[np.float64]
 
 
@@ -88,9 +87,7 @@ class Sums(NamedTuple):
     force_xv: float
     """Mixed second derivative of the force over approach and rate [N s/m^2]."""
     moment: float
-    """Tilting moment, and its derivatives over approach and tilt: 0 on tables without tilt [N m]."""
-    moment_x: float
-    moment_tilt: float
+    """Tilting moment, 0 on tables without tilt [N m]."""
 
 
 @inlined
@@ -126,7 +123,7 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
     force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
     friction_1, damped, energy, recorded = 0.0, 0.0, 0.0, 0.0
     curvature, force_xv = 0.0, 0.0
-    tilting, tilting_x, tilting_tilt = 0.0, 0.0, 0.0
+    tilting = 0.0
     for p in range(n):
         r = (first + N_ROW * p) & POSITIVE
         d = reach - rows[r + R_START]
@@ -190,13 +187,11 @@ def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing:
         curvature += f_2
         force_xv += weight_x
         energy += rows[r] + d * (rows[r + 1] + d * (0.5 * f_1 + d * f_2 / 3.0))
-        t, u = r + R_MOMENT, r + R_TILT
+        t = r + R_MOMENT
         tilting += rows[t] + d * (rows[t + 1] + d * (0.5 * rows[t + 2] + d * rows[t + 3] / 3.0))
-        tilting_x += rows[t + 1] + d * (rows[t + 2] + d * rows[t + 3])
-        tilting_tilt += rows[u] + d * (rows[u + 1] + d * (0.5 * rows[u + 2] + d * rows[u + 3] / 3.0))
     return Sums(
         total, elastic, a_1, a_2, force_x, stiffness, a_1_x, a_2_x, force_v, a_1_v, a_2_v, friction_1, damped, energy,
-        recorded, curvature, force_xv, tilting, tilting_x, tilting_tilt,
+        recorded, curvature, force_xv, tilting,
     )  # fmt: skip
 
 

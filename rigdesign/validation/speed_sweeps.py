@@ -11,7 +11,6 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modes import LoopMode
 from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
 from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
-from dynamics.elastic_rig.running_state import RunningState
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.tip_contact import tip_separation
@@ -95,7 +94,7 @@ def simulation_laws(prototype: Prototype, stiffness: MeshStiffness | None = None
 
 
 def _point(prototype: Prototype) -> tuple[Rig, OperatingPoint]:
-    return prototype.simulated, OperatingPoint(stage="P2", speed=TOP_SPEED * RPM, torque=TEST_TORQUE)
+    return prototype.simulated, _loaded(TOP_SPEED)
 
 
 def speed_sweep(
@@ -134,20 +133,25 @@ def bending_loop(rig: Rig) -> DrivetrainOverSpeed:
     """Drivetrain of a rig with shafts that bend in bearings of stated stiffness, gyroscopic moments by speed."""
     edges = np.geomspace(500.0, TOP_SPEED, 9)
     middles = np.sqrt(edges[1:] * edges[:-1])
+    start = initial_state(rig, _loaded(TOP_SPEED))
     return SpeedBands(
         limits=tuple(rig.pinion_speed(float(edge) * RPM) for edge in edges[1:-1]),
-        systems=tuple(rig.elastic.seen.system(_running(rig, float(speed))) for speed in middles),
+        systems=tuple(
+            rig.elastic.seen.system(running_state(rig, _loaded(float(speed)), start, {})) for speed in middles
+        ),
     )
 
 
 def loop_modes_at(rig: Rig, speed: float, laws: Sequence[MeshLaw]) -> tuple[LoopMode, ...]:
     """Modes of the same closed loop at a speed [rpm]."""
-    return elastic_loop_modes(rig.elastic.seen, _running(rig, speed), laws, DEFAULT_CUTOFF)
+    point = _loaded(speed)
+    state = running_state(rig, point, initial_state(rig, point), {})
+    return elastic_loop_modes(rig.elastic.seen, state, laws, DEFAULT_CUTOFF)
 
 
-def _running(rig: Rig, speed: float) -> RunningState:
-    point = OperatingPoint(stage="P2", speed=speed * RPM, torque=TEST_TORQUE)
-    return running_state(rig, point, initial_state(rig, point), {})
+def _loaded(speed: float) -> OperatingPoint:
+    """P2's torque at a speed [rpm]."""
+    return OperatingPoint(stage="P2", speed=speed * RPM, torque=TEST_TORQUE)
 
 
 def corner_gaps(models: Sequence[MeshModel], factor: float) -> list[MeshLaw]:
