@@ -196,8 +196,11 @@ class Gear(Part):
     no gear of the train states one."""
     shaft_interference: Small = 0.0
     """Press fit: effective interference of the bore on its shaft at rest, on the diameter, whose stress the root of an
-    idler holds as well. Zero for a seat without one. What a gear warmer than its shaft loses of it, and a colder one
-    gains, is left out: state the interference at temperature."""
+    idler holds as well. Zero for a seat without one. At 20 degC: its slip torque counts what a gear warmer than its
+    shaft loses of it and a colder one gains, the stress in the root does not."""
+    shaft_interference_minimum: Small | None = None
+    """The least that the tolerances of bore and shaft leave of ``shaft_interference``: what the slip torque of the
+    press fit is computed with; the same when left out."""
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
@@ -228,6 +231,13 @@ class Gear(Part):
     def _seat(self) -> "Gear":
         if self.shaft_interference > 0.0 and self.bore_diameter == 0.0:
             raise fault("a press fit needs a seat", "write bore_diameter, or leave shaft_interference out")
+        least = self.shaft_interference_minimum
+        if least is not None and least > self.shaft_interference:
+            raise fault(
+                f"shaft_interference_minimum = {show(least, 'length', 'um')} is above shaft_interference = "
+                f"{show(self.shaft_interference, 'length', 'um')}",
+                "write the least interference below the effective one, or exchange them",
+            )
         return self
 
 

@@ -115,6 +115,7 @@ def explain_check(case: Case, identity: str, finished: FinishedCheck | None = No
 DRIVETRAIN, HOUSING, TRANSIENT = "a drivetrain", "a gearbox with a housing", "check --transient"
 LOADED_CONTACT = "loaded contact, not at fidelity quick"
 BENDING = "shafts that bend, not at fidelity quick"
+PRESS_FIT = "a gear with shaft_interference"
 
 
 def _needs(family: RuleFamily) -> Iterator[str]:
@@ -128,16 +129,20 @@ def _needs(family: RuleFamily) -> Iterator[str]:
         yield LOADED_CONTACT
     if family.key.startswith("lateral."):
         yield BENDING
+    if family.key == "strength.press_fit_slip":
+        yield PRESS_FIT
 
 
 def _met(case: Case, needs: tuple[str, ...]) -> bool:
     """Whether the case has what the check needs; that it is run with an option is not a matter of the case."""
     housed = any(box.housing is not None for box in case.gearboxes.values())
     power = case.drivetrain
+    gears = [gear for box in case.gearboxes.values() for gear in box.gears.values()]
     return (
         (DRIVETRAIN not in needs or power is not None)
         and (HOUSING not in needs or housed)
         and (BENDING not in needs or (power is not None and power.shaft_model == "elastic"))
+        and (PRESS_FIT not in needs or any(gear.shaft_interference for gear in gears))
     )
 
 

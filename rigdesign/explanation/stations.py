@@ -147,7 +147,11 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__tooth_influence="outline of the tooth in its influence numbers",
     ),
     "gearboxes.*.gears.*.shaft_interference": _at(
-        records__tooth_history="tension of the press fit in the root of an idler, at speed, without temperature"
+        records__tooth_history="tension of the press fit in the root of an idler, at speed, without temperature",
+        records__press_fits="pressure and slip torque of the seat, hot and at speed",
+    ),
+    "gearboxes.*.gears.*.shaft_interference_minimum": _at(
+        records__press_fits="pressure and slip torque of the seat, hot and at speed"
     ),
     "gearboxes.*.gears.*.helix_hand": _at(
         case__rotation="end of the face that comes into mesh last: sign of the misalignment over the face"

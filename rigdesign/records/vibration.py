@@ -11,6 +11,7 @@ from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.press_fits import press_fits
+from rigdesign.records.seat_torques import held_seat_torques
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.results.campbell import CampbellRecord
 from rigdesign.results.contact_in_motion import ContactLossMap
@@ -51,5 +52,5 @@ def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibrat
         torques=torques,
         dwell=dwell_record(rig, run, loads, torques, diagram),
         maps=maps,
-        press_fits=tuple(press_fits(rig, run, torques)),
+        press_fits=tuple(press_fits(rig, held_seat_torques(rig, run.points))),
     )
