@@ -192,6 +192,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__strain_gauges="strain to stress by Hooke's law"
     ),
     "gearboxes.*.gears.*.strain_gauges.*.bridge": _at(strain_gauge__bridge="strain to bridge voltage"),
+    "gearboxes.*.gears.*.spline.toothing": _at(
+        records__spline_capacity="stresses of teeth, shaft and hub at the largest torque of the seat"
+    ),
     "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
     "gearboxes.*.meshes.*": _at(
         rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"

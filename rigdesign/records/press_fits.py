@@ -24,11 +24,14 @@ REFERENCE = ZERO + 20.0
 
 
 def press_fits(rig: Rig, torques: Iterable[SeatTorque]) -> Iterator[PressFitCapacity]:
-    """Of every gear whose interference the case states, at every torque of its seat."""
+    """Of every gear whose interference the case states, at every torque of its seat.
+
+    A press fit on the teeth of a spline, whose toothing is stated, carries no torque by friction and is left out.
+    """
     first = {gear: places[0] for gear, places in gear_meshes(rig).items()}
     for seat in torques:
         fit = least_fit(rig, first[seat.gear])
-        if fit is not None:
+        if fit is not None and not splined(rig, first[seat.gear]):
             yield _capacity(rig, first[seat.gear], fit, seat)
 
 
@@ -38,6 +41,12 @@ def least_fit(rig: Rig, place: GearInMesh) -> PressFit | None:
     entry = rig.mesh_gear(place.mesh, place.index)
     least = entry.shaft_interference_minimum
     return fit if fit is None or least is None else replace(fit, interference=least)
+
+
+def splined(rig: Rig, place: GearInMesh) -> bool:
+    """Whether the teeth of a spline carry the torque of a gear."""
+    spline = rig.mesh_gear(place.mesh, place.index).spline
+    return spline is not None and spline.toothing is not None
 
 
 def slip_torque(pressure: float, diameter: float, length: float, friction: float) -> float:

@@ -112,7 +112,7 @@ def family_of(identity: str) -> RuleFamily:
     return max(keys, key=lambda family: len(family.key))
 
 
-SEATS = ("press_fit_slip",)
+SEATS = ("press_fit_slip", "spline_pressure", "spline_shear", "spline_hub")
 LATERAL = ("orbit", "separation", "stability", "stability_without_torque", "torsional_separation")
 
 

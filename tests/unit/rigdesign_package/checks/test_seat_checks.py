@@ -1,6 +1,6 @@
-"""Checks of gear seats: slip of press fits at the largest torque of stages, time run and events."""
+"""Checks of gear seats: slip of press fits, stresses of splines, at the largest torque of stages, run and events."""
 
-from dataclasses import replace
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,15 +12,18 @@ from rigdesign.records.seat_torques import held_seat_torques, seat_torques
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventPeak, EventRecord
-from tests.builders.warm_prototype import base, settled
+from rigdesign.rig.model import build_rig
+from tests.builders.warm_prototype import base
 
 FIT = "gearboxes.test.gears.pinion.shaft_interference"
 
 
 def solved(*changes: tuple[str, object], peaks: dict[str, float] | None = None, **more: Any) -> SolvedRig:
-    """The settled prototype, with peaks [N m] of its meshes by gearbox in the stage run_up of a made-up time run."""
-    rig, last = settled(*changes)
-    point = replace(base()[1], last=last)
+    """The settled prototype with changes that its loop does not feel, and peaks [N m] of its meshes by gearbox in the
+    stage run_up of a made-up time run."""
+    rig, point = base()
+    if changes:
+        rig = build_rig(rig.case.with_values(dict(changes)), "quick").with_models(rig.models)
     loads: Any = SimpleNamespace(meshes={label: run_up(peaks, label) for label in ("test", "reference")})
     return SolvedRig(rig=rig, points=(point,), loads=loads, **more)
 
@@ -117,3 +120,83 @@ def test_a_least_interference_above_the_effective_one_is_refused() -> None:
         Exception, match="shaft_interference_minimum = 30 um is above shaft_interference = 20 um"
     ):
         case.with_values({FIT: "20 um", f"{FIT}_minimum": "30 um"})
+
+
+SPLINE = "gearboxes.test.gears.pinion.spline.toothing"
+TEETH: tuple[tuple[str, object], ...] = (
+    (f"{SPLINE}.teeth", 24), (f"{SPLINE}.module", "2 mm"), (f"{SPLINE}.length", "25 mm"),
+)  # fmt: skip
+"""W 50 x 2 x 24 to DIN 5480, 25 mm long."""
+
+
+def found(solved_rig: SolvedRig) -> dict[str, Check]:
+    return {check.id: check for check in checks(solved_rig)}
+
+
+def test_a_spline_without_toothing_or_allowable_stress_is_not_held() -> None:
+    for changes in ((), TEETH):
+        for name in ("pressure", "shear", "hub"):
+            check = found(solved(*changes))[f"strength.spline_{name}"]
+            assert check.verdict == "not applicable" and "in spline.toothing" in check.reason
+
+
+def test_a_spline_is_held_at_the_torque_of_its_seat() -> None:
+    """Dudley by hand with D 48 mm, contact 1.8 mm high: p = 2 T/(D N F h), tau = 4 T/(D N F pi D/48), of the shaft
+    16 T/(pi d^3) under teeth of 45 mm; the shaft has no bore there."""
+    rig = solved(
+        *TEETH,
+        (f"{SPLINE}.shaft_root_diameter", "45 mm"),
+        (f"{SPLINE}.allowable_pressure", "35 MPa"),
+        (f"{SPLINE}.allowable_shear", "100 MPa"),
+    )
+    (torque,) = (one.torque for one in rig.seat_torques if one.gear == "test.pinion")
+    pressure = 2.0 * torque / (0.048 * 24 * 0.025 * 0.0018)
+    shear = max(4.0 * torque / (0.048 * 24 * 0.025 * math.pi * 0.001), 16.0 * torque / (math.pi * 0.045**3))
+    checked = found(rig)
+    assert checked["strength.spline_pressure"].value == pytest.approx(35e6 / pressure)
+    assert checked["strength.spline_shear"].value == pytest.approx(100e6 / shear)
+    assert checked["strength.spline_pressure"].limit == 1.0
+    assert "test.pinion, stage test: flank pressure" in checked["strength.spline_pressure"].reason
+    assert checked["strength.spline_hub"].verdict == "not applicable"
+
+
+def test_a_hub_bursts_by_teeth_rotation_and_a_press_fit() -> None:
+    """S_1 + S_3 + S_2 by hand; a press fit on the teeth adds its pressure, most of it cold and at rest: p of a solid
+    shaft of one steel E (1 - Q^2) U/(2 D) times (1 + Q^2)/(1 - Q^2)."""
+    hub = (
+        *TEETH, (f"{SPLINE}.hub_root_diameter", "51.6 mm"), (f"{SPLINE}.hub_diameter", "80 mm"),
+        (f"{SPLINE}.allowable_tension", "300 MPa"),
+    )  # fmt: skip
+    rig = solved(*hub)
+    gear = rig.case.gearboxes["test"].gears["pinion"]
+    material = rig.rig.materials[gear.material]
+    (torque,) = (one.torque for one in rig.seat_torques if one.gear == "test.pinion")
+    radial = torque * math.tan(math.radians(30.0)) / (math.pi * 0.048 * 0.0142 * 0.025)
+    bending = 4.0 * torque / (0.048**2 * 0.025 * 1.5)
+    nu, omega = material.poisson_ratio, rig.case.schedule.test_speed
+    turning = (3.0 + nu) / 4.0 * material.density * omega**2 * (0.04**2 + (1 - nu) / (3 + nu) * 0.0258**2)
+    check = found(rig)["strength.spline_hub"]
+    assert check.value == pytest.approx(300e6 / (radial + bending + turning))
+    pressed = found(solved(*hub, (FIT, "150 um")))
+    assert pressed["strength.press_fit_slip"].verdict == "not applicable"
+    share = (0.5 * gear.bore_diameter / rig.rig.pairs["test.main"].root_radii[0]) ** 2
+    cold = material.elastic_modulus * (1.0 + share) * 150e-6 / (2.0 * gear.bore_diameter)
+    check = pressed["strength.spline_hub"]
+    assert check.value == pytest.approx(300e6 / cold, rel=1e-6) and "at rest, 20 degC" in check.reason
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"module": "2 mm", "pitch_diameter": "48 mm"}, "both of module and pitch_diameter"),
+        ({}, "neither of module and pitch_diameter"),
+        (
+            {"module": "2 mm", "hub_diameter": "60 mm"},
+            "hub_diameter = 60 mm needs a hub_root_diameter inside",
+        ),
+    ],
+)
+def test_a_toothing_that_contradicts_itself_is_refused(changes: dict[str, str], said: str) -> None:
+    keys = {"teeth": 24, "length": "25 mm", **changes}
+    with pytest.raises(Exception, match=said):
+        base()[0].case.with_values({f"{SPLINE}.{key}": value for key, value in keys.items()})
