@@ -1,4 +1,4 @@
-"""Linear forces of one running state: bearing coefficients and linear mesh springs at a speed.
+"""Linear forces of one running state: bearing coefficients, linear mesh springs, friction of splines at a speed.
 
 Bearings and meshes stand outside the matrices of `dynamics.elastic_rig.assembly`, because they change from stage to
 stage; here they are added to them for eigenvalues, forced response and static deflection.
@@ -15,6 +15,7 @@ from scipy.sparse.linalg import splu
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.layout import SEAT_DIRECTIONS
+from dynamics.elastic_rig.spline_losses import spline_dampers
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -117,6 +118,9 @@ def full_matrices(model: ElasticModel, state: RunningState) -> FullMatrices:
         bearing_stiffness, bearing_damping = coefficients.padded()
         stiffness = stiffness + rows.T @ csr_array(bearing_stiffness) @ rows
         damping = damping + rows.T @ csr_array(bearing_damping) @ rows
+    for damper in spline_dampers(model):
+        row = csr_array(damper.row[None, :])
+        damping = damping + damper.loss.damping(state.speed) * (row.T @ row)
     for spring in state.springs:
         row = csr_array(spring.row[None, :])
         stiffness = stiffness + spring.stiffness * (row.T @ row)

@@ -150,8 +150,22 @@ class Spline(Part):
     """Torque per angle of twist between gear and shaft."""
     torsional_damping: TorsionalDamping = 0.0
     """Torque per speed of twist between gear and shaft."""
+    loss_factor: Share = 0.0
+    """Friction between the teeth, instead of ``torsional_damping``: a cycle of twist loses pi times this factor times
+    ``torsional_stiffness`` times the square of its amplitude, at any rate. The loop has a damper that loses as much at
+    the mesh frequency of the gear at every speed; other frequencies lose in proportion to theirs."""
     toothing: SplineToothing | None = None
     """Teeth of the connection: what its capacity is held with."""
+
+    @model_validator(mode="after")
+    def _one_damper(self) -> "Spline":
+        if self.torsional_damping and self.loss_factor:
+            raise fault(
+                f"torsional_damping = {show(self.torsional_damping, 'torsional_damping')} and loss_factor = "
+                f"{self.loss_factor:g} exclude each other",
+                "write one of the two",
+            )
+        return self
 
 
 class PitchWave(Part):

@@ -23,8 +23,7 @@ def loop_system(
     bearings : state of every bearing at this point, by ``gearbox.bearing``
     """
     if rig.shaft_model == "torsional":
-        assert rig.system is not None
-        return rig.system
+        return rig.twisting.at(point.speed)
     return rig.elastic.seen.system(running_state(rig, point, coupling_state, bearings))
 
 

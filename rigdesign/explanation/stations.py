@@ -195,6 +195,10 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.gears.*.spline.toothing": _at(
         records__spline_capacity="stresses of teeth, shaft and hub at the largest torque of the seat"
     ),
+    "gearboxes.*.gears.*.spline.loss_factor": _at(
+        rig__drivetrain="friction between gear and shaft",
+        coupling__loop_over_speed="its damper, by the mesh frequency of every speed",
+    ),
     "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
     "gearboxes.*.meshes.*": _at(
         rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"
