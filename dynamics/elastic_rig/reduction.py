@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import connected_components
 
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.beam import DIRECTIONS
+from dynamics.elastic_rig.cross_joints import tilt_rows
 from dynamics.elastic_rig.real_modes import RealModes, real_modes
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from dynamics.elastic_rig.spline_losses import SplineDamper, spline_dampers
@@ -170,6 +171,7 @@ def port_rows_of(model: ElasticModel) -> Array:
         damped = np.flatnonzero(np.abs(joint.damping).sum(axis=1) > 0.0)
         rows.append(joint.rows[damped])
     rows += [damper.row[None, :] for damper in spline_dampers(model)]
+    rows.append(tilt_rows(model))
     return np.vstack(rows)
 
 

@@ -64,11 +64,16 @@ class RowSpring:
 
 @dataclass(frozen=True, kw_only=True)
 class RunningState:
-    """Speed of the reference shaft [rad/s], coefficients of the bearings by name, springs on rows of all freedoms."""
+    """Speed of the reference shaft [rad/s], coefficients of the bearings by name, springs on rows of all freedoms.
+
+    torques : by coupling, mean torque that its first shaft passes to the second along their rotation [N m], for the
+        cross joints; 0 where none is given
+    """
 
     speed: float = 0.0
     bearings: Mapping[str, BearingCoefficients] = field(default_factory=dict)
     springs: tuple[RowSpring, ...] = ()
+    torques: Mapping[str, float] = field(default_factory=dict)
 
     def check(self, model: ElasticModel) -> None:
         """Raise DrivetrainError for a bearing that is missing, unknown or does not locate a shaft it should."""

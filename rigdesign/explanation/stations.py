@@ -65,10 +65,14 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         f"drivetrain.couplings.*.cold_angle_{key}": _at(
             rig__rotating_parts="moment on two shafts by axes that stand at an angle",
             rig__drivetrain="torque twice a turn of a cross joint",
+            coupling__misalignment="moment of a cross joint on the bearings of its shafts",
         )
         for key in ("lateral", "vertical")
     },
-    "drivetrain.couplings.*.joint": _at(rig__drivetrain="torque twice a turn of a cross joint"),
+    "drivetrain.couplings.*.joint": _at(
+        rig__drivetrain="torque twice a turn of a cross joint",
+        rig__rotating_parts="moment of a cross joint on both of its shafts, all the time and twice a turn",
+    ),
     "drivetrain.bearing_coefficients": _at(
         coupling__loop_system="stiffness and damping under the shafts: of each operating point, or as stated"
     ),
