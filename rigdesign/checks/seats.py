@@ -1,5 +1,6 @@
 """Checks of the seats of the gears on their shafts: press fits against slip, splines, hot and at speed."""
 
+from dataclasses import replace
 from functools import partial
 
 from rigdesign.checks.omissions import long_periods
@@ -51,6 +52,7 @@ TORQUE = (
 _SPLINE = partial(
     _RULE,
     source="limits.strength.spline_safety_minimum; Dudley 1957",
+    limit_keys=("limits.strength.spline_safety_minimum",),
     limit=lambda limits: limits.strength.spline_safety_minimum,
 )
 
@@ -63,6 +65,7 @@ PRESS_FIT = _RULE(
         f"{TORQUE}. The least counts. Stages that are not held have the temperatures of the governing held stage."
     ),
     source="limits.strength.press_fit_safety_minimum; DIN 7190-1:2017, elastic fit",
+    limit_keys=("limits.strength.press_fit_safety_minimum",),
     absent="no gear without spline.toothing states shaft_interference: there is no press fit that could slip",
     limit=lambda limits: limits.strength.press_fit_safety_minimum,
     values=_slip,
@@ -104,8 +107,13 @@ RULES = (
 
 
 def checks(solved: SolvedRig) -> list[Check]:
-    """All of them."""
-    return [rule.check(solved) for rule in RULES]
+    """All of them; the default limit of one that does not apply is no limit that the case states."""
+    return [_asked(solved, rule, rule.check(solved)) for rule in RULES]
+
+
+def _asked(solved: SolvedRig, rule: RigRule, check: Check) -> Check:
+    stated = any(solved.case.origin.value_of.get(path) for path in rule.limit_keys)
+    return check if check.value is not None or stated else replace(check, limit=None)
 
 
 REGISTRY.register(Topic(order=21, families=RULES, checks=checks))

@@ -82,6 +82,10 @@ def test_time_run_and_events_scale_the_seat_by_their_meshes() -> None:
 def test_without_a_press_fit_nothing_can_slip() -> None:
     check = slip(solved())
     assert check.verdict == "not applicable" and "shaft_interference" in check.reason
+    # a default limit of what the rig does not have is no limit that nothing answers
+    assert check.limit is None
+    stated = slip(solved(("limits.strength.press_fit_safety_minimum", 1.5)))
+    assert stated.verdict == "not applicable" and stated.limit == 1.5
 
 
 def test_a_press_fit_is_held_hot_at_speed_and_at_its_least_interference() -> None:
