@@ -43,7 +43,7 @@ _RULE = partial(
     comparison=">=",
     needs=LOADS,
     leaves_out=(long_periods,),
-    moved_by=frozenset({"strength limits", "time run", "events", "housing"}),
+    moved_by=frozenset({"strength limits", "time run", "events", "housing", "gear seats"}),
 )
 TORQUE = (
     "largest torque of the seat in the periodic responses of the held stages, in the time run over the schedule and in "

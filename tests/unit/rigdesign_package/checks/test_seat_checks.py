@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from rigdesign.checks.assumptions import depends
 from rigdesign.checks.seats import checks
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.seat_torques import held_seat_torques, seat_torques
@@ -13,6 +14,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventPeak, EventRecord
 from rigdesign.rig.model import build_rig
+from tests.builders.checks import check as check_of
 from tests.builders.warm_prototype import base
 
 FIT = "gearboxes.test.gears.pinion.shaft_interference"
@@ -204,3 +206,14 @@ def test_a_toothing_that_contradicts_itself_is_refused(changes: dict[str, str], 
     keys = {"teeth": 24, "length": "25 mm", **changes}
     with pytest.raises(Exception, match=said):
         base()[0].case.with_values({f"{SPLINE}.{key}": value for key, value in keys.items()})
+
+
+def test_the_teeth_of_a_spline_move_the_checks_of_seats_alone() -> None:
+    rig = solved(*TEETH).rig
+    path = f"{SPLINE}.length"
+    moved = {check.id for check in checks(solved(*TEETH)) if depends(rig.case, check, path)}
+    assert "strength.spline_pressure" in moved
+    other = check_of("dynamics.dynamic_factor.test")
+    assert not depends(rig.case, other, path) and depends(
+        rig.case, other, f"{SPLINE.removesuffix('.toothing')}.loss_factor"
+    )
