@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from dynamics.drivetrain.graph import Drivetrain
 from dynamics.drivetrain.power_loop import speed_ratios
+from dynamics.drivetrain.twist_rows import TwistRows
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,3 +62,10 @@ def at_speed(drivetrain: Drivetrain, speed: float) -> Drivetrain:
             for gear in drivetrain.gears
         ),
     )
+
+
+def with_spline_dampers(rows: TwistRows, drivetrain: Drivetrain, speed: float) -> TwistRows:
+    """Rows of torques with the dampers of splines at a speed of the motor's shaft [rad/s], which carry torque too."""
+    added = {loss.gear: loss.damping(speed) for loss in spline_losses(drivetrain)}
+    own = [added.get(one.part, 0.0) if one.kind == "spline" else 0.0 for one in rows.sections]
+    return replace(rows, damping=rows.damping + own) if added else rows

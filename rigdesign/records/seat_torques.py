@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.drivetrain.loss_factor import with_spline_dampers
 from dynamics.response.section_torque import section_torques
 from rigdesign.coupling.loads import shifted_laws
 from rigdesign.coupling.loop import PointResult, governing_point
@@ -63,7 +64,10 @@ def _of_response(rig: Rig, point: PointResult) -> dict[str, float]:
     if last.system is None or last.response is None or point.setting is None:
         return {}
     laws = periodic_laws(rig, shifted_laws(rig, last.models, point.setting))
-    loop = section_torques(last.system, laws, twist_rows_of(rig, last.system))
+    assert rig.drivetrain is not None
+    rows = twist_rows_of(rig, last.system)
+    rows = with_spline_dampers(rows, rig.drivetrain, rig.drive_speed(point.point.speed))
+    loop = section_torques(last.system, laws, rows)
     peaks = np.abs(loop.over_period(last.response, last.drags)).max(axis=1)
     return {
         section.part: float(peak)

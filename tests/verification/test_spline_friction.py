@@ -8,9 +8,10 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.loss_factor import at_speed
+from dynamics.drivetrain.loss_factor import at_speed, with_spline_dampers
 from dynamics.drivetrain.parts import GearBody, MeshConnection, Motor
 from dynamics.drivetrain.shaft import DrivetrainError, Section, Shaft
+from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.layout import ElasticRig
 from dynamics.elastic_rig.reduction import reduce_rig
@@ -96,6 +97,24 @@ def test_a_mode_at_the_mesh_frequency_decays_by_pi_eta(eta: float) -> None:
     decrement = -2.0 * math.pi * pole.real / pole.imag
     assert decrement == pytest.approx(math.pi * eta / math.sqrt(1.0 - 0.25 * eta**2), rel=1e-9)
     assert decrement == pytest.approx(math.pi * eta, rel=0.2 * eta**2)
+
+
+def test_the_damper_carries_torque_beside_the_spring() -> None:
+    """At the mesh frequency |k + i omega c| = k sqrt(1 + eta^2) per twist, on the rows of the splines alone."""
+    drivetrain, speed, eta = two_inertias(0.3), 150.0, 0.3
+    plain = torsional_twist_rows(drivetrain)
+    rows = with_spline_dampers(plain, drivetrain, speed)
+    for section, stiffness, damping, before in zip(
+        rows.sections, rows.stiffness, rows.damping, plain.damping, strict=True
+    ):
+        if section.kind == "spline":
+            per_twist = abs(stiffness + 1j * TEETH[0] * speed * damping)
+            assert per_twist == pytest.approx(STIFFNESS * math.sqrt(1.0 + eta**2))
+        else:
+            assert damping == before
+    still = two_inertias(0.0)
+    same = torsional_twist_rows(still)
+    assert with_spline_dampers(same, still, speed) is same
 
 
 def test_every_gear_counts_its_own_teeth_and_speed() -> None:
