@@ -278,7 +278,12 @@ def _check_references(drivetrain: Drivetrain) -> None:
     for gear in drivetrain.gears:
         drivetrain.shaft(gear.shaft).check_position(gear.position, f"gear body {gear.name!r}")
         _check_positive(f"gear body {gear.name!r}", inertia=gear.inertia, stiffness=gear.stiffness)
-        _check_not_negative(f"gear body {gear.name!r}", damping=gear.damping)
+        _check_not_negative(f"gear body {gear.name!r}", damping=gear.damping, loss_factor=gear.loss_factor)
+        if gear.damping and gear.loss_factor:
+            raise DrivetrainError(
+                f"gear body {gear.name!r}: damping = {gear.damping} N m s/rad and loss_factor = {gear.loss_factor} "
+                "exclude each other; give one of them"
+            )
     for coupling in drivetrain.couplings:
         for name in coupling.shafts:
             drivetrain.shaft(name)

@@ -36,7 +36,8 @@ class JointStiffness:
 class GearBody:
     """Rigid gear on a shaft, joined by a spline or key.
 
-    position : on the shaft [m]; inertia [kg m2]; stiffness [N m/rad]; damping [N m s/rad].
+    position : on the shaft [m]; inertia [kg m2]; stiffness [N m/rad]; damping [N m s/rad]; loss_factor [-] : instead of
+    a damping, friction whose damper depends on the speed (`dynamics.drivetrain.loss_factor`).
 
     Of the elastic rig alone: mass [kg]; diametral_inertia [kg m2], that of a cylinder if not given; width [m];
     offset : of the centre of the gear from its position, towards the right end of the shaft [m]; seat : None is rigid
@@ -54,6 +55,7 @@ class GearBody:
     width: float = 0.0
     offset: float = 0.0
     seat: JointStiffness | None = None
+    loss_factor: float = 0.0
 
     @property
     def tilting_inertia(self) -> float:

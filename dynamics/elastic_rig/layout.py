@@ -16,7 +16,13 @@ from dynamics.drivetrain.parts import Coupling, GearBody, MeshConnection
 from dynamics.drivetrain.power_loop import DISTANCE_TOLERANCE, speed_ratios
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.beam import ShearRule, TorsionalInertia
-from dynamics.elastic_rig.rotating_parts import AxisMisalignment, FlangeRunOut, RotatingPart, ShaftUnbalance
+from dynamics.elastic_rig.rotating_parts import (
+    AxisMisalignment,
+    CrossJoint,
+    FlangeRunOut,
+    RotatingPart,
+    ShaftUnbalance,
+)
 
 Array = NDArray[np.float64]
 Sign = Literal[1, -1]
@@ -147,7 +153,8 @@ class ElasticRig:
     axially_locating : bearings and meshes whose force, outside the matrices, holds a shaft along x (a rolling bearing
     that comes with its axial stiffness; a helical mesh). moment_carrying : bearings that resist tilting by themselves.
     reference_shaft : whose speed is the reference of the gyroscopics; that of the motor unless given. rotating : what
-    shakes the shafts once a turn; misalignments : of couplings, as they stand.
+    shakes the shafts once a turn; misalignments : of couplings, as they stand; cross_joints : couplings whose torque
+    bends their shafts.
 
     Raises DrivetrainError for placements that are missing or do not fit couplings and meshes.
     """
@@ -162,6 +169,7 @@ class ElasticRig:
     stations: tuple[ProbeStation, ...] = ()
     rotating: tuple[RotatingPart, ...] = ()
     misalignments: tuple[AxisMisalignment, ...] = ()
+    cross_joints: tuple[CrossJoint, ...] = ()
     reference_shaft: str | None = None
     shear: ShearRule = "cowper"
     torsional_inertia: TorsionalInertia = "lumped"
@@ -183,6 +191,9 @@ class ElasticRig:
             self.drivetrain.shaft(station.shaft).check_position(station.position, f"station {station.name!r}")
         for part in self.rotating:
             self._check_rotating(part)
+        for joint in self.cross_joints:
+            if joint.coupling not in {coupling.name for coupling in self.drivetrain.couplings}:
+                raise DrivetrainError(f"cross joint {joint.coupling!r}: no such coupling; correct the name")
         self._check_names()
 
     def placement(self, shaft: str) -> ShaftPlacement:

@@ -17,8 +17,10 @@ from scipy.sparse.csgraph import connected_components
 
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.beam import DIRECTIONS
+from dynamics.elastic_rig.cross_joints import tilt_rows
 from dynamics.elastic_rig.real_modes import RealModes, real_modes
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
+from dynamics.elastic_rig.spline_losses import SplineDamper, spline_dampers
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -81,6 +83,16 @@ class ReducedElasticRig:
         """(n, n_rigid) rigid motions: the first unit vectors."""
         return np.eye(self.size)[:, : self.n_rigid]
 
+    @cached_property
+    def spline_dampers(self) -> tuple[SplineDamper, ...]:
+        """Dampers of splines with a loss factor, rows (n,) on the coordinates, exactly zero on rigid motions."""
+        found = []
+        for damper in spline_dampers(self.model):
+            row = self.rows(damper.row)
+            row[: self.n_rigid] = 0.0
+            found.append(SplineDamper(row, damper.loss))
+        return tuple(found)
+
     def rows(self, full: Array) -> Array:
         """Rows (..., n_full) on the freedoms as rows (..., n) on the coordinates; loads likewise."""
         return np.asarray(full @ self.basis)
@@ -95,6 +107,8 @@ class ReducedElasticRig:
             bearing_stiffness, bearing_damping = coefficients.padded()
             stiffness += rows.T @ (bearing_stiffness - self.reference[name]) @ rows
             damping += rows.T @ bearing_damping @ rows
+        for damper in self.spline_dampers:
+            damping += damper.loss.damping(state.speed) * np.outer(damper.row, damper.row)
         for spring in state.springs:
             row = self.rows(spring.row)
             stiffness += spring.stiffness * np.outer(row, row)
@@ -156,6 +170,8 @@ def port_rows_of(model: ElasticModel) -> Array:
     for joint in model.joints:
         damped = np.flatnonzero(np.abs(joint.damping).sum(axis=1) > 0.0)
         rows.append(joint.rows[damped])
+    rows += [damper.row[None, :] for damper in spline_dampers(model)]
+    rows.append(tilt_rows(model))
     return np.vstack(rows)
 
 

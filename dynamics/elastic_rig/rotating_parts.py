@@ -104,4 +104,12 @@ class AxisMisalignment:
     slope: tuple[float, float] = (0.0, 0.0)
 
 
+@dataclass(frozen=True, kw_only=True)
+class CrossJoint:
+    """Coupling that is a cross joint: slope (y, z) over x of the axis of its first shaft against that of the second."""
+
+    coupling: str
+    slope: tuple[float, float]
+
+
 SpeedPower = Literal[0, 2]

@@ -1,4 +1,4 @@
-"""Linear forces of one running state: bearing coefficients and linear mesh springs at a speed.
+"""Linear forces of one running state: bearing coefficients, linear mesh springs, friction of splines at a speed.
 
 Bearings and meshes stand outside the matrices of `dynamics.elastic_rig.assembly`, because they change from stage to
 stage; here they are added to them for eigenvalues, forced response and static deflection.
@@ -15,6 +15,7 @@ from scipy.sparse.linalg import splu
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.layout import SEAT_DIRECTIONS
+from dynamics.elastic_rig.spline_losses import spline_dampers
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -63,11 +64,16 @@ class RowSpring:
 
 @dataclass(frozen=True, kw_only=True)
 class RunningState:
-    """Speed of the reference shaft [rad/s], coefficients of the bearings by name, springs on rows of all freedoms."""
+    """Speed of the reference shaft [rad/s], coefficients of the bearings by name, springs on rows of all freedoms.
+
+    torques : by coupling, mean torque that its first shaft passes to the second along their rotation [N m], for the
+        cross joints; 0 where none is given
+    """
 
     speed: float = 0.0
     bearings: Mapping[str, BearingCoefficients] = field(default_factory=dict)
     springs: tuple[RowSpring, ...] = ()
+    torques: Mapping[str, float] = field(default_factory=dict)
 
     def check(self, model: ElasticModel) -> None:
         """Raise DrivetrainError for a bearing that is missing, unknown or does not locate a shaft it should."""
@@ -117,6 +123,9 @@ def full_matrices(model: ElasticModel, state: RunningState) -> FullMatrices:
         bearing_stiffness, bearing_damping = coefficients.padded()
         stiffness = stiffness + rows.T @ csr_array(bearing_stiffness) @ rows
         damping = damping + rows.T @ csr_array(bearing_damping) @ rows
+    for damper in spline_dampers(model):
+        row = csr_array(damper.row[None, :])
+        damping = damping + damper.loss.damping(state.speed) * (row.T @ row)
     for spring in state.springs:
         row = csr_array(spring.row[None, :])
         stiffness = stiffness + spring.stiffness * (row.T @ row)

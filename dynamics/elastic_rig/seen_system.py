@@ -17,12 +17,14 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import Coordinates, LinearSystem
 from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, rotating_load
 from dynamics.drivetrain.shaft import DrivetrainError
+from dynamics.elastic_rig.cross_joints import WAVES, CrossJointLoad, cross_joint_loads
 from dynamics.elastic_rig.joints import ElasticJoint
 from dynamics.elastic_rig.reduction import ReducedElasticRig
 from dynamics.elastic_rig.rotating_loads import line_loads
 from dynamics.elastic_rig.running_state import RunningState
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 TURNING = ("unbalance", "bow and run-out")
 """What turns with a shaft line: loads that grow with the square of its speed, and loads that do not."""
@@ -61,7 +63,7 @@ class SeenRig:
             drive_dof=places["drive"],
             twist_load=self._twist_load,
             drag_loads=self._drag_loads,
-            periodic_loads=self._periodic_loads,
+            periodic_loads=(*self._periodic_loads, *self._cross_joints(state)),
             own_coordinates=Coordinates(
                 freedoms=self._forth,
                 inertia=at.mass,
@@ -174,6 +176,23 @@ class SeenRig:
                 name = TURNING[0] if power else TURNING[1]
                 found += rotating_load(f"{name} of {shaft}", turning, self._port_of_line(shaft), part)
         return tuple(found)
+
+    def _cross_joints(self, state: RunningState) -> Iterator[PeriodicLoad]:
+        """What cross joints make of the torque that they pass, twice a turn of their first shaft."""
+        for load, turning in self._cross_joint_loads:
+            torque = state.torques.get(load.coupling, 0.0)
+            if torque:
+                part = LoadOrder(order=WAVES, amplitude=torque)
+                name = f"cross joint {load.coupling}"
+                yield from rotating_load(name, turning, self._port_of_line(load.shaft), part)
+
+    @cached_property
+    def _cross_joint_loads(self) -> tuple[tuple[CrossJointLoad, Complex], ...]:
+        """Each with its turning load on the freedoms."""
+        return tuple(
+            (load, self._load(load.turning.real) + 1j * self._load(load.turning.imag))
+            for load in cross_joint_loads(self.reduced.model)
+        )
 
     def _port_of_line(self, shaft: str) -> int:
         """A freedom that turns with the line of a shaft: a gear on it."""

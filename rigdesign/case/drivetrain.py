@@ -174,7 +174,8 @@ class CouplingInput(Part):
     """From +y in the sense of rotation."""
     joint: Literal["constant_velocity", "hooke"] = "constant_velocity"
     """hooke: a cross joint, which under an angle b between the axes turns one shaft ahead and back by b^2/4 twice a
-    turn, against its torsional stiffness."""
+    turn, against its torsional stiffness, and bends both by half of its torque times b, all the time and twice a
+    turn."""
 
 
 class MotorInput(Part):

@@ -135,6 +135,11 @@ class StrengthLimits(Part):
 
     root_safety_minimum: Positive | None = None
     """Least safety S_F against tooth breakage, ISO 6336-3."""
+    press_fit_safety_minimum: Positive = 1.2
+    """Least safety of the press fits of gears against slip, hot and at speed: 1.2 as is usual with DIN 7190-1, whose
+    text was not at hand."""
+    spline_safety_minimum: Positive = 1.0
+    """Least allowable stress of a spline over its stress; the allowable stresses of the case carry the safety."""
 
 
 class FlankLimits(Part):

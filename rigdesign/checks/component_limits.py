@@ -19,6 +19,7 @@ from rigdesign.checks.rules import Omission, Rule, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
+from rigdesign.results.loads import StageBracing
 from rigdesign.results.units import NUMBER
 from rigdesign.rig.shaft_seals import shaft_seals
 
@@ -129,30 +130,35 @@ def _drive_power(solved: SolvedRig, part: str) -> Found:
     return float(abs(ramp.drive_torque * ramp.speed * ratio).max()), "time run over the schedule"
 
 
-def _actuator_force(solved: SolvedRig, part: str) -> Found:
+def _worst_of_shift(
+    solved: SolvedRig, values: Callable[[StageBracing], Iterator[tuple[float, str]]]
+) -> Found:
+    """Worst value of the bracing at the held stages of a loop that is braced by the shift of a gear."""
     power = solved.case.drivetrain
     if solved.loads is None or power is None:
         return None, NO_LOADS
     if power.bracing.mode == "twist_held" or power.bracing.shifted_gear is None:
         return None, "the loop is braced by a twist: no gear is shifted"
-    return worst(
-        (bracing.drift.warm.actuator_force + bracing.drift.warm.friction_force, f"stage {bracing.stage}")
-        for bracing in solved.loads.bracing
-    )
+    return worst(value for bracing in solved.loads.bracing for value in values(bracing))
+
+
+def _actuator_force(solved: SolvedRig, part: str) -> Found:
+    return _worst_of_shift(solved, _forces)
+
+
+def _forces(bracing: StageBracing) -> Iterator[tuple[float, str]]:
+    warm = bracing.drift.warm
+    yield warm.actuator_force + warm.friction_force, f"stage {bracing.stage}"
 
 
 def _shift_travel(solved: SolvedRig, part: str) -> Found:
     """From the assembled position, cold or warm: what is left of the way to the end stop is the reserve of control."""
-    power = solved.case.drivetrain
-    if solved.loads is None or power is None:
-        return None, NO_LOADS
-    if power.bracing.mode == "twist_held" or power.bracing.shifted_gear is None:
-        return None, "the loop is braced by a twist: no gear is shifted"
-    return worst(
-        (abs(state.shift), f"stage {bracing.stage}, {heat}")
-        for bracing in solved.loads.bracing
-        for heat, state in (("cold", bracing.drift.initial), ("warm", bracing.drift.warm))
-    )
+    return _worst_of_shift(solved, _shifts)
+
+
+def _shifts(bracing: StageBracing) -> Iterator[tuple[float, str]]:
+    for heat, state in (("cold", bracing.drift.initial), ("warm", bracing.drift.warm)):
+        yield abs(state.shift), f"stage {bracing.stage}, {heat}"
 
 
 def _circulating_power(solved: SolvedRig, part: str) -> Found:

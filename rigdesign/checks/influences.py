@@ -11,7 +11,7 @@ from typing import Literal
 Influence = Literal[
     "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
     "thermal history", "coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
-    "rig heat", "flank rating", "events",
+    "rig heat", "flank rating", "events", "gear seats",
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
@@ -47,6 +47,7 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
     ("drivetrain.bracing.spline_friction_coefficient", "drivetrain.bracing.spline_pitch_radius"): (
         "spline friction",
     ),
+    ("gearboxes.*.gears.*.spline.toothing", "gearboxes.*.gears.*.shaft_interference_minimum"): ("gear seats",),
     ("gearboxes.*.meshes.*.face_load_factor", "gearboxes.*.gears.*.quality_grade"): ("gear rating",),
     (
         "gearboxes.*.oil.scuffing_load_stage",

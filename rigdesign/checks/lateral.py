@@ -3,6 +3,8 @@
 Limits are those of API 617, written for compressors; a test rig has no standard of its own.
 """
 
+from functools import partial
+
 from dynamics.standards.api617_2014 import AF_CRITICAL
 from rigdesign.checks.registry import REGISTRY, Need, RigRule, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
@@ -83,8 +85,10 @@ def _torsional(solved: SolvedRig) -> Values:
             yield abs(one.margin), f"stage {stage.stage}: {_words(one)}"
 
 
+_RULE = partial(RigRule, unit=NUMBER, group=GROUP, needs=BENDING)
+
 RULES = (
-    RigRule(
+    _RULE(
         key="lateral.orbit",
         title="motion once a turn in an oil film over its clearance",
         procedure=(
@@ -92,15 +96,12 @@ RULES = (
             " run-out: peak-to-peak motion of the journal, those of all shaft lines added, over the warm diametral"
             " clearance. The largest counts."
         ),
-        unit=NUMBER,
-        group=GROUP,
         source="limits.dynamics.orbit_share_maximum; API 617",
-        needs=BENDING,
         limit=lambda limits: limits.dynamics.orbit_share_maximum,
         values=_orbits,
         absent=NO_FILM,
     ),
-    RigRule(
+    _RULE(
         key="lateral.separation",
         title="distance of critical speeds from held speeds over the distance they need",
         procedure=(
@@ -109,16 +110,13 @@ RULES = (
             "17 (1 - 1/(AF - 1.5)) % below the speed of its shaft, 10 % more above it. The least of distance over "
             "needed distance counts; modes that whirl backward are not excited."
         ),
-        unit=NUMBER,
-        group=GROUP,
         source="limits.dynamics.lateral_separation_minimum; separation margins of API 617 and API TR 684-1",
         comparison=">=",
-        needs=BENDING,
         limit=lambda limits: limits.dynamics.lateral_separation_minimum,
         values=_separations,
         absent=NO_MODE,
     ),
-    RigRule(
+    _RULE(
         key="lateral.stability",
         title="least logarithmic decrement at the held stages",
         procedure=(
@@ -126,43 +124,34 @@ RULES = (
             " temperature, damping that turns with the shafts included. Lateral modes up to the speed of the fastest"
             " shaft count, and every mode that grows."
         ),
-        unit=NUMBER,
-        group=GROUP,
         source="limits.dynamics.logarithmic_decrement_minimum; API 617",
         comparison=">=",
-        needs=BENDING,
         limit=lambda limits: limits.dynamics.logarithmic_decrement_minimum,
         values=lambda solved: _decrements("held", solved),
         absent=NO_MODE,
     ),
-    RigRule(
+    _RULE(
         key="lateral.stability_without_torque",
         title="least logarithmic decrement where the loop loses its torque at speed",
         procedure=(
             "The same at the speed of the held stages with the flanks apart: the bearings carry the weight alone, their"
             " films are solved again at that load. A lightly loaded journal bearing whirls at half the speed."
         ),
-        unit=NUMBER,
-        group=GROUP,
         source="limits.dynamics.logarithmic_decrement_minimum; API 617",
         comparison=">=",
-        needs=BENDING,
         limit=lambda limits: limits.dynamics.logarithmic_decrement_minimum,
         values=lambda solved: _decrements("lost", solved),
         absent=NO_MODE,
     ),
-    RigRule(
+    _RULE(
         key="lateral.torsional_separation",
         title="distance of torsional modes from once and twice a turn",
         procedure=(
             "Torsional modes of the closed loop at the held stages against once and twice the speed of every shaft, as"
             " a share of that excitation. The least counts."
         ),
-        unit=NUMBER,
-        group=GROUP,
         source="limits.dynamics.torsional_separation_minimum; API 617",
         comparison=">=",
-        needs=BENDING,
         limit=lambda limits: limits.dynamics.torsional_separation_minimum,
         values=_torsional,
         absent=NO_TORSION,

@@ -29,9 +29,8 @@ def loop_over_speed(
     speeds : lowest and highest stated speed [rad/s]
     torque_share : mesh torques that load the bearings at a stated speed, per those of ``warm``
     """
-    if rig.shaft_model == "torsional":
-        assert rig.system is not None
-        return rig.system
+    if rig.shaft_model == "torsional" and not rig.twisting.follows_speed:
+        return rig.twisting.at(warm.point.speed)
     high = max(speeds)
     low = max(min(speeds), SLOWEST * high)
     count = max(1, math.ceil(math.log(high / low) / math.log(WIDTH)))

@@ -1,6 +1,7 @@
 """Matrices of the power circuit at an operating point: torsional, the same always, or elastic, with its bearings."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Literal
 
 from dynamics.bearing.lateral import LateralCoefficients, constant_coefficients
@@ -9,6 +10,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.misalignment import coupling_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
@@ -23,16 +25,16 @@ def loop_system(
     bearings : state of every bearing at this point, by ``gearbox.bearing``
     """
     if rig.shaft_model == "torsional":
-        assert rig.system is not None
-        return rig.system
+        return rig.twisting.at(point.speed)
     return rig.elastic.seen.system(running_state(rig, point, coupling_state, bearings))
 
 
 def running_state(
     rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bearings: Mapping[str, BearingState]
 ) -> RunningState:
-    """Speed and bearings of the elastic rig at an operating point."""
-    return running_at(rig, point, bearing_coefficients(rig, coupling_state, bearings))
+    """Speed, bearings and torques of cross joints of the elastic rig at an operating point."""
+    state = running_at(rig, point, bearing_coefficients(rig, coupling_state, bearings))
+    return replace(state, torques=coupling_torques(rig, coupling_state.mesh_torque))
 
 
 def running_at(

@@ -2,13 +2,18 @@
 
 A coupling presses with its stiffness times what the shafts do not give way of the offset and angle: with bearings at
 the reference stiffness of the reduced rig, as the load decides on their own. Both act at the middle of the coupling.
+A cross joint under an angle bends both shafts by half of its torque times that angle on top
+(`dynamics.elastic_rig.cross_joints`).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.elastic_rig import cross_joints
+from dynamics.elastic_rig.cross_joints import bending_moment
 from dynamics.elastic_rig.rotating_loads import misalignment_load
 from rigdesign.rig.model import Rig
 
@@ -18,30 +23,84 @@ ARM = 1.0
 """Distance of the two forces that stand for a moment [m]."""
 
 
-def coupling_forces(rig: Rig, shaft: str) -> Iterator[tuple[float, Array]]:
+def coupling_forces(rig: Rig, shaft: str, mesh_torque: Mapping[str, float]) -> Iterator[tuple[float, Array]]:
     """Forces (2,) in the plane (y, z) [N] on a shaft that bends, each with its place on it [m].
 
-    A moment is two opposite forces; places may lie beyond the ends of the shaft.
+    A moment is two opposite forces; places may lie beyond the ends of the shaft. mesh_torque : of the pinion of every
+    mesh [N m], for the cross joints.
     """
     power = rig.case.drivetrain
-    if rig.shaft_model == "torsional" or power is None or not rig.elastic.rig.misalignments:
+    if rig.shaft_model == "torsional" or power is None:
         return
-    pressed = reactions(rig)
-    for name, coupling in power.couplings.items():
+    pressed = reactions(rig) if rig.elastic.rig.misalignments else {}
+    bent = _bent_by_cross_joints(rig, mesh_torque)
+    for name in pressed.keys() | bent.keys():
+        coupling = power.couplings[name]
         if shaft not in coupling.shafts:
             continue
         push = 1.0 if shaft == coupling.shafts[0] else -1.0
         axis, at = rig.axes[shaft], _middle(rig, name)
-        force, couple = push * pressed[name][:2], push * pressed[name][2:] / ARM
+        both = push * pressed.get(name, np.zeros(4)) + bent.get(name, np.zeros(4))
+        force, couple = both[:2], both[2:] / ARM
         place = axis.direction * (at - axis.start)
         yield place, force - couple
         yield place + axis.direction * ARM, couple
 
 
-def standing_load(rig: Rig) -> Array:
-    """(n,) load of axes out of line on the coordinates of the reduced rig."""
+def _bent_by_cross_joints(rig: Rig, mesh_torque: Mapping[str, float]) -> dict[str, Array]:
+    """As `reactions`, alike on both shafts of every cross joint: no force, moment along the slopes [N m]."""
+    torques = coupling_torques(rig, mesh_torque)
+    assert rig.case.drivetrain is not None
+    found = {}
+    for joint in rig.elastic.rig.cross_joints:
+        sense = rig.axes[rig.case.drivetrain.couplings[joint.coupling].shafts[0]].sense
+        about_y, about_z = bending_moment(joint, sense, torques[joint.coupling])
+        found[joint.coupling] = np.array([0.0, 0.0, about_z, -about_y])
+    return found
+
+
+def coupling_torques(rig: Rig, mesh_torque: Mapping[str, float]) -> dict[str, float]:
+    """Mean torque that the first shaft of every cross joint passes to the second along their rotation [N m].
+
+    mesh_torque : of the pinion of every mesh [N m]. What the motor and the drags take part in is left out.
+    """
+    drivetrain = rig.drivetrain
+    if rig.shaft_model == "torsional" or drivetrain is None:
+        return {}
+    found = {}
+    for joint in rig.elastic.rig.cross_joints:
+        side = _side_of(drivetrain, joint.coupling)
+        torque = 0.0
+        for mesh in drivetrain.meshes:
+            ratio = mesh.base_radii[1] / mesh.base_radii[0]
+            for gear, share in ((mesh.pinion, -1.0), (mesh.wheel, ratio)):
+                if drivetrain.gear(gear).shaft in side:
+                    torque += share * mesh_torque[mesh.name]
+        found[joint.coupling] = torque
+    return found
+
+
+def _side_of(drivetrain: Drivetrain, coupling: str) -> set[str]:
+    """Shafts on the side of the first shaft of a coupling, of the line that it is in."""
+    others = [one.shafts for one in drivetrain.couplings if one.name != coupling]
+    side = {next(one for one in drivetrain.couplings if one.name == coupling).shafts[0]}
+    while True:
+        joined = {shaft for shafts in others if side & set(shafts) for shaft in shafts}
+        if joined <= side:
+            return side
+        side |= joined
+
+
+def standing_load(rig: Rig, mesh_torque: Mapping[str, float] | None = None) -> Array:
+    """(n,) load of axes out of line on the coordinates of the reduced rig.
+
+    mesh_torque : of the pinion of every mesh [N m], for the cross joints; they are left out without it
+    """
     elastic = rig.elastic
-    return elastic.reduced.rows(misalignment_load(elastic.model, elastic.rig.misalignments))
+    load = misalignment_load(elastic.model, elastic.rig.misalignments)
+    if mesh_torque is not None and elastic.rig.cross_joints:
+        load = load + cross_joints.standing_load(elastic.model, coupling_torques(rig, mesh_torque))
+    return elastic.reduced.rows(load)
 
 
 def reactions(rig: Rig) -> dict[str, Array]:

@@ -115,6 +115,13 @@ def explain_check(case: Case, identity: str, finished: FinishedCheck | None = No
 DRIVETRAIN, HOUSING, TRANSIENT = "a drivetrain", "a gearbox with a housing", "check --transient"
 LOADED_CONTACT = "loaded contact, not at fidelity quick"
 BENDING = "shafts that bend, not at fidelity quick"
+PRESS_FIT = "a gear with shaft_interference and no spline.toothing"
+SPLINES = {
+    "strength.spline_pressure": "allowable_pressure in spline.toothing of a gear",
+    "strength.spline_shear": "allowable_shear in spline.toothing of a gear",
+    "strength.spline_hub": "allowable_tension and hub_root_diameter in spline.toothing of a gear",
+}
+"""What each check of splines needs."""
 
 
 def _needs(family: RuleFamily) -> Iterator[str]:
@@ -128,6 +135,10 @@ def _needs(family: RuleFamily) -> Iterator[str]:
         yield LOADED_CONTACT
     if family.key.startswith("lateral."):
         yield BENDING
+    if family.key == "strength.press_fit_slip":
+        yield PRESS_FIT
+    if family.key in SPLINES:
+        yield SPLINES[family.key]
 
 
 def _met(case: Case, needs: tuple[str, ...]) -> bool:
@@ -138,7 +149,26 @@ def _met(case: Case, needs: tuple[str, ...]) -> bool:
         (DRIVETRAIN not in needs or power is not None)
         and (HOUSING not in needs or housed)
         and (BENDING not in needs or (power is not None and power.shaft_model == "elastic"))
+        and _seats_met(case, needs)
     )
+
+
+def _seats_met(case: Case, needs: tuple[str, ...]) -> bool:
+    """Whether the gears have what checks of their seats need."""
+    gears = [gear for box in case.gearboxes.values() for gear in box.gears.values()]
+    splines = [gear.spline.toothing for gear in gears if gear.spline is not None and gear.spline.toothing]
+    pressed = [
+        gear for gear in gears if gear.shaft_interference and not (gear.spline and gear.spline.toothing)
+    ]
+    found = {
+        PRESS_FIT: bool(pressed),
+        SPLINES["strength.spline_pressure"]: any(one.allowable_pressure for one in splines),
+        SPLINES["strength.spline_shear"]: any(one.allowable_shear for one in splines),
+        SPLINES["strength.spline_hub"]: any(
+            one.allowable_tension and one.hub_root_diameter for one in splines
+        ),
+    }
+    return all(met for need, met in found.items() if need in needs)
 
 
 def _stated(case: Case, path: str) -> str:

@@ -65,10 +65,14 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         f"drivetrain.couplings.*.cold_angle_{key}": _at(
             rig__rotating_parts="moment on two shafts by axes that stand at an angle",
             rig__drivetrain="torque twice a turn of a cross joint",
+            coupling__misalignment="moment of a cross joint on the bearings of its shafts",
         )
         for key in ("lateral", "vertical")
     },
-    "drivetrain.couplings.*.joint": _at(rig__drivetrain="torque twice a turn of a cross joint"),
+    "drivetrain.couplings.*.joint": _at(
+        rig__drivetrain="torque twice a turn of a cross joint",
+        rig__rotating_parts="moment of a cross joint on both of its shafts, all the time and twice a turn",
+    ),
     "drivetrain.bearing_coefficients": _at(
         coupling__loop_system="stiffness and damping under the shafts: of each operating point, or as stated"
     ),
@@ -147,7 +151,11 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__tooth_influence="outline of the tooth in its influence numbers",
     ),
     "gearboxes.*.gears.*.shaft_interference": _at(
-        records__tooth_history="tension of the press fit in the root of an idler, at speed, without temperature"
+        records__tooth_history="tension of the press fit in the root of an idler, at speed, without temperature",
+        records__press_fits="pressure and slip torque of the seat, hot and at speed",
+    ),
+    "gearboxes.*.gears.*.shaft_interference_minimum": _at(
+        records__press_fits="pressure and slip torque of the seat, hot and at speed"
     ),
     "gearboxes.*.gears.*.helix_hand": _at(
         case__rotation="end of the face that comes into mesh last: sign of the misalignment over the face"
@@ -188,6 +196,13 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__strain_gauges="strain to stress by Hooke's law"
     ),
     "gearboxes.*.gears.*.strain_gauges.*.bridge": _at(strain_gauge__bridge="strain to bridge voltage"),
+    "gearboxes.*.gears.*.spline.toothing": _at(
+        records__spline_capacity="stresses of teeth, shaft and hub at the largest torque of the seat"
+    ),
+    "gearboxes.*.gears.*.spline.loss_factor": _at(
+        rig__drivetrain="friction between gear and shaft",
+        coupling__loop_over_speed="its damper, by the mesh frequency of every speed",
+    ),
     "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
     "gearboxes.*.meshes.*": _at(
         rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"

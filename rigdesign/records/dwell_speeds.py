@@ -1,7 +1,7 @@
 """At which speeds the rig may dwell: bands of the response to avoid, stages in them, the ramp that follows."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +23,7 @@ from rigdesign.records.resonance_bands import (
     safe_windows,
 )
 from rigdesign.records.section_torques import twist_rows_of
-from rigdesign.results.campbell import CampbellRecord
+from rigdesign.results.campbell import CampbellCrossing, CampbellRecord
 from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, DwellRecord, DwellStage, ResonanceKind
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.section_torques import SectionTorqueRecord
@@ -67,7 +67,8 @@ def dwell_record(
     bounds = bounds_of(rig)
     shares = [*mesh_shares(rig, run), *_root_shares(rig, loads), *_torque_shares(rig, torques)]
     found = [one for share in shares for one in resonances(share, bounds.of(share), bounds.margin)]
-    found += _order_crossings(diagram, bounds.margin)
+    names = {mode.number: mode.name for mode in diagram.modes}
+    found += order_resonances(diagram.crossings, names, bounds.margin)
     avoided = bands(found)
     low, high = torques.speeds[0], torques.speeds[-1]
     safe = safe_windows(avoided, low, high)
@@ -152,42 +153,41 @@ def near_shares(rig: Rig, run: DynamicRun, speed: float) -> Iterator[DynamicShar
         yield DynamicShare("shaft torque", name, speeds, share[:, own].max(axis=1))
 
 
-def order_resonances(rig: Rig, modes: Sequence[LoopMode], margin: float) -> Iterator[AvoidedResonance]:
-    """Turning and coupling orders that meet a lively mode of a held point, wherever it lies.
+def held_crossings(rig: Rig, modes: Sequence[LoopMode]) -> Iterator[CampbellCrossing]:
+    """Where turning and coupling orders meet the modes of a held point, wherever that lies.
 
-    modes : of the closed loop there, with the rigid rotation
+    modes : of the closed loop there that oscillate
     """
-    oscillating = [mode for mode in modes if mode.frequency > 0.0]
-    for number, mode in enumerate(oscillating, start=1):
+    for number, mode in enumerate(modes, start=1):
         for order in excitation_orders(rig):
-            if order.kind != "mesh" and mode.damping_ratio < LIVELY:
-                speed = 2.0 * math.pi * mode.frequency / order.cycles
-                yield AvoidedResonance(
-                    kind="shaft order",
-                    where=f"{order.kind} {', '.join(order.of)}, order {order.harmonic:g}, mode {number} ({mode.name})",
-                    speed=speed,
-                    share=None,
-                    low=speed * (1.0 - margin),
-                    high=speed * (1.0 + margin),
+            if order.kind != "mesh":
+                yield CampbellCrossing(
+                    mode=number,
+                    kind=order.kind,
+                    of=order.of,
+                    harmonic=order.harmonic,
+                    speed=2.0 * math.pi * mode.frequency / order.cycles,
+                    frequency=mode.frequency,
+                    damping_ratio=mode.damping_ratio,
+                    gain=0.0,
                 )
 
 
-def _order_crossings(diagram: CampbellRecord, margin: float) -> list[AvoidedResonance]:
-    """Turning frequencies and coupling orders that meet a lively mode."""
-    names = {mode.number: mode.name for mode in diagram.modes}
-    return [
-        AvoidedResonance(
-            kind="shaft order",
-            where=f"{crossing.kind} {', '.join(crossing.of)}, order {crossing.harmonic:g}, mode {crossing.mode} "
-            f"({names[crossing.mode]})",
-            speed=crossing.speed,
-            share=None,
-            low=crossing.speed * (1.0 - margin),
-            high=crossing.speed * (1.0 + margin),
-        )
-        for crossing in diagram.crossings
-        if crossing.kind != "mesh" and crossing.damping_ratio < LIVELY
-    ]
+def order_resonances(
+    crossings: Iterable[CampbellCrossing], names: Mapping[int, str], margin: float
+) -> Iterator[AvoidedResonance]:
+    """Turning and coupling orders that meet a lively mode; names : of the modes by number."""
+    for crossing in crossings:
+        if crossing.kind != "mesh" and crossing.damping_ratio < LIVELY:
+            yield AvoidedResonance(
+                kind="shaft order",
+                where=f"{crossing.kind} {', '.join(crossing.of)}, order {crossing.harmonic:g}, mode {crossing.mode} "
+                f"({names[crossing.mode]})",
+                speed=crossing.speed,
+                share=None,
+                low=crossing.speed * (1.0 - margin),
+                high=crossing.speed * (1.0 + margin),
+            )
 
 
 def _stages(

@@ -64,7 +64,7 @@ def dynamic_loads(rig: Rig, run: DynamicRun, *, checks_only: bool = False) -> Dy
         },
         modes=tuple(modes),
         loop_crossings=tuple(mode_crossings(rig, modes, max(run.curves.response.speeds))),
-        damping=tuple(damping_audit(rig.drivetrain, laws)),
+        damping=tuple(damping_audit(rig.twisting.parts(run.test.point.speed), laws)),
         bracing=tuple(stage_bracing(rig, point) for point in run.points),
         teeth={found.gear: found for found in tooth_histories(rig, run.test, 2 if checks_only else 1)},
     )

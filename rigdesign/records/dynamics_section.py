@@ -30,6 +30,7 @@ from rigdesign.results.rows.loaded_contact import loaded_contact_row
 from rigdesign.results.rows.press_fit import press_fit_row
 from rigdesign.results.rows.section_torques import section_torque_rows
 from rigdesign.results.rows.spectra import spectrum_row, waterfall_row
+from rigdesign.results.rows.spline_capacity import spline_stress_row
 from rigdesign.results.rows.tooth_history import tooth_history_row
 from rigdesign.rig.model import Rig
 
@@ -74,6 +75,7 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
         section_torques=section_torque_rows(vibration.torques),
         dwell=dwell_row(vibration.dwell),
         press_fits=[press_fit_row(found) for found in vibration.press_fits],
+        splines=[spline_stress_row(found) for found in vibration.splines],
         contact_loss_maps=[contact_loss_row(found) for found in vibration.maps],
         pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],
         waterfalls=[waterfall_row(found) for found in waterfalls(rig, run)],

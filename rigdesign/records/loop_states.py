@@ -33,13 +33,13 @@ class LoopState:
 def loop_states(rig: Rig, held: PointResult, top: float) -> tuple[LoopState, ...]:
     """States up to a stated speed [rad/s], rising.
 
-    Shafts that only twist have one loop for all speeds: its lowest and highest.
+    Shafts that only twist have one loop for all speeds, its lowest and highest, but for splines with a loss factor.
     """
     at_held = [point.speed for point in held_points(rig) if 0.0 < point.speed <= top]
     grid = np.geomspace(SLOWEST * top, top, COUNT).tolist()
     if rig.shaft_model == "torsional":
-        assert rig.system is not None
-        return tuple(LoopState(speed, rig.system, None) for speed in sorted({grid[0], *at_held, top}))
+        speeds = {*grid, *at_held} if rig.twisting.follows_speed else {grid[0], *at_held, top}
+        return tuple(LoopState(speed, rig.twisting.at(speed), None) for speed in sorted(speeds))
     free = [speed for speed in grid if all(abs(speed - own) > SAME * own for own in at_held)]
     return tuple(_at(rig, held, speed) for speed in sorted({*free, *at_held}))
 

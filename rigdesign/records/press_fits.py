@@ -1,20 +1,19 @@
-"""Torque that the press fits of the gears carry at the held stages, hot and at speed, against the dynamic torque.
+"""Torque that the press fits of the gears carry, hot and at speed, against the largest torque of their seats.
 
 Elastic fit of a gear without web (DIN 7190-1:2017, thick rings after Lame; `dynamics.rating.mean_stress`): the bore
 opens by the centrifugal load, and by the heat of the gear over that of the shaft. The shaft is taken as cold as the oil
-that leaves its bearings, which is on the safe side.
+that leaves its bearings, which is on the safe side. The interference is the least that the case states.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from dynamics.rating.mean_stress import seat_pressure
+from dynamics.rating.mean_stress import PressFit, seat_pressure
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.seat_torques import SeatTorque
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, seated_gear, shaft_material
 from rigdesign.results.press_fit import PressFitCapacity
-from rigdesign.results.section_torques import SectionTorqueRecord
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig
 
@@ -24,13 +23,30 @@ REFERENCE = ZERO + 20.0
 """Temperature at which the interference counts [K] (ISO 1)."""
 
 
-def press_fits(rig: Rig, run: DynamicRun, torques: SectionTorqueRecord) -> Iterator[PressFitCapacity]:
-    """Of every gear whose interference the case states, at every held point."""
-    for gear, places in gear_meshes(rig).items():
-        if rig.mesh_gear(places[0].mesh, places[0].index).shaft_interference > 0.0:
-            for point in run.points:
-                peak = _peak_torque(rig, gear, places, point, torques)
-                yield _capacity(rig, gear, places[0], point, peak)
+def press_fits(rig: Rig, torques: Iterable[SeatTorque]) -> Iterator[PressFitCapacity]:
+    """Of every gear whose interference the case states, at every torque of its seat.
+
+    A press fit on the teeth of a spline, whose toothing is stated, carries no torque by friction and is left out.
+    """
+    first = {gear: places[0] for gear, places in gear_meshes(rig).items()}
+    for seat in torques:
+        fit = least_fit(rig, first[seat.gear])
+        if fit is not None and not splined(rig, first[seat.gear]):
+            yield _capacity(rig, first[seat.gear], fit, seat)
+
+
+def least_fit(rig: Rig, place: GearInMesh) -> PressFit | None:
+    """Press fit of a gear with its least interference; None where the case states none."""
+    _, fit = seated_gear(rig, place)
+    entry = rig.mesh_gear(place.mesh, place.index)
+    least = entry.shaft_interference_minimum
+    return fit if fit is None or least is None else replace(fit, interference=least)
+
+
+def splined(rig: Rig, place: GearInMesh) -> bool:
+    """Whether the teeth of a spline carry the torque of a gear."""
+    spline = rig.mesh_gear(place.mesh, place.index).spline
+    return spline is not None and spline.toothing is not None
 
 
 def slip_torque(pressure: float, diameter: float, length: float, friction: float) -> float:
@@ -38,23 +54,30 @@ def slip_torque(pressure: float, diameter: float, length: float, friction: float
     return 0.5 * friction * pressure * math.pi * diameter**2 * length
 
 
-def _capacity(rig: Rig, name: str, place: GearInMesh, point: PointResult, peak: float) -> PressFitCapacity:
-    entry, box = rig.mesh_gear(place.mesh, place.index), rig.mesh(rig.mesh_names[place.mesh])[0]
-    disc, fit = seated_gear(rig, place)
-    assert fit is not None
-    state = point.last.coupling_state
-    warm = state.gear_temperature[name]
+def grown_over_shaft(rig: Rig, place: GearInMesh, point: PointResult) -> tuple[float, float, float]:
+    """What the bore of a gear grows over its shaft by heat, on the diameter [m]; temperatures of both [K]."""
+    entry = rig.mesh_gear(place.mesh, place.index)
+    name = rig.mesh_gears(rig.mesh_names[place.mesh])[place.index]
+    warm = point.last.coupling_state.gear_temperature[name]
     cold = _shaft_temperature(name, point, warm)
     of_gear = rig.materials[entry.material]
     of_shaft = shaft_material(rig, entry.shaft) or of_gear
     grown = of_gear.expansion_coefficient * (warm - REFERENCE)
     grown -= of_shaft.expansion_coefficient * (cold - REFERENCE)
-    hot = fit.interference - entry.bore_diameter * grown
-    speed = rig.shaft_speed(entry.shaft, point.point.speed)
-    pressure = seat_pressure(disc, speed, replace(fit, interference=hot))
+    return entry.bore_diameter * grown, warm, cold
+
+
+def _capacity(rig: Rig, place: GearInMesh, fit: PressFit, seat: SeatTorque) -> PressFitCapacity:
+    entry, box = rig.mesh_gear(place.mesh, place.index), rig.mesh(rig.mesh_names[place.mesh])[0]
+    disc, _ = seated_gear(rig, place)
+    grown, warm, cold = grown_over_shaft(rig, place, seat.point)
+    hot = fit.interference - grown
+    pressure = seat_pressure(disc, rig.shaft_speed(entry.shaft, seat.speed), replace(fit, interference=hot))
+    width = box.body_width(seat.gear.split(".")[1])
     return PressFitCapacity(
-        gear=name,
-        stage=point.point.stage,
+        gear=seat.gear,
+        stage=seat.point.point.stage,
+        where=seat.where,
         interference=fit.interference,
         interference_hot=hot,
         gear_temperature=warm,
@@ -62,8 +85,8 @@ def _capacity(rig: Rig, name: str, place: GearInMesh, point: PointResult, peak: 
         pressure_at_rest=seat_pressure(disc, 0.0, fit),
         pressure=pressure,
         friction=FRICTION,
-        slip_torque=slip_torque(pressure, entry.bore_diameter, box.body_width(name.split(".")[1]), FRICTION),
-        peak_torque=peak,
+        slip_torque=slip_torque(pressure, entry.bore_diameter, width, FRICTION),
+        peak_torque=seat.torque,
     )
 
 
@@ -71,19 +94,3 @@ def _shaft_temperature(name: str, point: PointResult, warm: float) -> float:
     """That of the oil that leaves the bearings, not above the gear; of the gear where there is none [K]."""
     outlet = point.last.coupling_state.oil_outlet
     return min(warm, outlet.get(f"{name.split('.')[0]}.bearing_oil", warm))
-
-
-def _peak_torque(
-    rig: Rig, gear: str, places: list[GearInMesh], point: PointResult, torques: SectionTorqueRecord
-) -> float:
-    """Highest torque of the seat: of its spring, else of the meshes of a gear that is rigid with its shaft."""
-    for held in torques.held:
-        if held.stage == point.point.stage and (held.place.kind, held.place.part) == ("spline", gear):
-            return held.swing.peak
-    response = point.last.response
-    assert response is not None
-    peaks = []
-    for place in places:
-        teeth = rig.pairs[rig.mesh_names[place.mesh]].teeth
-        peaks.append(float(response.maximum[place.mesh]) * teeth[place.index] / teeth[0])
-    return max(peaks)

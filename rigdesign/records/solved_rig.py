@@ -11,6 +11,7 @@ from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
+from rigdesign.records.seat_torques import SeatTorque, seat_torques
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
 from rigdesign.results.events import EventRecord
@@ -60,6 +61,12 @@ class SolvedRig:
             for point in self.points
             for seal in seal_whirls(self.rig, point)
         }
+
+    @cached_property
+    def seat_torques(self) -> tuple[SeatTorque, ...]:
+        """Largest torque of the seat of every gear in every held stage, in the stages of the time run and the events;
+        empty without loads."""
+        return () if self.loads is None else seat_torques(self.rig, self.points, self.loads, self.events)
 
     @property
     def mesh_errors(self) -> Mapping[str, float]:

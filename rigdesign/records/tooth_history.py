@@ -203,7 +203,7 @@ def seated_gear(rig: Rig, place: GearInMesh) -> tuple[GearDisc, PressFit | None]
         fit = PressFit(
             interference=gear.shaft_interference,
             shaft=_solid(shaft_material(rig, gear.shaft) or rig.materials[gear.material]),
-            shaft_bore=_shaft_bore(rig, gear.shaft, gear.position),
+            shaft_bore=shaft_bore(rig, gear.shaft, gear.position),
         )
     return disc, fit
 
@@ -227,7 +227,7 @@ def shaft_material(rig: Rig, shaft: str) -> Material | None:
     return None if power is None or shaft not in power.shafts else rig.materials[power.shafts[shaft].material]
 
 
-def _shaft_bore(rig: Rig, shaft: str, position: float | None) -> float:
+def shaft_bore(rig: Rig, shaft: str, position: float | None) -> float:
     """Inner radius of a shaft at a position [m]; 0 where the case has no sections or the gear no position."""
     power = rig.case.drivetrain
     if power is None or shaft not in power.shafts or position is None:

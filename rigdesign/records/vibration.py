@@ -11,13 +11,16 @@ from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.press_fits import press_fits
+from rigdesign.records.seat_torques import held_seat_torques
 from rigdesign.records.section_torques import section_torque_record
+from rigdesign.records.spline_capacity import spline_stresses
 from rigdesign.results.campbell import CampbellRecord
 from rigdesign.results.contact_in_motion import ContactLossMap
 from rigdesign.results.dwell import DwellRecord
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.press_fit import PressFitCapacity
 from rigdesign.results.section_torques import SectionTorqueRecord
+from rigdesign.results.spline_capacity import SplineStress
 from rigdesign.rig.model import Rig
 
 Maps = tuple[ContactLossMap, ...]
@@ -32,6 +35,7 @@ class LoopVibration:
     dwell: DwellRecord
     maps: Maps
     press_fits: tuple[PressFitCapacity, ...]
+    splines: tuple[SplineStress, ...]
 
 
 def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibration:
@@ -46,10 +50,12 @@ def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibrat
         torques = section_torque_record(rig, run, loads, states)
         diagram, maps = tasks.results()
     assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
+    seats = tuple(held_seat_torques(rig, run.points))
     return LoopVibration(
         campbell=diagram,
         torques=torques,
         dwell=dwell_record(rig, run, loads, torques, diagram),
         maps=maps,
-        press_fits=tuple(press_fits(rig, run, torques)),
+        press_fits=tuple(press_fits(rig, seats)),
+        splines=tuple(spline_stresses(rig, seats)),
     )

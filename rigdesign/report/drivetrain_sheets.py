@@ -86,7 +86,9 @@ def joint_sheet(result: RunResult) -> Sheet | None:
             cells = [
                 gear.raw("shaft").replace("_", " "),
                 spline.value("torsional_stiffness"),
-                spline.value("torsional_damping"),
+                f"loss factor {spline.value('loss_factor')}"
+                if float(spline.raw("loss_factor") or 0.0)
+                else spline.value("torsional_damping"),
                 gear.value("inertia"),
                 "–",
             ]

@@ -193,3 +193,6 @@ class DynamicsResult:
     """Of every gear with an interference, at the held stages: {gear, stage, interference_um, interference_hot_um,
     gear_degC, shaft_degC, pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
     without torque)}."""
+    splines: list[dict[str, Any]] = field(default_factory=list)
+    """Of every gear whose spline states its toothing, at the held stages, each stress with an allowable one: {gear,
+    where, kind, torque_Nm, stress_MPa, allowable_MPa, safety}."""

@@ -5,13 +5,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class PressFitCapacity:
-    """A gear on its shaft at a held stage."""
+    """A gear on its shaft at the largest torque of a stage or event."""
 
     gear: str
     """``gearbox.gear``"""
     stage: str
+    """Held stage whose temperatures count."""
+    where: str
+    """Stage or event of the torque, in words."""
     interference: float
-    """Effective, on the diameter, at rest and 20 degC [m]."""
+    """Effective and least, on the diameter, at rest and 20 degC [m]."""
     interference_hot: float
     """[m]"""
     gear_temperature: float
@@ -26,7 +29,7 @@ class PressFitCapacity:
     slip_torque: float
     """[N m]"""
     peak_torque: float
-    """Highest in the periodic response [N m]."""
+    """[N m]"""
 
     @property
     def safety(self) -> float | None:

@@ -122,6 +122,7 @@ def _gear_bodies(
                     width=box.body_width(name),
                     stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
                     damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
+                    loss_factor=0.0 if gear.spline is None else gear.spline.loss_factor,
                 )
             )
     return bodies

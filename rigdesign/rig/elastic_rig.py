@@ -33,7 +33,7 @@ from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS
 from rigdesign.case.model import Case
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.properties.materials import Material
-from rigdesign.rig.rotating_parts import misalignments, rotating_parts
+from rigdesign.rig.rotating_parts import cross_joints, misalignments, rotating_parts
 from rigdesign.rig.shaft_axes import ShaftAxis
 
 Array = NDArray[np.float64]
@@ -120,6 +120,7 @@ def elastic_rig(
         axially_locating=(*_single_helical(case, pairs), *pressed_bearings(case)),
         rotating=tuple(rotating_parts(case, drivetrain, materials)),
         misalignments=tuple(misalignments(case)),
+        cross_joints=tuple(cross_joints(case)),
     )
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
+from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.layout import HousingSupport
 from dynamics.gear.pair import GearPair
@@ -43,6 +43,7 @@ from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, se
 from rigdesign.rig.speeds import speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
 from rigdesign.rig.tooth_influence import ToothInfluence
+from rigdesign.rig.twisting_loop import TwistingLoop
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
 from thermal.expansion.expansion import ExpansionSetup
@@ -115,13 +116,21 @@ class Rig:
 
     @cached_property
     def system(self) -> LinearSystem | None:
-        """Matrices of the power circuit without its meshes."""
-        return None if self.drivetrain is None else assemble(self.drivetrain)
+        """Matrices of the power circuit that only twists, without its meshes; splines as at test speed."""
+        return None if self.drivetrain is None else self.twisting.at(self.case.schedule.test_speed)
+
+    @cached_property
+    def twisting(self) -> TwistingLoop:
+        """The same at every stated speed; of a rig with a drivetrain only."""
+        assert self.drivetrain is not None
+        return TwistingLoop(self.drivetrain, self.drive_speed(1.0))
 
     @cached_property
     def joints(self) -> tuple[TorsionalJoint, ...]:
-        """Springs and dampers of the power circuit between its freedoms."""
-        return () if self.drivetrain is None else joints(self.drivetrain)
+        """Springs and dampers of the power circuit between its freedoms, splines as at test speed."""
+        if self.drivetrain is None:
+            return ()
+        return joints(self.twisting.parts(self.case.schedule.test_speed))
 
     @cached_property
     def shaft_torsions(self) -> tuple[SectionTorsion, ...]:

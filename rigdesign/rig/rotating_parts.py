@@ -7,6 +7,7 @@ from dynamics.drivetrain.power_loop import speed_ratios
 from dynamics.elastic_rig.balance import BalanceGrade, residual_unbalances
 from dynamics.elastic_rig.rotating_parts import (
     AxisMisalignment,
+    CrossJoint,
     FlangeRunOut,
     RotatingPart,
     ShaftBow,
@@ -68,6 +69,15 @@ def misalignments(case: Case) -> Iterator[AxisMisalignment]:
         )
         if any((*found.offset, *found.slope)):
             yield found
+
+
+def cross_joints(case: Case) -> Iterator[CrossJoint]:
+    """Couplings that are cross joints under an angle."""
+    assert case.drivetrain is not None
+    for name, coupling in case.drivetrain.couplings.items():
+        slope = coupling.cold_angle_lateral, coupling.cold_angle_vertical
+        if coupling.joint == "hooke" and any(slope):
+            yield CrossJoint(coupling=name, slope=slope)
 
 
 def grade_of(case: Case, shaft: ShaftInput) -> float:

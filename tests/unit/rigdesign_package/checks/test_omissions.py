@@ -112,6 +112,7 @@ def family_of(identity: str) -> RuleFamily:
     return max(keys, key=lambda family: len(family.key))
 
 
+SEATS = ("press_fit_slip", "spline_pressure", "spline_shear", "spline_hub")
 LATERAL = ("orbit", "separation", "stability", "stability_without_torque", "torsional_separation")
 
 
@@ -121,6 +122,7 @@ def test_every_family_of_rules_means_a_check() -> None:
         | {f"bought_part.{quantity}" for quantity in (*RESULTS, "given")}
         | {"transient.soak.test", "oil.supply.warm.lines.mesh", "transient.oil_supply.warm.lines.mesh"}
         | {"oil.room_temperature", "flank.edge_pressure.test"}
+        | {f"strength.{key}" for key in SEATS}
         | {f"lateral.{key}" for key in LATERAL}
         | {f"{family.key}.broken" for family in EVENTS}
     )

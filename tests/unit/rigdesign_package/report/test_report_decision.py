@@ -270,6 +270,16 @@ def test_data_sheets_show_what_bends():
     assert bearing_sheet(make_result(inputs=prototype_inputs("case.toml"))) is None
 
 
+def test_the_sheet_of_joints_shows_the_loss_factor_of_a_spline():
+    rows = rig_inputs()
+    path = "gearboxes.test.gears.pinion.spline.torsional_stiffness"
+    stated = next(row for row in rows if row.path == path)
+    friction = replace(stated, path=path.replace("torsional_stiffness", "loss_factor"), value="0.05")
+    joints = dict(joint_sheet(make_result(inputs=[*rows, friction])).rows)
+    assert joints["gear test.pinion"][2] == "loss factor 0.05"
+    assert joints["gear test.wheel"][2] == "–"
+
+
 def test_the_gear_sheet_has_the_computed_sizes_drawn_and_warm():
     base = make_result(inputs=rig_inputs())
     geometry = {
