@@ -10,6 +10,7 @@ from dynamics.drivetrain.modes import LoopMode
 from dynamics.response.section_torque import section_torques
 from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.campbell import excitation_orders
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
@@ -22,7 +23,6 @@ from rigdesign.records.resonance_bands import (
     resonances,
     safe_windows,
 )
-from rigdesign.records.section_torques import twist_rows_of
 from rigdesign.results.campbell import CampbellCrossing, CampbellRecord
 from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, DwellRecord, DwellStage, ResonanceKind
 from rigdesign.results.loads import DynamicLoads

@@ -99,7 +99,7 @@ class _EventPlace:
         )
         bearings = solve_bearings(rig, point, state)
         system = loop_system(rig, point, state, bearings)
-        channels = torque_channels(twist_rows_of(rig, system))
+        channels = torque_channels(twist_rows_of(rig, system, speed))
         if rig.shaft_model != "torsional":
             running = running_state(rig, point, state, bearings)
             channels += bearing_channels(rig.elastic.seen, system, running)

@@ -11,12 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.drivetrain.loss_factor import with_spline_dampers
 from dynamics.response.section_torque import section_torques
 from rigdesign.coupling.loads import shifted_laws
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.records.section_torques import twist_rows_of
+from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.tooth_history import gear_meshes
 from rigdesign.results.events import EventRecord
 from rigdesign.results.loads import DynamicLoads
@@ -64,10 +63,7 @@ def _of_response(rig: Rig, point: PointResult) -> dict[str, float]:
     if last.system is None or last.response is None or point.setting is None:
         return {}
     laws = periodic_laws(rig, shifted_laws(rig, last.models, point.setting))
-    assert rig.drivetrain is not None
-    rows = twist_rows_of(rig, last.system)
-    rows = with_spline_dampers(rows, rig.drivetrain, rig.drive_speed(point.point.speed))
-    loop = section_torques(last.system, laws, rows)
+    loop = section_torques(last.system, laws, twist_rows_of(rig, last.system, point.point.speed))
     peaks = np.abs(loop.over_period(last.response, last.drags)).max(axis=1)
     return {
         section.part: float(peak)

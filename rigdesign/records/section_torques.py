@@ -15,7 +15,7 @@ from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.loads import laws_of, shifted_laws
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.coupling.twist_rows import twist_rows_of as twist_rows_of
+from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import LoopState, nearest
 from rigdesign.records.run_torques import place_of, run_torques
@@ -67,7 +67,7 @@ def _held(rig: Rig, point: PointResult, loads: DynamicLoads) -> Iterator[HeldTor
     last = point.last
     assert last.system is not None and last.response is not None and point.setting is not None
     laws = periodic_laws(rig, shifted_laws(rig, last.models, point.setting))
-    loop = section_torques(last.system, laws, twist_rows_of(rig, last.system))
+    loop = section_torques(last.system, laws, twist_rows_of(rig, last.system, point.point.speed))
     torque = loop.over_period(last.response, last.drags)
     speed = rig.pinion_speed(point.point.speed)
     for place, section, swing in _swings(loop.rows, torque):
