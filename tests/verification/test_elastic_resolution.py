@@ -5,7 +5,7 @@ largest change of K_V of either mesh against what the rules give (elements of 9.
 static shapes of their ports above, harmonics to 50 kHz, 34 slices of the helical face, bands a quarter wide):
 
 | elements | 19.8 mm 9.6e-3, 4.95 mm 2.9e-3 |
-| modes up to | 50 kHz 1.6e-3, 100 kHz with harmonics to 75 kHz 1.7e-3; 10 kHz 2.1e-2, 5 kHz 3.8e-2, harmonics to 2.5 times |
+| modes up to | 50 kHz 1.6e-3, 100 kHz and harmonics to 75 kHz 1.7e-3, 10 kHz 2.1e-2, 5 kHz 3.8e-2 |
 | slices of helical / spur faces | 24 / 5 3.5e-3, 48 / 9 1.3e-3, 96 / 33 1.7e-3 |
 | speed bands | half as many 2.9e-3, twice 1.4e-3, four times 1.4e-3 |
 """
