@@ -14,7 +14,7 @@ import numpy as np
 from dynamics.contact.mesh_cycle import MeshCycle
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
-from rigdesign.coupling.loads import mesh_microgeometry
+from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.report.figures.drawing import STYLE, new_figure
 from rigdesign.rig.model import build_rig
 from rigdesign.validation.p1_contact import cycle_at, elastic_contact, elastic_gears

@@ -12,7 +12,7 @@ from rigdesign.checks.omissions import Omissions, long_periods
 from rigdesign.checks.places import meshes
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.coupling.loads import signed_torque
+from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.records.curves import resolved, speed_ranges
 from rigdesign.records.resonances import NEAR
 from rigdesign.records.solved_rig import SolvedRig, worst

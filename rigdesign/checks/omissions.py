@@ -16,7 +16,7 @@ from rigdesign.case.jets import injected_flow
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
-from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.solved_rig import SolvedRig

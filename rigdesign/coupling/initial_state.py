@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_seats import initial_seats
+from rigdesign.coupling.braced_loop import first_torques
 from rigdesign.coupling.expansion import uniform_expansion
-from rigdesign.coupling.loads import first_torques
 from rigdesign.coupling.shaft_positions import axis_tilt, flank_approach, mesh_placements
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig

@@ -8,19 +8,13 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.finite import finite
 from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.expansion import HousingExpansion, expand_housing
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import (
-    BracingState,
-    LoadedCircuit,
-    MeshModel,
-    brace_initial,
-    mesh_models,
-    respond,
-)
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
+from rigdesign.coupling.mesh_models import MeshModel, mesh_models
 from rigdesign.coupling.oil import OilStream, oil_streams
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rigdesign.coupling.acceleration import Acceleration, Anderson, Differences, PlainRelaxation
+from rigdesign.coupling.braced_loop import BracingState
 from rigdesign.coupling.convergence import CaseTolerances, Residual
 from rigdesign.coupling.fixed_point import solve_fixed_point
 from rigdesign.coupling.iteration import IterationResult, PointProblem
-from rigdesign.coupling.loads import BracingState
 from rigdesign.coupling.oil_circuits import demand_setpoints
 from rigdesign.coupling.rig_heat import demand_loss_maps
 from rigdesign.coupling.state import CouplingState, OperatingPoint

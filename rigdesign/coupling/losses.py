@@ -18,10 +18,11 @@ from rigdesign.case.heat_split import HeatSplit
 from rigdesign.case.jets import mesh_jet
 from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.bearing_heat import body_shares
+from rigdesign.coupling.braced_loop import first_torques
 from rigdesign.coupling.dip import churning
 from rigdesign.coupling.flank_heat import mesh_split
 from rigdesign.coupling.given_losses import given_power
-from rigdesign.coupling.loads import MeshModel, first_torques
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig

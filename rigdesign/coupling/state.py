@@ -9,6 +9,9 @@ from dataclasses import dataclass, field, fields
 
 Values = Mapping[str, float]
 
+LEAST_TORQUE = 1.0
+"""Torque of a mesh [N m] below which its stiffness and friction are taken at this torque."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class OperatingPoint:

@@ -15,9 +15,9 @@ from dynamics.response.time_response import TimeResponse, run_schedule
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.braced_loop import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.loads import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.state import CouplingState, OperatingPoint

@@ -17,7 +17,7 @@ from dynamics.orders.deviation_response import OrderLoads
 from dynamics.response.harmonic_walk import mesh_cells
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from rigdesign.coupling.loads import LoadedCircuit, signed_torque
+from rigdesign.coupling.braced_loop import LoadedCircuit, signed_torque
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

@@ -12,8 +12,9 @@ import numpy as np
 
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, signed_torque
 from rigdesign.coupling.iteration import IterationResult, PointProblem
-from rigdesign.coupling.loads import BracingState, LoadedCircuit, MeshModel, signed_torque
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.prediction.model import ORDER_QUANTITIES
 from rigdesign.prediction.readings import Readings
 from rigdesign.rig.model import Rig

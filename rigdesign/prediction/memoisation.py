@@ -17,23 +17,20 @@ from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
-from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.iteration import IterationParts
-from rigdesign.coupling.loads import (
+from rigdesign.coupling.braced_loop import (
     BracingState,
     LoadedCircuit,
-    MeshModel,
     brace_initial,
-    laws_of,
-    mesh_friction,
-    mesh_model,
-    mesh_phase,
     respond,
     shifted_laws,
     signed_torque,
 )
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_damping import mesh_damping
+from rigdesign.coupling.mesh_friction import mesh_friction
+from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_model, mesh_phase
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.rig.model import Rig

@@ -13,7 +13,8 @@ from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import DeviationResponse, OrderLoads, OrderTorque
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
-from rigdesign.coupling.loads import LoadedCircuit, MeshModel, shifted_laws, signed_torque
+from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws, signed_torque
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.prediction.exact_orders import ExactMotion
 from rigdesign.prediction.order_places import OscillatingTorque
 from rigdesign.rig.model import Rig

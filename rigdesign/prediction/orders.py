@@ -19,7 +19,7 @@ from dynamics.orders.deviation_response import CYCLE_STEPS, DeviationResponse, O
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.loads import LoadedCircuit, shifted_laws
+from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws
 from rigdesign.prediction.exact_orders import exact_motion
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import (

@@ -13,8 +13,8 @@ from itertools import islice
 import numpy as np
 
 from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.coupling.braced_loop import LoadedCircuit
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
-from rigdesign.coupling.loads import LoadedCircuit
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.state_vector import SCALES, numbering, scaled, unscaled
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
@@ -177,7 +177,7 @@ class _LinearisedResponse:
         """By how much they differ; None where the response was solved."""
 
     def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
-        """As `rigdesign.coupling.loads.respond`."""
+        """As `rigdesign.coupling.braced_loop.respond`."""
         self.causes = self._drag.causes(rig, circuit)
         if self.causes is None:
             return self._problem.parts.response(rig, circuit)

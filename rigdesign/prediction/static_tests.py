@@ -17,8 +17,9 @@ from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from rigdesign.base.errors import UsageError
+from rigdesign.coupling.braced_loop import brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import brace_initial, mesh_models, shifted_laws, signed_torque
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig

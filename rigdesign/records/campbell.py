@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.modes import LoopMode, ModeShape
 from dynamics.drivetrain.tracked_modes import TrackedMode, shaped_modes, tracked
-from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import HIGHEST_MODE
 from rigdesign.records.loop_states import LoopState

@@ -14,9 +14,9 @@ from dynamics.flank.field import Flank
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.pair_gap import PairGap
-from rigdesign.coupling.loads import mesh_microgeometry
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_axes import axes_in_mesh
+from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.rig.model import Rig
 
 

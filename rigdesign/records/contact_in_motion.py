@@ -12,8 +12,9 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
-from rigdesign.coupling.loads import laws_of, signed_torque
+from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.records import root
 from rigdesign.records.curves import own_ratio, resolved

@@ -14,9 +14,10 @@ from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.case.drivetrain import MeshStiffness
+from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.coupling.loop_over_speed import loop_over_speed
+from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.results.dynamics import DynamicFactorPoint

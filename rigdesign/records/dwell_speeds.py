@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.drivetrain.modes import LoopMode
 from dynamics.response.section_torque import section_torques
-from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.campbell import excitation_orders

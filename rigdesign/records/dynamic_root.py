@@ -16,7 +16,7 @@ from dynamics.contact.root_field import PairForces, RootField, Side, root_field
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.gear.normal_arc import normal_arc
-from rigdesign.coupling.loads import MeshModel, laws_of
+from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.records import root
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import ROOT

@@ -10,9 +10,10 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modes import LoopMode, damping_audit
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.response.time_response import TimeResponse
+from rigdesign.coupling.braced_loop import shifted_gear, signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import laws_of, mesh_models, shifted_gear, signed_torque
 from rigdesign.coupling.loop import PointResult, governing_point
+from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.records import root
 from rigdesign.records.curves import Curves, own_ratio
 from rigdesign.records.loop_modes import held_modes

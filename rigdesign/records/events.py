@@ -27,10 +27,11 @@ from dynamics.response.tooth_loss import without_teeth
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.braced_loop import BracingState, shifted_laws, signed_torque
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.loads import BracingState, mesh_models, shifted_laws, signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import loop_system, running_state
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import DRAG_SHARES, drags_at

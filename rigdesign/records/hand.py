@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from rigdesign.coupling.expansion import centrifugal_expansion
-from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.units import MM, UM
 from rigdesign.results.warm_gearbox import WarmGearbox

@@ -23,9 +23,9 @@ from dynamics.elastic_rig.running_state import RowSpring, RunningState
 from dynamics.standards.api617_2014 import TORSIONAL_SEPARATION, separation_above, separation_below
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
-from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.loop_system import running_state
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.results.lateral import (
     BearingWhirl,

@@ -19,8 +19,8 @@ from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.contact.pitch_deviation import transverse_load_factor
 from dynamics.contact.root_course import RootCourse, root_course
 from dynamics.gear.pair import GearPair
-from rigdesign.coupling.loads import LEAST_TORQUE
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.state import LEAST_TORQUE
 from rigdesign.records.contact_gap import HeldFlanks, held_flanks
 from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
 from rigdesign.results.loaded_contact import LoadedContact

@@ -3,9 +3,9 @@
 from dynamics.drivetrain.modes import LoopMode, loop_modes
 from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
 from dynamics.response.modal_model import DEFAULT_CUTOFF
-from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import running_state
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.rig.model import Rig
 
 

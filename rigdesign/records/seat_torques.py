@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.response.section_torque import section_torques
-from rigdesign.coupling.loads import shifted_laws
+from rigdesign.coupling.braced_loop import shifted_laws
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.twist_rows import TorqueSection, TwistRows
 from dynamics.response.section_torque import SectionTorques, section_torques
 from dynamics.response.speed_sweep import CurvePoint
-from rigdesign.coupling.loads import laws_of, shifted_laws
+from rigdesign.coupling.braced_loop import shifted_laws
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.dynamics import DynamicRun

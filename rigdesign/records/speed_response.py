@@ -8,9 +8,10 @@ from dynamics.drivetrain.static_loop import port_model
 from dynamics.response.harmonic_walk import MOST_HARMONICS, mesh_cells
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.loads import MeshModel, laws_of, signed_torque
+from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import loop_system
+from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.coupling.time_run import drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.rig.model import Rig

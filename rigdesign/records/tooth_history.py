@@ -17,8 +17,8 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import root_stress
 from dynamics.rating.mean_stress import GearDisc, MeanRootStress, PressFit, Solid, mean_root_stress
 from dynamics.standards.iso6336_3_2006 import IDLER_RATIO, mean_stress_ratio
-from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.properties.materials import Material
 from rigdesign.records import root
 from rigdesign.records.gear_loads import application_factor

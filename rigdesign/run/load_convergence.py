@@ -19,8 +19,9 @@ from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks.dynamics import loaded_stages
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.loads import BracingState, LoadedCircuit, mesh_models, respond
+from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, respond
 from rigdesign.coupling.loop_system import loop_system
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import DiscretisationRow

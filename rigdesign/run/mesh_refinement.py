@@ -18,8 +18,8 @@ from rigdesign.checks import mesh_checks
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.convergence import Residual
 from rigdesign.coupling.iteration import HousingResult, IterationResult, solve_housings
-from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.relaxation import next_state
 from rigdesign.coupling.state import CouplingState

@@ -11,7 +11,7 @@ from rigdesign.base.units import show
 from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
-from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.temperatures import HousingField

@@ -126,7 +126,7 @@ def contact_rows(quick: bool) -> Iterator[ValidationRow]:
     """Contact ratios, pattern and gauge stress of the shipped case on influence numbers; speed, if not ``quick``."""
     from rigdesign.case import load_case
     from rigdesign.case.shipped import case_folder
-    from rigdesign.coupling.loads import mesh_microgeometry
+    from rigdesign.coupling.microgeometry import mesh_microgeometry
     from rigdesign.rig.model import build_rig
     from rigdesign.validation.p1_contact import (
         coarse,

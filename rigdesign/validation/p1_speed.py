@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model, solve_static
-from rigdesign.coupling.loads import laws_of, signed_torque
+from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import solve_point
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records import root
 from rigdesign.rig.model import Rig, build_rig

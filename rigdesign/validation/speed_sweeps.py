@@ -17,9 +17,11 @@ from dynamics.mesh.tip_contact import tip_separation
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
+from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, mesh_microgeometry, mesh_models, signed_torque
 from rigdesign.coupling.loop_system import running_state
+from rigdesign.coupling.mesh_models import MeshModel, mesh_models
+from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype

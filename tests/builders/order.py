@@ -6,8 +6,9 @@ from math import pi
 
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import BracingState, LoadedCircuit, MeshModel, brace_initial, mesh_models
+from rigdesign.coupling.mesh_models import MeshModel, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig, build_rig

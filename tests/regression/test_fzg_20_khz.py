@@ -13,8 +13,8 @@ import pytest
 from dynamics.drivetrain.modes import loop_modes, modes_above_samples
 from dynamics.response.time_response import TimeResponse
 from rigdesign.case import load_case
-from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
 from rigdesign.rig.model import Rig, build_rig
 

@@ -17,13 +17,15 @@ from pathlib import Path
 import pytest
 
 from dynamics.bearing.rolling_state import RollingState
+from dynamics.losses.mesh_loss import ToothPath
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
+from rigdesign.coupling.braced_loop import LoadedCircuit, respond
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import LoadedCircuit, MeshModel, ToothPath, mesh_models, respond
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.loop_system import bearing_coefficients
+from rigdesign.coupling.mesh_models import MeshModel, mesh_models
 from rigdesign.coupling.shaft_positions import mesh_placements
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points

@@ -19,8 +19,9 @@ from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.time_response import run_schedule
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.coupling.braced_loop import brace_initial
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, brace_initial, laws_of, mesh_models
+from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 

@@ -23,9 +23,10 @@ from dynamics.drivetrain.speed_bands import SpeedBands
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import laws_of, mesh_models, signed_torque
 from rigdesign.coupling.loop_system import loop_system
+from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

@@ -12,8 +12,9 @@ from dynamics.drivetrain.shaft import Section, Shaft, free_frequencies
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case import load_case
 from rigdesign.checks import all_checks
+from rigdesign.coupling.braced_loop import LoadedCircuit, respond, signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import LoadedCircuit, laws_of, mesh_models, respond, signed_torque
+from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.resolution import MOST_SHAFT_ELEMENTS, counted_frequency, highest_mode, with_elements

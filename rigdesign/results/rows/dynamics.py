@@ -5,7 +5,7 @@ from typing import Any
 
 from dynamics.drivetrain.modes import Crossing, DampingRecord, LoopMode
 from dynamics.gear.pair import GearPair
-from rigdesign.coupling.loads import MeshModel
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.results.dynamics import RootStressHistory
 from rigdesign.results.loads import (
     ContactLoss,

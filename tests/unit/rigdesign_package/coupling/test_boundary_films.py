@@ -10,8 +10,8 @@ from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses

@@ -12,9 +12,9 @@ from rigdesign.case import Case
 from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
-from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import mesh_losses
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
 from rigdesign.records.heat_split import friction_heat, heat_splits

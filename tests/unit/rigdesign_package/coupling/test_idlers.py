@@ -11,10 +11,11 @@ from rigdesign.base.errors import CaseError
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.braced_loop import shifted_gear
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import PointProblem, run_iteration
-from rigdesign.coupling.loads import mesh_models, shifted_gear
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.relaxation import next_state
 from rigdesign.coupling.state import CouplingState, OperatingPoint

@@ -11,8 +11,8 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.pair_gap import PairGap
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, mesh_model
 from rigdesign.coupling.mesh_axes import axes_in_mesh
+from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 from tests.unit.rigdesign_package.coupling.test_tooth_springs import AnalyticTeeth

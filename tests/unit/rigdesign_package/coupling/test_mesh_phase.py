@@ -7,8 +7,9 @@ import pytest
 
 from dynamics.mesh.flank import reach_beyond
 from rigdesign import load_case
+from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import LoadedCircuit, brace_initial, mesh_models, mesh_phase, respond
+from rigdesign.coupling.mesh_models import mesh_models, mesh_phase
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.builders.idler_case import idler_case

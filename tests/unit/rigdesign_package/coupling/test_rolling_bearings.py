@@ -20,9 +20,9 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_heat import conductances
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.shaft_loads import shaft_loads

@@ -10,7 +10,7 @@ from dynamics.mesh.static_cycle import static_cycle
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, mesh_model
+from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Compliances, ToothInfluence

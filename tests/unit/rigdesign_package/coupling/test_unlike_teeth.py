@@ -15,8 +15,9 @@ from dynamics.mesh.flank import alike_teeth, mesh_law
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
+from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, laws_of, locked_share, mesh_models, signed_torque
+from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.tooth_deviations import averaged_gears, periodic_laws
 from rigdesign.rig.model import Rig, build_rig

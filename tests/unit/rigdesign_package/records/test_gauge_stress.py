@@ -9,7 +9,7 @@ from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.contact.root_course import root_course
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
-from rigdesign.coupling.loads import mesh_microgeometry
+from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.validation.p1_contact import coarse, cycle_at, elastic_contact, elastic_gears

@@ -11,8 +11,8 @@ from dynamics.elastic_rig.lateral import rig_modes
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop_system import running_state
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
 from rigdesign.results.lateral import LateralVibration

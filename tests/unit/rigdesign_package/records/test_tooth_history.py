@@ -13,7 +13,7 @@ from dynamics.contact.tooth_turn import ToothTurn, pitches_apart
 from dynamics.rating.mean_stress import mean_stress_factor
 from rigdesign.case import load_case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, mesh_model
+from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records import reversed_bending, root, tooth_history
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, tooth_histories

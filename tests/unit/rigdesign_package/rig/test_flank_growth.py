@@ -6,7 +6,7 @@ import pytest
 
 from dynamics.gear.pair import GearPair
 from rigdesign.case import load_case
-from rigdesign.coupling.loads import flank_expansion
+from rigdesign.coupling.mesh_models import flank_expansion
 from rigdesign.rig.model import build_rig
 
 

@@ -12,7 +12,7 @@ from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 

@@ -1,0 +1,149 @@
+"""The braced power circuit at an operating point: torque or shift that is held, periodic response under it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.errors import DynamicsNotConverged
+from dynamics.mesh.flank import alike_teeth
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
+from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.rig.model import Rig
+
+
+def locked_share(rig: Rig) -> float:
+    """Torque that is locked in, as a share of the stated one: bracing drifts with the temperature of the gear oil."""
+    power = rig.case.drivetrain
+    if power is None or power.bracing.temperature_drift == 0.0:
+        return 1.0
+    box = rig.case.gearboxes[power.torque_at.split(".")[0]]
+    fed = box.gear_oil_temperature
+    assert fed is not None
+    warmer = fed - rig.case.ambient.reference_temperature
+    return 1.0 + power.bracing.temperature_drift * warmer
+
+
+def signed_torque(rig: Rig, point: OperatingPoint) -> float:
+    """Torque asked of the control mesh at its pinion [N m]; positive on the front flank."""
+    return rig.torque_ratio * point.torque * locked_share(rig)
+
+
+def first_torques(rig: Rig, point: OperatingPoint) -> Mapping[str, float]:
+    """Mesh torques before any response: every shaft line in balance without losses."""
+    force = signed_torque(rig, point) / rig.pairs[rig.control_mesh].base_radii[0]
+    return {name: rig.mesh_forces[name] * force * pair.base_radii[0] for name, pair in rig.pairs.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BracingState:
+    """How the loop is braced: the torque that is controlled, or the twist [rad] or shift [m] that is held."""
+
+    mode: Mode
+    twist: float = 0.0
+    shift: float = 0.0
+
+
+def shifted_gear(rig: Rig) -> ShiftedGear | None:
+    """The helical gear whose axial shift braces the loop; None if the case names none."""
+    power = rig.case.drivetrain
+    if power is None or power.bracing.shifted_gear is None:
+        return None
+    box_name, gear = power.bracing.shifted_gear.split(".")
+    for index, name in enumerate(rig.mesh_names):
+        if name.split(".")[0] != box_name:
+            continue
+        box, mesh = rig.mesh(name)
+        entry = box.meshes[mesh]
+        if gear in (entry.pinion, entry.wheel):
+            pair = rig.pairs[name]
+            return ShiftedGear(
+                mesh=index,
+                helix_angle=pair.helix_angle,
+                base_helix_angle=pair.base_helix_angle,
+                working_radius=pair.working_radii[0 if gear == entry.pinion else 1],
+                halves=2 if entry.double_helical else 1,
+                floating_partner=power.bracing.partner_floats,
+                spline_friction=power.bracing.spline_friction_coefficient,
+                spline_radius=power.bracing.spline_pitch_radius or 0.0,
+            )
+    raise ValueError(
+        f"drivetrain.bracing.shifted_gear = {power.bracing.shifted_gear}: this gear is in no mesh"
+    )
+
+
+def brace_initial(
+    rig: Rig,
+    point: OperatingPoint,
+    initial: CouplingState,
+    models: Sequence[MeshModel] | None = None,
+    system: LinearSystem | None = None,
+) -> BracingState:
+    """Bracing that makes the demanded torque in the initial state; kept from then on in the held modes.
+
+    The torque is the mean over all places where teeth that are not alike may come to rest.
+
+    models : the meshes in that state, where they are known; system : of the drivetrain, the torsional one when left out
+    """
+    system = rig.system if system is None else system
+    assert rig.case.drivetrain is not None and system is not None
+    mode = rig.case.drivetrain.bracing.mode
+    if mode == "torque_controlled":
+        return BracingState(mode=mode)
+    met = mesh_models(rig, point, initial) if models is None else models
+    laws = [alike_teeth(law) for law in laws_of(met)]
+    state = brace(system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
+    return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
+
+
+@dataclass(frozen=True)
+class LoadedCircuit:
+    """The warm meshes of a braced power circuit at an operating point, and the torques that brake it."""
+
+    point: OperatingPoint
+    models: tuple[MeshModel, ...]
+    drags: Mapping[str, float]
+    """By place of the drivetrain [N m]."""
+    bracing: BracingState
+    system: LinearSystem
+    """Of the drivetrain without its meshes."""
+
+
+def respond(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
+    """Periodic response at one operating point.
+
+    Raises
+    ------
+    DynamicsNotConverged
+        Neither harmonic balance nor time integration converges.
+    """
+    point, setting = circuit.point, circuit.bracing
+    controlled = setting.mode == "torque_controlled"
+    curve = periodic_response(
+        circuit.system,
+        periodic_laws(rig, shifted_laws(rig, circuit.models, setting)),
+        [rig.pinion_speed(point.speed)],
+        LoopLoad(
+            torque=signed_torque(rig, point) if controlled else None,
+            twist=None if controlled else setting.twist,
+        ),
+        drag_torques=circuit.drags,
+        settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
+    )
+    if curve.failed:
+        raise DynamicsNotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")
+    return curve.points[0]
+
+
+def shifted_laws(rig: Rig, models: Sequence[MeshModel], setting: BracingState) -> list[MeshLaw]:
+    """Mesh laws with the held axial shift in the mesh of the shifted gear."""
+    laws = laws_of(models)
+    gear = shifted_gear(rig)
+    if gear is not None and setting.shift:
+        law = laws[gear.mesh]
+        laws[gear.mesh] = law._replace(offset=law.offset + gear.approach_per_shift * setting.shift)
+    return laws
