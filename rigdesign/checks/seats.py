@@ -51,6 +51,7 @@ TORQUE = (
 )
 _SPLINE = partial(
     _RULE,
+    absent="no gear states spline.toothing with this allowable stress",
     source="limits.strength.spline_safety_minimum; Dudley 1957",
     limit_keys=("limits.strength.spline_safety_minimum",),
     limit=lambda limits: limits.strength.spline_safety_minimum,
@@ -66,7 +67,7 @@ PRESS_FIT = _RULE(
     ),
     source="limits.strength.press_fit_safety_minimum; DIN 7190-1:2017, elastic fit",
     limit_keys=("limits.strength.press_fit_safety_minimum",),
-    absent="no gear without spline.toothing states shaft_interference: there is no press fit that could slip",
+    absent="no gear states shaft_interference without spline.toothing",
     limit=lambda limits: limits.strength.press_fit_safety_minimum,
     values=_slip,
 )
@@ -79,7 +80,6 @@ RULES = (
             f"Pressure on the flanks 2 T K_m / (D N F h) at the {TORQUE}; allowable_pressure of the spline over it. "
             "The least counts."
         ),
-        absent="no gear states allowable_pressure in spline.toothing",
         values=lambda solved: _spline(solved, "flank pressure"),
     ),
     _SPLINE(
@@ -89,7 +89,6 @@ RULES = (
             f"Shear of the teeth on the pitch circle, half of them carrying, and of the shaft under its teeth, at the "
             f"{TORQUE}; allowable_shear of the spline over it. The least counts."
         ),
-        absent="no gear states allowable_shear in spline.toothing",
         values=lambda solved: _spline(solved, "shear of the teeth", "shear of the shaft"),
     ),
     _SPLINE(
@@ -100,7 +99,6 @@ RULES = (
             f"a press fit, hot and at speed, at the {TORQUE}; of the press fit alone at rest and cold. "
             "allowable_tension of the spline over it. The least counts."
         ),
-        absent="no gear states allowable_tension and hub_root_diameter in spline.toothing",
         values=lambda solved: _spline(solved, "tension of the hub"),
     ),
 )
