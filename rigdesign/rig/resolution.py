@@ -3,10 +3,10 @@
 The rules follow what excites the loop. A shaft element takes a sixteenth of the torsional wave of the highest
 frequency that counts, the fourth mesh harmonic at the highest speed or 20 kHz: lumped inertia makes a mode there low by
 (2 pi / 16)^2 / 24 = 0.6 % (``dynamics.drivetrain.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a
-wave, are not followed. Of shafts that bend the modes above 1.25 times that frequency keep their static effect at
-bearings, gears and couplings alone: it moves K_V by 1.6e-3 on the prototype, 2.6e-4 on the main rig and 1.1e-3 on the
-FZG rig (``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.mesh.flank.default_slices``.
-The case may state element length and slices; what either leaves open stands with the checks
+wave, are not followed. Of shafts that bend the modes above 1.25 times that frequency and above 20 kHz keep their static
+effect at bearings, gears and couplings alone: it moves K_V by 1.6e-3 on the prototype, 2.6e-4 on the main rig
+(``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.mesh.flank.default_slices``. The
+case may state element length and slices; what either leaves open stands with the checks
 (`rigdesign.run.load_convergence`).
 """
 
@@ -29,7 +29,7 @@ ELEMENTS_PER_WAVE = 16
 FOLLOWED = 2.5
 """Highest mode that is followed, per counted frequency."""
 BENDING_FOLLOWED = 1.25
-"""The same of the modes of single shaft lines that bend: above it static shapes of all ports stand for them."""
+"""The same of the modes of shafts that bend: above it static shapes of all ports are in their place."""
 
 
 class Coarsening(NamedTuple):
@@ -59,8 +59,8 @@ def highest_mode(frequency: float) -> float:
 
 
 def highest_bending_mode(frequency: float) -> float:
-    """Frequency [Hz] up to which shafts that bend keep their modes."""
-    return min(BENDING_FOLLOWED * frequency, DEFAULT_CUTOFF)
+    """Frequency [Hz] up to which shafts that bend keep their modes; slow rigs keep as many as cost nothing."""
+    return min(max(BENDING_FOLLOWED * frequency, HIGHEST_COUNTED), DEFAULT_CUTOFF)
 
 
 def with_elements(case: Case, drivetrain: Drivetrain, times: int = 1) -> Drivetrain:
