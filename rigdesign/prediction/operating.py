@@ -16,7 +16,7 @@ from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
-UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "system", "joints")
+UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "twisting", "system", "joints")
 """Cached parts of a rig that no setting of an operating point touches."""
 
 
@@ -82,7 +82,7 @@ def like(stated: Rig, case: Case) -> Rig:
     if same_housings(rig, stated):
         take_over(rig, stated, HOUSINGS)
     if rig.drivetrain == stated.drivetrain:
-        take_over(rig, stated, ("drivetrain", "system", "joints"))
+        take_over(rig, stated, ("drivetrain", "twisting", "system", "joints"))
     return rig
 
 

@@ -102,12 +102,12 @@ def test_rows_have_every_stage_twice_and_the_curve() -> None:
 
 
 def test_modes_up_to_8_khz_are_enough_for_what_happens_at_the_speed_of_the_shafts() -> None:
-    """The reduced rig of lateral vibration against that of the loop, modes up to 50 kHz."""
+    """The reduced rig of lateral vibration against that of the loop, modes up to 25 kHz."""
     rig = rig_of()
     point = held(rig)
     state = running_state(rig, point.point, point.last.coupling_state, point.last.bearings)
     few, all_modes = (rig_modes(one, state, 1000.0) for one in (rig.elastic.slow, rig.elastic.reduced))
-    assert rig.elastic.slow.size < 0.5 * rig.elastic.reduced.size
+    assert rig.elastic.slow.size < 0.7 * rig.elastic.reduced.size
     for quantity in ("frequency", "logarithmic_decrement"):
         assert [getattr(mode, quantity) for mode in few] == pytest.approx(
             [getattr(mode, quantity) for mode in all_modes], rel=1e-4
