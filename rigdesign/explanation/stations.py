@@ -80,7 +80,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "ambient.surroundings_temperature": _at(coupling__boundary="walls that surfaces radiate to"),
     "ambient.reference_temperature": _at(
         coupling__expansion="temperature without thermal expansion",
-        coupling__loads="cold geometry of the teeth",
+        coupling__mesh_models="cold geometry of the teeth",
     ),
     "ambient.warming_time": _at(
         coupling__boundary="heat stored in bodies that still warm up, as one implicit step"
@@ -88,7 +88,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "oils.*": _at(rig__model=_SHEET, properties__oil="viscosity by Ubbelohde-Walther, density, heat data"),
     "oils.*.pressure_viscosity": _at(
         records__flank_rating="film between the flanks",
-        coupling__loads="friction coefficient after Doleschel",
+        coupling__mesh_friction="friction coefficient after Doleschel",
     ),
     "oils.*.scuffing_load_stage": _at(records__flank_rating="scuffing temperature of the oil"),
     "materials.*": _at(
@@ -132,7 +132,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__alignment="tolerances of the axes",
     ),
     "gearboxes.*.gears.*.flank_roughness": _at(
-        coupling__loads="friction coefficient of the teeth",
+        coupling__mesh_friction="friction coefficient of the teeth",
         records__flank_rating="pitting strength, flash temperature and film thickness ratio",
     ),
     "gearboxes.*.gears.*.rim_thickness": _at(
@@ -165,10 +165,10 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
     "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),
-    "gearboxes.*.gears.*.flank": _at(coupling__loads=_WARM),
+    "gearboxes.*.gears.*.flank": _at(coupling__microgeometry=_WARM),
     "gearboxes.*.gears.*.flank.topography": _at(
         rig__flank_topography="grid of the measured flanks, held against form circle, tip circle and face width",
-        coupling__loads=_WARM,
+        coupling__microgeometry=_WARM,
     ),
     "gearboxes.*.gears.*.flank.back_topography": _at(
         rig__flank_topography="grid of the measured back flanks, read and held against the gear",
@@ -178,10 +178,10 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__flank_topography="deviations between the places of the grid"
     ),
     "gearboxes.*.gears.*.flank.pitch_waves.*": _at(
-        coupling__loads="pitch deviations of the teeth: orders of the shaft"
+        coupling__microgeometry="pitch deviations of the teeth: orders of the shaft"
     ),
     "gearboxes.*.gears.*.flank.weak_tooth": _at(
-        coupling__loads="stiffness of the pairs of one tooth: orders of the shaft"
+        coupling__microgeometry="stiffness of the pairs of one tooth: orders of the shaft"
     ),
     "gearboxes.*.gears.*.strain_gauges.*": _at(
         rig__strain_gauges="place in the tooth root, held against face width and fillet",
@@ -205,23 +205,26 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
     "gearboxes.*.meshes.*": _at(
-        rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"
+        rig__gears="geometry of the gear pair",
+        coupling__mesh_models="mesh law: stiffness over the path of contact",
     ),
     "gearboxes.*.meshes.*.damping": _at(coupling__mesh_damping="damper of the mesh in the response"),
     "gearboxes.*.meshes.*.damping_ratio": _at(coupling__mesh_damping="damper of the mesh in the response"),
     "gearboxes.*.meshes.*.damping_acts_on": _at(
-        coupling__loads="damper of the mesh in the response", coupling__losses="work of the damper"
+        coupling__mesh_models="damper of the mesh in the response", coupling__losses="work of the damper"
     ),
     "gearboxes.*.meshes.*.stiffness_factor": _at(coupling__tooth_springs="stiffness of the tooth pairs"),
     "gearboxes.*.meshes.*.friction_factor": _at(
-        coupling__loads="friction coefficient: drag in the loop and heat of the mesh"
+        coupling__mesh_friction="friction coefficient: drag in the loop and heat of the mesh"
     ),
-    "gearboxes.*.meshes.*.tooth_offset": _at(coupling__loads="which teeth meet"),
-    "gearboxes.*.meshes.*.phase": _at(coupling__loads="phase of the mesh against the others of the loop"),
+    "gearboxes.*.meshes.*.tooth_offset": _at(coupling__mesh_models="which teeth meet"),
+    "gearboxes.*.meshes.*.phase": _at(
+        coupling__mesh_models="phase of the mesh against the others of the loop"
+    ),
     **{
         f"gearboxes.*.meshes.*.{key}": _at(
             coupling__alignment="deviation of the axes, with that of the warm housing",
-            coupling__loads="gap over the face in the mesh law, as made",
+            coupling__mesh_models="gap over the face in the mesh law, as made",
             records__contact_gap="gap over the face in the loaded contact",
         )
         for key in ("axis_inclination", "axis_skew")
@@ -234,7 +237,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         records__gear_loads="K_Fbeta of the root stress, K_Hbeta of the flanks, where no loaded contact is computed"
     ),
     "gearboxes.*.meshes.*.low_load_factor": _at(
-        coupling__loads="mean mesh stiffness of ISO 6336-1", records__curves="K_V of ISO 6336-1"
+        coupling__mesh_models="mean mesh stiffness of ISO 6336-1", records__curves="K_V of ISO 6336-1"
     ),
     "gearboxes.*.meshes.*.rack": _at(
         rig__gears="outline of the tooth with its fillet: stiffness and root stress"
@@ -251,11 +254,11 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.oil.oil": _at(
         rig__oil_supply="oil data",
         coupling__losses="windage and jets",
-        coupling__loads="viscosity in the friction of the teeth",
+        coupling__mesh_friction="viscosity in the friction of the teeth",
     ),
     "gearboxes.*.oil.inlet_temperature": _at(
         rig__oil_supply="temperature of the oil that is fed",
-        coupling__loads="viscosity in the friction of the teeth, locked torque by bracing.temperature_drift",
+        coupling__mesh_friction="viscosity in the friction of the teeth, locked torque by bracing.temperature_drift",
         coupling__boundary="fluid of the films of wetted walls",
         coupling__oil="start of the heat balance of the stream",
     ),
@@ -395,7 +398,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.heat_split.mesh_into_gears": _at(coupling__flank_heat="friction heat between gears and oil"),
     "gearboxes.*.loss_factors": _at(
         coupling__losses="losses of the gearbox: heat and drag torque",
-        coupling__loads="friction of the teeth in the loop",
+        coupling__mesh_friction="friction of the teeth in the loop",
     ),
     "gearboxes.*.oil_paths": _at(coupling__oil="ways of the gear oil: which heat which part of it takes up"),
     "gearboxes.*.oil_paths.bypass": _at(
@@ -482,7 +485,9 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__time_run="most torque of the speed control over the schedule"
     ),
     "drivetrain.motor.ripple.*": _at(rig__drivetrain="alternating torque of the drive"),
-    "drivetrain.bracing": _at(coupling__loads="how the torque is locked in: what is held while parts expand"),
+    "drivetrain.bracing": _at(
+        coupling__mesh_models="how the torque is locked in: what is held while parts expand"
+    ),
     "drivetrain.torque_at": _at(rig__model="gear at which torque and speed of the schedule count"),
     "drivetrain.mesh_stiffness": _at(
         rig__model="tooth model at the fidelity of the run", coupling__tooth_springs="mesh law from it"
@@ -495,10 +500,10 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "losses.bearing_drag": _at(coupling__bearing_films="drag torque of the bearings"),
     "losses.given.*": _at(coupling__given_losses="loss in place of a computed one"),
     "losses.friction": _at(
-        coupling__loads="friction coefficient of the teeth: drag in the loop and heat of the mesh"
+        coupling__mesh_friction="friction coefficient of the teeth: drag in the loop and heat of the mesh"
     ),
     "losses.friction.doleschel": _at(
-        coupling__loads="friction coefficient of the teeth: constants of the oil"
+        coupling__mesh_friction="friction coefficient of the teeth: constants of the oil"
     ),
     "schedule": _at(coupling__time_run="speed and torque over time"),
     "schedule.simulation_only": _at(run__main="doubt in the report that the rig cannot run so"),
@@ -542,8 +547,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "numerics": _at(coupling__convergence="end of the coupling loop"),
     "numerics.sample_rate": _at(coupling__time_run="samples of the time run"),
     "numerics.internal_steps": _at(coupling__time_run="integration steps of the time run"),
-    "numerics.slices_spur": _at(coupling__loads="slices over the face of spur gears"),
-    "numerics.slices_helical": _at(coupling__loads="slices over the face of helical gears"),
+    "numerics.slices_spur": _at(coupling__mesh_models="slices over the face of spur gears"),
+    "numerics.slices_helical": _at(coupling__mesh_models="slices over the face of helical gears"),
     "numerics.shaft_element_length": _at(rig__resolution="elements of the torsional model"),
     "numerics.curve_speed_start": _at(records__curves="first speed of the response over speed"),
     "numerics.curve_speed_end": _at(records__curves="last speed of the response over speed"),

@@ -16,7 +16,16 @@ from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
-UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "twisting", "system", "joints")
+UNMOVED = (
+    *HOUSINGS,
+    "geometries",
+    "speed_ratios",
+    "drivetrain",
+    "mesh_forces",
+    "twisting",
+    "system",
+    "joints",
+)
 """Cached parts of a rig that no setting of an operating point touches."""
 
 
