@@ -486,7 +486,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "drivetrain.motor.ripple.*": _at(rig__drivetrain="alternating torque of the drive"),
     "drivetrain.bracing": _at(
-        coupling__mesh_models="how the torque is locked in: what is held while parts expand"
+        coupling__braced_loop="how the torque is locked in: what is held while parts expand"
     ),
     "drivetrain.torque_at": _at(rig__model="gear at which torque and speed of the schedule count"),
     "drivetrain.mesh_stiffness": _at(
