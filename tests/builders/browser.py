@@ -20,6 +20,7 @@ from selenium.webdriver import Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
+from selenium.webdriver.support.wait import WebDriverWait
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 MISSING = "no {path}; run: apt-get install -y --no-install-recommends chromium chromium-driver"
@@ -30,6 +31,9 @@ ARGUMENTS = (
 OWN = ("file:", "data:", "blob:", "about:")
 """Addresses that need no network."""
 A4 = {"paperWidth": 8.27, "paperHeight": 11.69, "printBackground": True, "preferCSSPageSize": True}
+
+LOAD_TIME = 60.0
+"""Seconds a page may take to load; on a busy machine ``get`` has returned before a long page was parsed."""
 
 
 @dataclass
@@ -44,6 +48,9 @@ class Browser:
         self.driver.get_log("browser")
         self.resize(width, height)
         self.driver.get(page.resolve().as_uri())
+        WebDriverWait(self.driver, LOAD_TIME).until(
+            lambda driver: self.run("return document.readyState") == "complete"
+        )
 
     def resize(self, width: int, height: int = 900) -> None:
         """The viewport itself, also below the least width of a window."""
