@@ -24,6 +24,9 @@ Drags = Callable[[float], Mapping[str, float] | None]
 
 MOST_POINTS = 240
 """Points of a branch traced at most."""
+FEW_HARMONICS = 40
+"""Harmonics from which on fewer points are traced, as each takes the square of them: slow speeds, where the response
+follows the load and has no branches."""
 PLAIN = (1.2, 1.5, 2.0, 3.0, 0.8, 0.6, 0.4)
 """Shares of a speed at which a plain response is looked for."""
 OTHER_BRANCH = 0.02
@@ -168,7 +171,8 @@ class BranchSearch:
         high = max(start.speed, float(speeds.max())) + reach
         fine = resample(start, replace(start.grid, samples=2 * start.grid.samples))
         trace = BranchTrace(self._over_speed, fine, rising=rising)
-        for place, state in crossings(trace.points((low, high), MOST_POINTS), start, speeds):
+        most = int(MOST_POINTS * min(1.0, FEW_HARMONICS / start.grid.harmonics) ** 2)
+        for place, state in crossings(trace.points((low, high), most), start, speeds):
             i = gap[place]
             if i in self.states.found and i in self.states.other:
                 continue
