@@ -46,11 +46,12 @@ from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
     APPROACH,
+    FILTERED,
     GIVEN,
     GIVEN_OLD,
     MISSING,
-    N_SPACE,
     NET,
+    N_SPACE,
     OFFSET,
     OFFSET_RATE,
     OLD,
@@ -67,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources acfcc90a
+# compiled from sources 9108544b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -369,12 +370,13 @@ def _march(
                 space[at + APPROACH] = space[at + REACH] - space[at + OFFSET]
                 space[at + ANGLE] += space[at + TURN]
                 history[m, 0, now] = space[at + NET]
-                if history.shape[1] > 1:
-                    history[m, 1, now] = space[at + REACH]
-                    history[m, 2, now] = space[at + ANGLE]
-                    history[m, 3, now] = space[at + RATE]
-                    history[m, 4, now] = space[at + SPEED]
-                    history[m, 5, now] = space[at + TAU]
+                history[m, 1, now] = space[at + FILTERED]
+                if history.shape[1] > 2:
+                    history[m, 2, now] = space[at + REACH]
+                    history[m, 3, now] = space[at + ANGLE]
+                    history[m, 4, now] = space[at + RATE]
+                    history[m, 5, now] = space[at + SPEED]
+                    history[m, 6, now] = space[at + TAU]
             mean_torque += space[NET] * torque_share
             now += 1
             _next_step(space, n_meshes)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources acfcc90a
+# compiled from sources 9108544b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -69,7 +69,8 @@ class MarchRecord(NamedTuple):
     """What a march writes down."""
 
     history: Array
-    """(n_meshes, 1 or 6, steps): front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]."""
+    """(n_meshes, 2 or 7, steps): front - back force at full resolution, that of the filtered tables [, approach, pinion
+    angle, approach rate, pinion speed, tau_1]."""
     samples: Array
     """(n_samples, 2 n_slow + n_drags + 1): slow inputs, their speeds, drag torques, angle of the first pinion."""
 

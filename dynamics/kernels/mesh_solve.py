@@ -34,6 +34,7 @@ from dynamics.kernels.mesh_workspace import (
     AT_REACH,
     BENT,
     BENT_V,
+    FILTERED,
     FRACTION,
     GIVEN,
     HELD_ANGLE,
@@ -68,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources acfcc90a
+# compiled from sources 9108544b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -207,6 +208,7 @@ def _set_flank(space: Array, at: int, values: Array, m: int, sign: float, sums: 
     space[at + PRESSED], space[at + PRESSED_X] = sums.force, sign * sums.force_x
     space[at + PRESSED_V], space[at + NET] = sign * sums.force_v, sign * sums.recorded
     space[at + NET_X], space[at + NET_V] = sums.force_x, sums.force_v
+    space[at + FILTERED] = sign * sums.force
     space[at + BENT], space[at + BENT_V] = r_1 * abs(sums.curvature), r_1 * abs(sums.force_xv)
     space[at + OFF], space[at + SHARE] = -sign * sums.elastic, sums.stiffness
 
@@ -230,6 +232,7 @@ def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
     space[at + PRESSED_X] -= sums.force_x
     space[at + PRESSED_V] -= sums.force_v
     space[at + NET] -= sums.recorded
+    space[at + FILTERED] -= sums.force
     space[at + NET_X] += sums.force_x
     space[at + NET_V] += sums.force_v
     space[at + BENT] += r_1 * abs(sums.curvature)
@@ -246,6 +249,7 @@ def _no_contact(space: Array, at: int) -> None:
         space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
     space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
     space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
+    space[at + FILTERED] = 0.0
     space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
 
 
@@ -357,7 +361,7 @@ def move_others(space: Array, at: int, give: Array, n_meshes: int, m: int) -> fl
 
 @inlined
 def left_open(space: Array, at: int) -> float:
-    """Bring approach of the teeth and recorded force to the tangent; return the torque that may be off it [N m].
+    """Bring approach of the teeth and recorded forces to the tangent; return the torque that may be off it [N m].
 
     Infinity where the held rows do not reach, or where a damper lets go of a flank.
     """
@@ -366,7 +370,9 @@ def left_open(space: Array, at: int) -> float:
     pressed = space[at + PRESSED]
     teeth = space[at + TEETH] + moved
     space[at + TEETH], space[at + GIVEN] = teeth, space[at + REACH] - teeth
-    space[at + NET] += space[at + NET_X] * moved + space[at + NET_V] * dv
+    change = space[at + NET_X] * moved + space[at + NET_V] * dv
+    space[at + NET] += change
+    space[at + FILTERED] += change
     after = pressed + space[at + PRESSED_X] * moved + space[at + PRESSED_V] * dv
     inside = space[at + LOW] <= teeth <= space[at + HIGH] and (after > 0.0) == (pressed > 0.0)
     left = space[at + BENT] * moved * moved + space[at + BENT_V] * abs(moved * dv)

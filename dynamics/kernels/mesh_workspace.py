@@ -4,7 +4,7 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources acfcc90a
+# compiled from sources 9108544b
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -31,13 +31,14 @@ that were just written in registers. A last row belongs to the place holder for 
     NET,  # force to be recorded, front less back, and its derivatives
     NET_X,
     NET_V,
+    FILTERED,  # force that acts in the march, front less back; its derivatives are those of NET
     BENT,  # what a Newton step leaves out of the torque: over approach twice, over approach and rate
     BENT_V,
     LOWER,  # shares of two levels of friction, and how far sliding reverses per sliding speed, of the sample
     UPPER,
     PER_SPEED,
     INVERSE,  # of the Newton matrix, four numbers
-) = range(30)
+) = range(31)
 # of both ports, the pinion's first and the wheel's PORT further
 PORT = 11
 (

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources acfcc90a
+# compiled from sources 9108544b
 Array = NDArray[np.float64]
 
 

@@ -12,6 +12,7 @@ from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.low_pass import FLAT
 from dynamics.response.march_inputs import DragTables, SpeedControl
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 
@@ -67,7 +68,9 @@ class Sampling:
     sample_rate : of controller and kept channels [Hz]; substeps : internal steps per sample, 4 or more
     window : length of the envelope windows [s]
     lift_off_share : a gap without contact counts from this share of the mesh period on [-]
-    keep_channels : keep the torques at the sample rate
+    keep_channels : keep the torques of the meshes
+    torque_band : frequency up to which the kept torques are flat at least, as far as the internal steps allow; 0: as
+        far as the sample rate allows [Hz]
     keep_accounts : integrate the energy of every joint and contact; without it the run is about twice as fast and
         its energy balance is None
     cutoff : modes above this frequency keep their static effect only [Hz]
@@ -81,6 +84,7 @@ class Sampling:
     window: float = 0.01
     lift_off_share: float = 0.05
     keep_channels: bool = True
+    torque_band: float = 0.0
     keep_accounts: bool = True
     cutoff: float = DEFAULT_CUTOFF
     sections: TwistRows | None = None
@@ -91,6 +95,13 @@ class Sampling:
                 f"substeps = {self.substeps}, limit {LEAST_SUBSTEPS}: the sample rate of {self.sample_rate:g} Hz is no "
                 "integration step"
             )
+
+    @property
+    def steps_kept(self) -> int:
+        """Internal steps from one kept torque to the next: the most, within a sample, that keep the band."""
+        divisors = [n for n in range(1, self.substeps + 1) if self.substeps % n == 0]
+        rate = self.sample_rate * self.substeps
+        return max((n for n in divisors if FLAT * rate / n >= self.torque_band), default=1)
 
 
 def default_speed_control(

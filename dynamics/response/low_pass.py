@@ -1,4 +1,4 @@
-"""Low-pass that keeps torques of internal steps at the sample rate."""
+"""Low-pass that keeps torques of internal steps at a lower rate."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,9 +6,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+FLAT = 0.4
+"""Share of the new rate up to which a low-pass keeps what it gets."""
+
+
 class LowPass:
-    """Linear-phase low-pass before decimation by ``factor``: flat to 0.4, below -60 dB from 0.6 of the new
-    rate on.
+    """Linear-phase low-pass before decimation by ``factor``: flat to `FLAT`, below -60 dB from 0.6 of the new rate on.
 
     Source: Kaiser window design, Oppenheim and Schafer, Discrete-Time Signal Processing, section 7.5.
     """

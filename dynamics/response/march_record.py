@@ -12,7 +12,12 @@ class Block(NamedTuple):
     """One advance: internal steps and sample values."""
 
     force: Array
-    """(n_meshes, n_steps) front minus back normal force in the transverse line of action [N]."""
+    """(n_meshes, n_steps) front minus back normal force in the transverse line of action [N]: of the law at full
+    resolution, for extremes and contact loss."""
+    acting_force: Array
+    """(n_meshes, n_steps) the same of the filtered tables, which acts in the march (``dynamics.mesh.path_filter``) [N]:
+    for spectra, as the law at full resolution, seen at the ends of steps, shows harmonics beyond half the step rate as
+    slow oscillations."""
     approach: Array
     """(n_meshes, n_steps) approach including offsets [m]; no columns unless everything is recorded."""
     angle_1: Array

@@ -71,7 +71,7 @@ class Glance:
     time : [s]; torque : (r,) [N m]
     """
 
-    def __init__(self, time: float, reader: StateReader, stretch: Stretch, history_rows: int = 1) -> None:
+    def __init__(self, time: float, reader: StateReader, stretch: Stretch, history_rows: int = 2) -> None:
         """Read now, and keep what ``again`` needs; history_rows : that a march records of every mesh."""
         commands = stretch.commands
         self.time, self._reader, self._rows = time, reader, history_rows

@@ -209,7 +209,7 @@ class TimeMarch:
             commands = kernels.Commands(
                 given=given[part], offsets=held[part], control=control, drags=drag_laws
             )
-            histories.append(np.empty((n_meshes, 6 if self._record_all else 1, count * self.substeps)))
+            histories.append(np.empty((n_meshes, 7 if self._record_all else 2, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
             self.tables = self._tables.at(self._pinion_speeds())
             if self._reader is not None:
@@ -231,12 +231,14 @@ class TimeMarch:
         self._marched += n_samples
         self._apart_since += n_samples
         none = np.empty((n_meshes, 0))
-        force, approach, angle, rate, omega, torque = (
-            (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
+        force, acting, approach, angle, rate, omega, torque = (
+            history[:, i] if i < history.shape[1] else none for i in range(7)
         )
         slow, speed, braking, angle_1 = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
         braking = braking[:, self._places]
-        return Block(force, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0])
+        return Block(
+            force, acting, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0]
+        )
 
     def _diverged(self, force: Array, samples: Array) -> str:
         """What is known of a march that left the finite numbers in its last block.
@@ -256,7 +258,7 @@ class TimeMarch:
             f"the march left the finite numbers: mesh of {pinion} and {wheel}, "
             f"{(self._marched * self.substeps + step) * self.step:.6g} s after its start, last drive speed "
             f"{speed:.6g} rpm; slowest elastic mode {frequency:.4g} Hz, largest at {where}, step {self.step:.3g} s. "
-            "Correct inertia, stiffness or torque that is commands of magnitude off there, or take more internal "
+            "Correct inertia, stiffness or torque that is orders of magnitude off there, or take more internal "
             "steps"
         )
 

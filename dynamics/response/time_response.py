@@ -1,8 +1,8 @@
 """Time response of the drivetrain over a schedule of speed and bracing torque.
 
 The run is marched at the internal rate (eight or more steps per sample). Torques pass a linear-phase
-low-pass before they are kept at the sample rate; envelopes, lift-off and peaks come from the internal
-steps. The motor follows the speed command through a controller with a torque limit, the bracing follows a
+low-pass before they are kept, at the sample rate or a higher one; envelopes, lift-off and peaks come from the
+internal steps. The motor follows the speed command through a controller with a torque limit, the bracing follows a
 twist or a torque.
 """
 
@@ -29,7 +29,7 @@ from dynamics.response.command import (
 )
 from dynamics.response.envelopes import EnvelopeWindows, LiftOff, WindowStatistics
 from dynamics.response.initial_state import pinion_ratios, wound_state
-from dynamics.response.low_pass import LowPass
+from dynamics.response.low_pass import FLAT, LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
 from dynamics.response.march_loads import march_model
 from dynamics.response.state_reader import SectionPeaks, StateReader, section_peaks
@@ -79,8 +79,9 @@ class TimeResponse:
     time : (n,) [s]; speed : (n,) of the drive freedom, as speed of the first pinion [rad/s]
     speed_command : (n,) [rad/s]; drive_torque : (n,) [N m]; twist : (n,) [rad]
     angle : (n,) of the first pinion [rad]; drag_torque : name -> (n,) [N m]
-    torque : (n_meshes, n) dynamic torque r_b1 (front - back force) after the low-pass [N m]; no columns if
-        the channels were not kept
+    torque : (n_meshes, m) dynamic torque r_b1 (front - back force) of the filtered tables, after the low-pass, in
+        single precision [N m]; no columns if the channels were not kept
+    torque_step : interval of these [s]; the first one lies that much after the start of the run
     windows : least, mean and greatest dynamic torque of each mesh and time without contact, per window
     lift_off : intervals in which a mesh lost contact for longer than the asked share of a mesh period
     energy : the balance of the run, None if no accounts were kept
@@ -97,7 +98,8 @@ class TimeResponse:
     twist: Array
     angle: Array
     drag_torque: dict[str, Array]
-    torque: Array
+    torque: NDArray[np.float32]
+    torque_step: float
     windows: EnvelopeWindows
     lift_off: tuple[LiftOff, ...]
     energy: LoopEnergy | None
@@ -107,6 +109,11 @@ class TimeResponse:
     unconverged_steps: int
     warnings: tuple[str, ...] = field(default=())
     sections: SectionPeaks | None = None
+
+    @property
+    def torque_band(self) -> float:
+        """Frequency up to which the kept torques are flat [Hz]."""
+        return FLAT / self.torque_step
 
     def mean_speed(self, end: float, window: float) -> float:
         """Mean speed of the first pinion over the ``window`` [s] before ``end`` [s], by the angle it turned [rad/s].
@@ -210,10 +217,10 @@ def run_schedule(
     per_window = max(1, round(sampling.window * sample_rate))
     pinions = [ratios[ports[0]] for ports in system.mesh_ports]
     statistics = WindowStatistics(laws, per_window * substeps, march.step, sampling.lift_off_share, pinions)
-    low_pass = LowPass(len(laws), substeps)
+    low_pass = LowPass(len(laws), sampling.steps_kept)
     energy_before = march.energy()
     columns: list[tuple[Array, ...]] = []
-    torques: list[Array] = []
+    torques: list[NDArray[np.float32]] = []
     radius = np.array([law.base_radius_1 for law in laws])[:, None]
     limit_at = np.empty(n_samples)
     drive_angle = np.zeros(1)
@@ -252,12 +259,12 @@ def run_schedule(
         dynamic = radius * block.force
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
         if sampling.keep_channels:
-            torques.append(low_pass.decimate(dynamic))
+            torques.append(low_pass.decimate(radius * block.acting_force).astype(np.float32))
         columns.append(
             (block.slow[:, :2], block.slow_speed[:, 0], block.drags, block.angle, target[1:] / drive_ratio)
         )
     if sampling.keep_channels:
-        torques.append(low_pass.finish())
+        torques.append(low_pass.finish().astype(np.float32))
     slow, drive_speed, braking, angle, command_speed = (np.concatenate(parts) for parts in zip(*columns))
     accounts = march.accounts()
     speed = drive_speed / drive_ratio
@@ -276,7 +283,8 @@ def run_schedule(
         twist=slow[:, 1],
         angle=angle,
         drag_torque=dict(zip(names, braking.T)),
-        torque=np.hstack(torques) if sampling.keep_channels else np.empty((len(laws), 0)),
+        torque=np.hstack(torques) if sampling.keep_channels else np.empty((len(laws), 0), np.float32),
+        torque_step=march.step * sampling.steps_kept,
         windows=windows,
         lift_off=statistics.lift_off(float(command.time[0])),
         energy=None

@@ -44,6 +44,8 @@ DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
 MOST_SAMPLES = 4e6
 """Samples of the time run up to which the mesh torques are kept for their spectra; a longer run has none."""
+SPECTRUM_ORDERS = 3.2
+"""Mesh orders at the highest speed up to which they are kept: three with their sidebands."""
 RPM = np.pi / 30.0
 COMMAND_INTERVAL = 1e-3
 """Interval of the command samples [s]."""
@@ -106,6 +108,7 @@ def run_ramp(
             substeps=numerics.internal_steps,
             window=WINDOW,
             keep_channels=command.time[-1] * numerics.sample_rate <= MOST_SAMPLES,
+            torque_band=SPECTRUM_ORDERS * highest_mesh_frequency(rig, top) / (2.0 * np.pi),
             keep_accounts=False,
             cutoff=_cutoff(rig),
             sections=None if rig.shaft_model == "torsional" else twist_rows_of(rig, loop.at(0.0)),
@@ -113,6 +116,14 @@ def run_ramp(
     )
     require_speeds(rig, schedule, response)
     return response
+
+
+def highest_mesh_frequency(rig: Rig, speed: float) -> float:
+    """Angular mesh frequency of the fastest mesh at a stated speed [rad/s]."""
+    return max(
+        rig.pairs[name].gears[0].teeth * abs(rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, speed))
+        for mesh, name in enumerate(rig.mesh_names)
+    )
 
 
 def _cutoff(rig: Rig) -> float:

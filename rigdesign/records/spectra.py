@@ -1,7 +1,8 @@
-"""Spectra of the mesh torque: over the run-up as a waterfall, and at the held stages with orders and sidebands.
+"""Spectra of the mesh torque: over run-up and run-down as waterfalls, at the held stages with orders and sidebands.
 
-From the torque of the time run as it is kept, filtered to 0.4 of its sample rate; the mesh orders above that from the
-periodic response. Blocks of the waterfall are as long as the sweep allows: in T the mesh frequency moves by 1 / T.
+From the torque that acts in the time run, low-passed over the path and kept as far as three mesh orders of the highest
+speed: the law at full resolution, seen at the ends of the steps, would show its harmonics beyond half the step rate as
+orders that no rig has. Blocks of a waterfall are as long as the sweep allows: in T the mesh frequency moves by 1 / T.
 """
 
 import math
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from dynamics.response.schedule import Stage
 from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.curves import own_ratio
@@ -20,16 +22,16 @@ from rigdesign.results.spectra import HeldSpectrum, Waterfall
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
-FLAT = 0.4
-"""Share of the sample rate up to which the torque is kept as it is."""
-SHORTEST, LONGEST = 256, 8192
-"""Samples of a block of the waterfall."""
+SHORTEST, LONGEST = 256, 32768
+"""Samples of a block of a waterfall."""
 OVERLAP = 0.5
 MOST_SPEEDS, MOST_FREQUENCIES = 72, 160
 """Cells of a waterfall; each keeps its largest amplitude."""
-ORDERS = 600
+MESH_ORDERS = 1.25
+"""Highest frequency of a waterfall over the mesh frequency at its highest speed; modes go as far."""
+ORDERS = 1600
 """Points of the spectrum of a held stage, each the largest around it."""
-LEAST_SAMPLES = 1024
+LEAST_SAMPLES = 4096
 """Of a held stage, below which it has no spectrum."""
 HIGHEST_HARMONIC = 4
 """Mesh order up to which the periodic response is shown."""
@@ -40,36 +42,55 @@ SETTLED = 0.25
 
 
 def waterfalls(rig: Rig, run: DynamicRun) -> Iterator[Waterfall]:
-    """Of every mesh in the run-up over the widest range of speed; none without torques kept."""
-    torque = run.ramp.torque
-    rises = [
-        (stage, start, end)
-        for stage, start, end in _spans(rig)
-        if stage.kind == "speed" and stage.speed[1] > stage.speed[0]
-    ]
-    if not torque.size or not rises:
+    """Of every mesh in the run-up and in the run-down over the widest range of speed; none without torques kept."""
+    if not run.ramp.torque.size:
         return
-    stage, start, end = max(rises, key=lambda rise: rise[0].speed[1] - rise[0].speed[0])
-    rate = 1.0 / float(run.ramp.time[1] - run.ramp.time[0])
-    own = slice(*np.searchsorted(run.ramp.time, [start, end]))
-    speed = run.ramp.speed[own]
-    for mesh, name in enumerate(rig.mesh_names):
-        ratio, teeth = own_ratio(rig, mesh), rig.pairs[name].teeth[0]
-        sweep = teeth * ratio * (stage.speed[1] - stage.speed[0]) / (2.0 * math.pi) / (end - start)
-        size = int(np.clip(2 ** round(math.log2(rate / math.sqrt(sweep))), SHORTEST, LONGEST))
-        if speed.size < 2 * size:
-            continue
-        middles, frequency, amplitude = _blocks(torque[mesh, own], size, rate)
-        places = _pooled_speeds(speed[middles], amplitude)
-        bins = _pooled_frequencies(frequency, places[1])
-        yield Waterfall(
-            mesh=rig.mesh_labels[name],
-            stage=stage.name,
-            speed=tuple((ratio * places[0]).tolist()),
-            frequency=tuple(bins[0].tolist()),
-            amplitude=tuple(tuple(row) for row in bins[1].tolist()),
-            per_turn=float(teeth),
-        )
+    sweeps = [span for span in _spans(rig) if span[0].kind == "speed"]
+    for sign in (1.0, -1.0):
+        own = [span for span in sweeps if sign * _change(span[0]) > 0.0]
+        if own:
+            widest = max(own, key=lambda span: abs(_change(span[0])))
+            for mesh in range(len(rig.mesh_names)):
+                yield from _waterfall(rig, run.ramp, mesh, widest)
+
+
+def _change(stage: Stage) -> float:
+    return stage.speed[1] - stage.speed[0]
+
+
+def _waterfall(
+    rig: Rig, ramp: TimeResponse, mesh: int, span: tuple[Stage, float, float]
+) -> Iterator[Waterfall]:
+    """That of one mesh in a stage; none if the stage is too short for two blocks."""
+    stage, start, end = span
+    name = rig.mesh_names[mesh]
+    ratio, teeth, rate = own_ratio(rig, mesh), rig.pairs[name].teeth[0], 1.0 / ramp.torque_step
+    sweep = teeth * ratio * abs(_change(stage)) / (2.0 * math.pi) / (end - start)
+    size = int(np.clip(2 ** round(math.log2(rate / math.sqrt(sweep))), SHORTEST, LONGEST))
+    torque, speed = _part(ramp, mesh, start, end)
+    if torque.size < 2 * size:
+        return
+    highest = MESH_ORDERS * teeth * ratio * max(stage.speed) / (2.0 * math.pi)
+    middles, frequency, amplitude = _blocks(torque, size, rate, min(highest, ramp.torque_band))
+    places = _pooled_speeds(speed[middles], amplitude)
+    bins = _pooled_frequencies(frequency, places[1])
+    yield Waterfall(
+        mesh=rig.mesh_labels[name],
+        stage=stage.name,
+        speed=tuple((ratio * places[0]).tolist()),
+        frequency=tuple(bins[0].tolist()),
+        amplitude=tuple(tuple(row) for row in bins[1].tolist()),
+        per_turn=float(teeth),
+    )
+
+
+def _part(ramp: TimeResponse, mesh: int, start: float, end: float) -> tuple[Array, Array]:
+    """Torque of a mesh between two times (n,) [N m], and the speed of the first pinion then [rad/s]."""
+    begin = float(ramp.time[0]) - float(ramp.time[1] - ramp.time[0])
+    first, last = (round((at - begin) / ramp.torque_step) for at in (start, end))
+    torque = np.asarray(ramp.torque[mesh, first:last], float)
+    time = begin + ramp.torque_step * (first + 1.0 + np.arange(torque.size))
+    return torque, np.interp(time, ramp.time, ramp.speed)
 
 
 def held_spectra(rig: Rig, run: DynamicRun) -> Iterator[HeldSpectrum]:
@@ -122,19 +143,14 @@ def _orders_of_run(rig: Rig, run: DynamicRun, stage: str, mesh: int) -> tuple[Ar
     if not run.ramp.torque.size or found is None:
         return nothing, nothing
     start, end = found
-    first = start + SETTLED * (end - start)
-    own = slice(*np.searchsorted(run.ramp.time, [first, end]))
-    torque, speed = (
-        run.ramp.torque[mesh, own],
-        float(np.mean(run.ramp.speed[own] if own.stop > own.start else 0.0)),
-    )
-    if torque.size < LEAST_SAMPLES or speed <= 0.0:
+    torque, speed = _part(run.ramp, mesh, start + SETTLED * (end - start), end)
+    if torque.size < LEAST_SAMPLES or not speed.mean() > 0.0:
         return nothing, nothing
-    rate = 1.0 / float(run.ramp.time[1] - run.ramp.time[0])
-    frequency, amplitude = _spectrum(torque[None], rate)
-    kept = frequency <= FLAT * rate
-    order = 2.0 * math.pi * frequency[kept] / (own_ratio(rig, mesh) * speed)
-    return _pooled(order, amplitude[0, kept], ORDERS)
+    frequency, amplitude = spectrum(torque[None], 1.0 / run.ramp.torque_step)
+    order = 2.0 * math.pi * frequency / (own_ratio(rig, mesh) * float(speed.mean()))
+    last = (HIGHEST_HARMONIC + 0.5) * rig.pairs[rig.mesh_names[mesh]].teeth[0]
+    kept = (frequency <= run.ramp.torque_band) & (order <= last)
+    return _pooled(order[kept], amplitude[0, kept], ORDERS)
 
 
 def _spans(rig: Rig) -> Iterator[tuple[Stage, float, float]]:
@@ -146,7 +162,7 @@ def _spans(rig: Rig) -> Iterator[tuple[Stage, float, float]]:
     )
 
 
-def _spectrum(blocks: Array, rate: float) -> tuple[Array, Array]:
+def spectrum(blocks: Array, rate: float) -> tuple[Array, Array]:
     """Frequencies (f,) [Hz] and amplitudes (b, f) of blocks (b, n) under a Hann window, means taken out."""
     size = blocks.shape[1]
     window = np.hanning(size + 1)[:-1]
@@ -155,12 +171,14 @@ def _spectrum(blocks: Array, rate: float) -> tuple[Array, Array]:
     return np.asarray(np.fft.rfftfreq(size, 1.0 / rate), float), np.asarray(amplitude, float)
 
 
-def _blocks(torque: Array, size: int, rate: float) -> tuple[NDArray[np.int64], Array, Array]:
-    """Middle sample of every block, frequencies as far as the torque is kept, amplitudes (blocks, f)."""
+def _blocks(
+    torque: Array, size: int, rate: float, highest: float
+) -> tuple[NDArray[np.int64], Array, Array]:
+    """Middle sample of every block, frequencies up to the highest [Hz], amplitudes (blocks, f)."""
     step = int(size * (1.0 - OVERLAP))
     views = np.lib.stride_tricks.sliding_window_view(torque, size)[::step]
-    frequency, amplitude = _spectrum(views, rate)
-    kept = (frequency > 0.0) & (frequency <= FLAT * rate)
+    frequency, amplitude = spectrum(views, rate)
+    kept = (frequency > 0.0) & (frequency <= highest)
     return size // 2 + step * np.arange(len(views)), frequency[kept], amplitude[:, kept]
 
 

@@ -100,7 +100,7 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
     for loss in dynamics.contact_loss_maps:
         yield file_stem("contact_loss", loss["gearbox"]), _contact_loss(loss)
     for waterfall in dynamics.waterfalls:
-        yield file_stem("waterfall", waterfall["gearbox"]), _waterfall(waterfall)
+        yield file_stem("waterfall", waterfall["gearbox"], waterfall["stage"]), _waterfall(waterfall)
     if dynamics.dynamic_root is not None and dynamics.dynamic_root["curves"]:
         yield "dynamic_root_stress", _dynamic_root(dynamics.dynamic_root["curves"])
     if dynamics.section_torques is not None:

@@ -33,7 +33,7 @@ class Reversal:
 
 @dataclass(frozen=True, kw_only=True)
 class EventCurve:
-    """Extremes of a torque in slots of time [N m]."""
+    """Extremes of a torque in envelope windows [N m]."""
 
     place: str
     quantity: Quantity
@@ -68,6 +68,6 @@ class EventRecord:
     resonance_distance: float | None = None
     """Its distance as a share of the speed [-]."""
     time: list[float] = field(default_factory=list, repr=False)
-    """End of each slot of the curves [s]."""
+    """End of each envelope window of the curves [s]."""
     curves: tuple[EventCurve, ...] = ()
     notes: tuple[str, ...] = ()

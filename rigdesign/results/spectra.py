@@ -7,7 +7,7 @@ Row = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Waterfall:
-    """Amplitude of the torque of one mesh over frequency and speed in a run-up."""
+    """Amplitude of the torque of one mesh over frequency and speed in a run-up or run-down."""
 
     mesh: str
     """Its label."""
@@ -33,7 +33,7 @@ class HeldSpectrum:
     mean: float
     """[N m]"""
     order: Row
-    """(n,) of the time run, up to what its samples hold."""
+    """(n,) of the time run, as far as its torque is kept: three mesh orders of the highest speed with their sidebands."""
     amplitude: Row
     """(n,) largest around each order [N m]"""
     harmonic_order: Row

@@ -1,4 +1,4 @@
-"""Waterfall of the run-up and spectra at the held stages."""
+"""Waterfalls of run-up and run-down, and spectra at the held stages."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -83,7 +83,7 @@ def spectrum_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
         if row["order"]:
             axes.plot(
                 row["order"], np.maximum(row["amplitude_Nm"], floor), color=style.colour, linewidth=0.7,
-                label="time run, as far as its samples hold",
+                label="time run",
             )  # fmt: skip
         orders, heights = row["mesh_harmonic_order"], row["mesh_harmonic_amplitude_Nm"]
         axes.vlines(orders, floor, heights, color=INK, linewidth=1.0)

@@ -61,12 +61,8 @@ def _in_motion(result: RunResult, draw: Draw) -> Values:
     dynamics = result.dynamics
     assert dynamics is not None
     styles = gearbox_styles(result)
+    stages = dict.fromkeys(row["stage"] for row in dynamics.waterfalls)
     figures = {
-        "waterfall_figure": (
-            waterfall_figure,
-            dynamics.waterfalls,
-            "Spectrum of the mesh torque over the speed of the run-up",
-        ),
         "spectrum_figure": (
             spectrum_figure,
             dynamics.spectra,
@@ -83,10 +79,18 @@ def _in_motion(result: RunResult, draw: Draw) -> Values:
             "Least torque over the mean by speed and torque",
         ),
     }
-    return {
+    shown: Values = {
         name: draw(figure(rows, styles), text) if rows else None
         for name, (figure, rows, text) in figures.items()
     }
+    shown["waterfall_figures"] = {
+        stage: draw(
+            waterfall_figure([row for row in dynamics.waterfalls if row["stage"] == stage], styles),
+            f"Spectrum of the mesh torque over speed in stage {stage}",
+        )
+        for stage in stages
+    }
+    return shown
 
 
 def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
