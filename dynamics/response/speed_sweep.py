@@ -47,7 +47,8 @@ class CurvePoint:
     flank : (n_meshes,) +1 where the front flank carries the mean torque, -1 the back flank
     mean, maximum, minimum : (n_meshes,) torque transmitted at the pinion, positive in load direction [N m]
     harmonics : (n_meshes, n + 1) mean and amplitudes of that torque over the orders of the mesh frequency
-    [N m] lift_off_share : (n_meshes,) share of the period without contact [-]
+    [N m]
+    lift_off_share : (n_meshes,) share of the period without contact [-]
     twist : bracing twist [rad]; drive_torque : mean motor torque that balances all losses [N m]
     friction_power, damping_power : (n_meshes,) mean losses in the mesh [W]
     wave : the motion over one period, for root stress and plots
@@ -98,11 +99,14 @@ class ResponseCurve:
 
     other_branch : where a second stable response exists at a speed, from which the motion does not come to the first
         without a jump
+    unstable : speeds without a point at which harmonic balance found a response with contact loss that does not last:
+        what lasts there does not repeat in the asked period, or lies on another branch [rad/s]
     """
 
     points: tuple[CurvePoint, ...]
     failed: tuple[tuple[float, str], ...]
     other_branch: tuple[CurvePoint, ...] = ()
+    unstable: tuple[float, ...] = ()
 
     @property
     def speeds(self) -> Array:
@@ -122,8 +126,8 @@ class SweepSettings:
     cutoff : highest mode that counts [Hz]; harmonics must reach 1.5 times the highest mode below it
     tolerance : of the harmonic balance, error of the approach over its mean [-]
     methods : what may be used, tried in this order at every speed
-    branches : test states with contact loss for stability and trace branches round their turning points; without it the
-        harmonic balance walks from speed to speed
+    branches : trace branches round their turning points and look for a second stable response; without it the harmonic
+        balance walks from speed to speed, both ways, and keeps what is stable
     """
 
     period: Period = "mesh"
@@ -194,6 +198,7 @@ def periodic_response(
         points=tuple(found[i] for i in sorted(found)),
         failed=tuple((given[i], reasons[i]) for i in range(len(given)) if i not in found),
         other_branch=tuple(other[i] for i in sorted(other)),
+        unstable=tuple(given[i] for i in sorted(states.unstable) if i not in found),
     )
 
 
@@ -220,6 +225,7 @@ def refined_response(
     points = {point.speed: point for point in curve.points}
     failed = dict(curve.failed)
     other = {point.speed: point for point in curve.other_branch}
+    unstable = set(curve.unstable)
     for _ in range(rounds):
         wanted = sorted(_between(sorted(points.values(), key=lambda point: point.speed), bend) - set(failed))
         if not wanted:
@@ -228,10 +234,12 @@ def refined_response(
         points |= {point.speed: point for point in more.points}
         failed |= dict(more.failed)
         other |= {point.speed: point for point in more.other_branch}
+        unstable |= set(more.unstable)
     return ResponseCurve(
         points=tuple(points[speed] for speed in sorted(points)),
         failed=tuple(sorted(failed.items())),
         other_branch=tuple(other[speed] for speed in sorted(other)),
+        unstable=tuple(sorted(unstable)),
     )
 
 

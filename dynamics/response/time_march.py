@@ -236,9 +236,7 @@ class TimeMarch:
         )
         slow, speed, braking, angle_1 = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
         braking = braking[:, self._places]
-        return Block(
-            force, acting, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0]
-        )
+        return Block(force, acting, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0])
 
     def _diverged(self, force: Array, samples: Array) -> str:
         """What is known of a march that left the finite numbers in its last block.

@@ -1,25 +1,14 @@
 """Check of the speeds at which the rig dwells against resonances of meshes, shafts and joints."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule
-from rigdesign.records.dwell_speeds import (
-    NEAR,
-    SHAFT_SHARE,
-    Bounds,
-    bounds_of,
-    held_crossings,
-    mesh_shares,
-    near_shares,
-    order_resonances,
-)
-from rigdesign.records.resonance_bands import DynamicShare, resonances
+from rigdesign.records.near_dwell import SHAFT_SHARE, near_dwell
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.dwell import AvoidedResonance
 from rigdesign.results.units import NUMBER, RPM
 
 
@@ -64,32 +53,21 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     rig, run = solved.rig, solved.run
     if run is None or solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
-    bounds = bounds_of(rig)
-    reach = NEAR * bounds.margin
     speeds = run.curves.response.speeds
-    meshes = list(_resonances(mesh_shares(rig, run), bounds))
-    modes = [mode for mode in solved.loads.modes if mode.frequency > 0.0]
-    names = {number: mode.name for number, mode in enumerate(modes, start=1)}
-    orders = list(order_resonances(held_crossings(rig, modes), names, bounds.margin))
     for stage in rig.case.schedule.resolved():
         speed = rig.pinion_speed(stage.speed_end)
         if not (stage.kind == "dwell" or stage.held) or not speeds[0] <= speed <= speeds[-1]:
             continue
-        found = [*meshes, *_resonances(near_shares(rig, run, speed), bounds), *orders]
-        nearest = min(found, key=lambda one: one.distance(speed, bounds.margin), default=None)
-        if nearest is None or nearest.distance(speed, bounds.margin) > reach:
-            yield reach, f"stage {stage.name}: none within {100.0 * reach:.0f} % of its speed"
+        near = near_dwell(rig, run, solved.loads.modes, speed)
+        if near.resonance is None:
+            yield near.distance, f"stage {stage.name}: none within {100.0 * near.distance:.0f} % of its speed"
         else:
+            one = near.resonance
             yield (
-                nearest.distance(speed, bounds.margin),
-                f"stage {stage.name} at {speed * RPM:.0f} rpm: {nearest.kind} of {nearest.where} peaks at "
-                f"{nearest.speed * RPM:.0f} rpm",
+                near.distance,
+                f"stage {stage.name} at {speed * RPM:.0f} rpm: {one.kind} of {one.where} peaks at "
+                f"{one.speed * RPM:.0f} rpm",
             )
-
-
-def _resonances(shares: Iterable[DynamicShare], bounds: Bounds) -> Iterator[AvoidedResonance]:
-    for share in shares:
-        yield from resonances(share, bounds.of(share), bounds.margin)
 
 
 REGISTRY.register(Topic(order=11, families=(DWELL,), checks=checks))

@@ -14,11 +14,11 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig
 
 COUNT = 6
-"""Speeds over the range, evenly in their logarithm; those of the held stages come on top."""
+"""Speeds over the range, evenly in their logarithm; those at which the rig dwells come on top."""
 SLOWEST = 0.04
 """Lowest speed, as a share of the highest: bearings below are those there."""
 SAME = 0.03
-"""Share of a held speed within which another speed is left out."""
+"""Share of a dwell speed within which another speed is left out."""
 
 
 @dataclass(frozen=True)
@@ -35,21 +35,31 @@ def loop_states(rig: Rig, held: PointResult, top: float) -> tuple[LoopState, ...
 
     Shafts that only twist have one loop for all speeds, its lowest and highest, but for splines with a loss factor.
     """
-    at_held = [point.speed for point in held_points(rig) if 0.0 < point.speed <= top]
+    at_held = [speed for speed in dwell_speeds(rig) if 0.0 < speed <= top]
     grid = np.geomspace(SLOWEST * top, top, COUNT).tolist()
     if rig.shaft_model == "torsional":
         speeds = {*grid, *at_held} if rig.twisting.follows_speed else {grid[0], *at_held, top}
         return tuple(LoopState(speed, rig.twisting.at(speed), None) for speed in sorted(speeds))
     free = [speed for speed in grid if all(abs(speed - own) > SAME * own for own in at_held)]
-    return tuple(_at(rig, held, speed) for speed in sorted({*free, *at_held}))
+    return tuple(state_at(rig, held, speed) for speed in sorted({*free, *at_held}))
 
 
-def _at(rig: Rig, held: PointResult, speed: float) -> LoopState:
+def dwell_speeds(rig: Rig) -> tuple[float, ...]:
+    """Stated speeds at which the rig dwells, each once [rad/s]."""
+    dwells = [stage.speed_end for stage in rig.case.schedule.resolved() if stage.kind == "dwell"]
+    return tuple(dict.fromkeys([*(point.speed for point in held_points(rig)), *dwells]))
+
+
+def state_at(rig: Rig, held: PointResult, speed: float) -> LoopState:
+    """The loop at one stated speed [rad/s], gears as warm as at the held point."""
+    if rig.shaft_model == "torsional":
+        return LoopState(speed, rig.twisting.at(speed), None)
     last = held.last
     point = replace(last.point, speed=speed)
     bearings = last.bearings if speed == last.point.speed else solve_bearings(rig, point, last.coupling_state)
     state = running_state(rig, point, last.coupling_state, bearings)
-    return LoopState(speed, rig.elastic.seen.system(state), state)
+    system = last.system if speed == last.point.speed else None
+    return LoopState(speed, system or rig.elastic.seen.system(state), state)
 
 
 def nearest(states: Sequence[LoopState], speed: float) -> LoopState:

@@ -1,40 +1,57 @@
 """The recommended ramp, step by step with its reason: P2, Figure 9, at the speeds and torques of the rig.
 
-Braced at rest, up to the speed at which the bearings float, part of the torque, without a stop through the resonances,
-full torque at the test speed: above the highest resonance of a mesh none is passed under it.
+Braced at rest, up to the speed at which the bearings float and the start torque keeps the flanks in contact, part of
+the torque, without a stop through the resonances, full torque at the test speed: above the highest resonance of a mesh
+none is passed under it.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.resonance_bands import nearest_safe
-from rigdesign.results.dwell import AvoidedBand, RampStep
+from rigdesign.records.speed_limits import SpeedLimit
+from rigdesign.records.start_torque import (
+    USUAL_SHARE,
+    StagePeak,
+    StartResponse,
+    first_speed,
+    start_torque,
+)
+from rigdesign.results.dwell import AvoidedBand, NearResonance, RampStep
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
-
-TOUCHING = 0.05
-"""Share of the test torque that closes the flanks, where the case states none."""
-USUAL_SHARE = 0.5
-"""Of the test torque on the way up (P2, Figure 9), where the case states none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RampLimits:
-    """What the ramp follows from; speeds of the first pinion [rad/s]."""
+    """What the ramp follows from; speeds of the first pinion [rad/s].
+
+    near : the nearest resonance of every speed that a stage holds and whose response is computed
+    limit : None where the case states none; start : None where it is not computed
+    up, down : worst of the time run under the start torque, None where the schedule does not turn under it
+    """
 
     run: DynamicRun
     bands: Sequence[AvoidedBand]
     safe: Sequence[tuple[float, float]]
-    range: tuple[float, float]
+    near: Mapping[float, NearResonance]
+    limit: SpeedLimit | None
+    start: StartResponse | None
+    up: StagePeak | None
+    down: StagePeak | None
+
+    def band_at(self, speed: float) -> AvoidedBand | None:
+        """The band in which a speed lies."""
+        return next((band for band in self.bands if band.low < speed < band.high), None)
 
 
 def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
     """From rest to the test point and back."""
     case = rig.case
     test, torque = rig.pinion_speed(case.schedule.test_speed), case.schedule.test_torque
-    start = min(case.limits.bearing.start_torque_limit or TOUCHING * torque, USUAL_SHARE * torque)
+    start = start_torque(rig)
     top = _highest_resonance(found)
     yield RampStep(
         action="brace at rest",
@@ -43,7 +60,12 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
         reason="closes the flanks before the rig turns; bearings without a film carry no more than this",
     )
     first, reason = _first_speed(rig, found, test)
-    yield RampStep(action="run up", speed=first, torque=start, reason=reason)
+    yield RampStep(
+        action="run up",
+        speed=first,
+        torque=start,
+        reason="; ".join([reason, *_passed(found.up), *_lost(found)]),
+    )
     passed = max(_factors(found, first, test), default=1.0)
     share = min(case.limits.ramp.run_up_torque_share_maximum or USUAL_SHARE, 1.0 / passed)
     if test > first:
@@ -51,8 +73,8 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
             action="raise the torque in part",
             speed=first,
             torque=share * torque,
-            reason=f"K_V up to {passed:.2f} is passed on the way up: {share:.2f} of the test torque stays below "
-            f"{share * passed:.2f} of it at its peak",
+            reason=f"K_V up to {passed:.2f} is passed from here to the test speed under the torques of the curves: "
+            f"{share:.2f} of the test torque stays below {share * passed:.2f} of it at its peak",
         )
         yield RampStep(
             action="run up without a stop",
@@ -72,33 +94,68 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
             reason="the resonances are passed again on the way down",
         )
         yield RampStep(
-            action="run down without a stop", speed=first, torque=share * torque, reason="as on the way up"
+            action="run down without a stop",
+            speed=first,
+            torque=share * torque,
+            reason="as on the way up",
         )
     yield RampStep(
         action="relieve and stop",
         speed=0.0,
         torque=start,
-        reason="no more than the start torque while the bearings lose their film",
+        reason="; ".join(
+            ["no more than the start torque while the bearings lose their film", *_passed(found.down)]
+        ),
     )
 
 
 def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
-    """Speed at which the torque is first raised, moved out of an avoided band, and why."""
+    """Speed at which the torque is first raised, and why: moved up to where the start torque keeps the flanks in
+    contact, then out of an avoided band."""
     floating = rig.case.limits.ramp.transition_speed
-    speeds = [
-        rig.pinion_speed(stage.speed_end) for stage in rig.case.schedule.resolved() if stage.speed_end > 0.0
-    ]
-    wanted = min(rig.pinion_speed(floating) if floating else speeds[0], test)
+    wanted = first_speed(rig)
     why = "the bearings float from here on" if floating else "first speed of the schedule"
-    band = _band(found.bands, wanted)
-    if band is None or wanted >= test:
+    if wanted >= test:
+        return wanted, why
+    if found.start is not None and not found.start.holds_at(wanted):
+        held = found.start.next_held(wanted)
+        if held is None or held >= test:
+            why += "; flanks part here under the start torque, and up to the highest speed looked at"
+        else:
+            why = (
+                f"{'the bearings float from' if floating else 'the schedule first stops at'} {_rpm(wanted)} on, where "
+                f"flanks part under the start torque: raised here, where they stay in contact"
+            )
+            wanted = held
+    band = found.band_at(wanted)
+    if band is None:
         return wanted, why
     least = wanted if floating else 0.0
     windows = [(max(low, least), high) for low, high in found.safe if low <= test and high > least]
     safe = nearest_safe(windows, wanted)
     if safe is None:
         return wanted, f"{why}; no speed from there to the test speed lies outside the avoided bands"
-    return safe, f"{why}; moved from {wanted * RPM:.0f} rpm, which lies in the band {_span(band)}"
+    return safe, f"{why}; moved from {_rpm(wanted)}, which lies in the band {_span(band)}"
+
+
+def _passed(worst: StagePeak | None) -> Iterator[str]:
+    """What the time run passes under the start torque."""
+    if worst is not None:
+        stage = worst.stage.replace("_", " ")
+        yield (
+            f"under the start torque the time run passes K_V {worst.factor:.2f} at {_rpm(worst.speed)} in stage "
+            f"{stage}, flanks {'part' if worst.lost else 'stay in contact'}"
+        )
+
+
+def _lost(found: RampLimits) -> Iterator[str]:
+    """Where flanks part under the start torque."""
+    spans = [] if found.start is None else found.start.spans()
+    if spans:
+        where = ", ".join(
+            f"{low * RPM:.0f} to {_rpm(high)}" if high > low else f"near {_rpm(low)}" for low, high in spans
+        )
+        yield f"no stop where flanks part in the periodic response: {where}"
 
 
 def _factors(found: RampLimits, first: float, test: float) -> Iterator[float]:
@@ -139,20 +196,40 @@ def _full(found: RampLimits, top: float | None, test: float) -> str:
 
 
 def _dwell(found: RampLimits, test: float) -> str:
-    if not found.range[0] <= test <= found.range[1]:
+    near = found.near.get(test)
+    if near is None:
         return "the response is not computed at this speed"
-    band = _band(found.bands, test)
+    above = found.limit is not None and test > found.limit.speed * (1.0 + 1e-9)
+    beyond = f"above the limit of the rig, {_limit(found.limit)}; " if above and found.limit else ""
+    band = found.band_at(test)
     if band is None:
-        return "outside all avoided bands"
+        return f"{beyond}outside all avoided bands"
+    why = f"{beyond}lies in the avoided band {_span(band)}"
+    if near.resonance is not None:
+        one = near.resonance
+        why += (
+            f": {one.kind} of {one.where.replace('_', ' ')} peaks at {_rpm(one.speed)}, {100.0 * near.distance:.1f} % "
+            "away"
+        )
+    return f"{why}; {_instead(found, test)}"
+
+
+def _instead(found: RampLimits, test: float) -> str:
+    """The nearest safe speed; that there is none above within the limit of the rig, where it lies below."""
     safe = nearest_safe(found.safe, test)
-    nearest = min(band.resonances, key=lambda one: one.distance(test))
-    instead = (
-        "no speed computed is safe" if safe is None else f"nearest safe speed {_outward(safe, test)} rpm"
+    none_above = (
+        f"none above it up to the limit of the rig, {_limit(found.limit)}"
+        if found.limit is not None
+        else "none above it in the speeds computed"
     )
-    return (
-        f"lies in the avoided band {_span(band)}: {nearest.kind} of {nearest.where.replace('_', ' ')} peaks at "
-        f"{nearest.speed * RPM:.0f} rpm, {100.0 * nearest.distance(test):.1f} % away; {instead}"
-    )
+    if safe is None:
+        return "no speed computed is safe within the limits of the rig"
+    text = f"nearest safe speed {_outward(safe, test)} rpm"
+    return text if any(high > test for _, high in found.safe) else f"{text}, {none_above}"
+
+
+def _limit(limit: SpeedLimit | None) -> str:
+    return "" if limit is None else f"{_rpm(limit.speed)} ({limit.source})"
 
 
 def _outward(safe: float, test: float) -> int:
@@ -160,8 +237,8 @@ def _outward(safe: float, test: float) -> int:
     return math.ceil(safe * RPM) if safe > test else math.floor(safe * RPM)
 
 
-def _band(bands: Sequence[AvoidedBand], speed: float) -> AvoidedBand | None:
-    return next((band for band in bands if band.low < speed < band.high), None)
+def _rpm(speed: float) -> str:
+    return f"{speed * RPM:.0f} rpm"
 
 
 def _span(band: AvoidedBand) -> str:

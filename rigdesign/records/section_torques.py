@@ -1,7 +1,8 @@
 """Dynamic torque in every section of the shafts, every joint and mesh: held stages, over speed, in the time run.
 
 From the periodic responses: the forces of the meshes drive the linear loop between them. Over speed the loop has the
-matrices of the nearest of a few speeds (`loop_states`), the forces are those of every speed.
+matrices of the nearest of a few speeds (`loop_states`), around a dwell speed those at it; the forces are those of every
+speed.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,7 +19,7 @@ from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_states import LoopState, nearest
+from rigdesign.records.loop_states import LoopState, dwell_speeds, nearest
 from rigdesign.records.run_torques import place_of, run_torques
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.section_torques import (
@@ -31,8 +32,11 @@ from rigdesign.results.section_torques import (
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
+AROUND = 0.3
+"""Speeds that count as around a dwell speed, as a share of it: half as much again as the widest usual margin."""
 MOST_SPEEDS = 150
-"""Speeds of the curves at most; peaks of the mesh torque are always among them."""
+"""Speeds of the curves at most, but for those around the dwell speeds; peaks of the mesh torque are always among
+them."""
 
 
 def section_torque_record(
@@ -42,18 +46,20 @@ def section_torque_record(
     held: list[HeldTorque] = []
     for point in run.points:
         held += _held(rig, point, loads)
-    points = chosen(run.curves.response.points, MOST_SPEEDS)
+    dwells = [rig.pinion_speed(speed) for speed in dwell_speeds(rig)]
+    points = chosen(run.curves.response.points, MOST_SPEEDS, dwells)
     return SectionTorqueRecord(
         held=tuple(held),
         torque=next(iter(run.curves.named)),
         speeds=tuple(point.speed for point in points),
-        curves=tuple(_curves(rig, run, points, states)),
+        curves=tuple(torques_over_speed(rig, run, points, states)),
         run=run_torques(rig, run.ramp, twist_rows_of(rig, states[0].system).sections),
     )
 
 
-def chosen(points: Sequence[CurvePoint], most: int) -> list[CurvePoint]:
-    """At most so many points of a curve, evenly by their number, and all at which the torque of a mesh peaks."""
+def chosen(points: Sequence[CurvePoint], most: int, dwells: Sequence[float] = ()) -> list[CurvePoint]:
+    """At most so many points of a curve, evenly by their number, with all at which the torque of a mesh peaks; on top
+    all within `AROUND` of a dwell speed [rad/s], where shafts peak between the meshes."""
     if len(points) <= most:
         return list(points)
     swing = np.array([point.dynamic_factor_half_peak_to_peak for point in points])
@@ -61,7 +67,13 @@ def chosen(points: Sequence[CurvePoint], most: int) -> list[CurvePoint]:
     peaks = set((np.flatnonzero(inner.any(axis=1)) + 1).tolist())
     rest = max(2, most - len(peaks))
     even = set(np.linspace(0, len(points) - 1, rest).round().astype(int).tolist())
-    return [points[i] for i in sorted(peaks | even)]
+    near = {i for i, point in enumerate(points) if any(is_around(point.speed, dwell) for dwell in dwells)}
+    return [points[i] for i in sorted(peaks | even | near)]
+
+
+def is_around(speed: float, dwell: float) -> bool:
+    """Whether a speed counts as one of those around a dwell speed."""
+    return abs(speed - dwell) <= AROUND * dwell
 
 
 def _held(rig: Rig, point: PointResult, loads: DynamicLoads) -> Iterator[HeldTorque]:
@@ -119,9 +131,13 @@ def _swings(rows: TwistRows, torque: Array) -> Iterator[tuple[TorquePlace, Torqu
         yield place, section, swing
 
 
-def _curves(
+def torques_over_speed(
     rig: Rig, run: DynamicRun, points: Sequence[CurvePoint], states: Sequence[LoopState]
 ) -> Iterator[TorqueOverSpeed]:
+    """Of every section, joint and mesh at points of the governing curve.
+
+    states : of the loop, those at the dwell speeds around which a point lies among them
+    """
     warm = run.test.last
     laws = periodic_laws(rig, laws_of(warm.models))
     rows = twist_rows_of(rig, states[0].system)
@@ -129,7 +145,9 @@ def _curves(
     found: dict[TorquePlace, list[TorqueSwing]] = {}
     per_stated = rig.pinion_speed(1.0)
     for point in points:
-        system = nearest(states, point.speed / per_stated).system
+        stated = point.speed / per_stated
+        around = next((dwell for dwell in dwell_speeds(rig) if is_around(stated, dwell)), stated)
+        system = nearest(states, around).system
         if id(system) not in loops:
             loops[id(system)] = section_torques(system, laws, rows)
         torque = loops[id(system)].over_period(point, warm.drags)

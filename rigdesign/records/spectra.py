@@ -171,9 +171,7 @@ def spectrum(blocks: Array, rate: float) -> tuple[Array, Array]:
     return np.asarray(np.fft.rfftfreq(size, 1.0 / rate), float), np.asarray(amplitude, float)
 
 
-def _blocks(
-    torque: Array, size: int, rate: float, highest: float
-) -> tuple[NDArray[np.int64], Array, Array]:
+def _blocks(torque: Array, size: int, rate: float, highest: float) -> tuple[NDArray[np.int64], Array, Array]:
     """Middle sample of every block, frequencies up to the highest [Hz], amplitudes (blocks, f)."""
     step = int(size * (1.0 - OVERLAP))
     views = np.lib.stride_tricks.sliding_window_view(torque, size)[::step]

@@ -23,7 +23,8 @@ class PairShare:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLossMap:
-    """Least torque of a mesh over its mean on a grid of speed and torque; None where no response was found."""
+    """Least torque of a mesh over its mean on a grid of speed and torque; None where no stable response
+    that repeats in every mesh was found."""
 
     mesh: str
     speed: Row
@@ -34,3 +35,5 @@ class ContactLossMap:
     """(t, s) [-]; 0 or less where flanks part."""
     lift_off: tuple[tuple[float | None, ...], ...]
     """(t, s) share of the time without contact [-]."""
+    unstable: tuple[tuple[bool, ...], ...]
+    """(t, s) True where the response that repeats in every mesh loses contact and does not last."""

@@ -35,6 +35,15 @@ class AvoidedResonance:
 
 
 @dataclass(frozen=True, kw_only=True)
+class NearResonance:
+    """The resonance nearest to a dwell."""
+
+    distance: float
+    """As a share of the speed of the dwell; as far as was looked where none is near [-]."""
+    resonance: AvoidedResonance | None
+
+
+@dataclass(frozen=True, kw_only=True)
 class AvoidedBand:
     """Resonances whose bands touch."""
 
@@ -55,10 +64,16 @@ class DwellStage:
     """[rad/s]"""
     computed: bool
     """Whether the response is known at its speed."""
+    near: NearResonance | None
+    """None where it is not known."""
     band: AvoidedBand | None
     """In which it lies."""
     nearest_safe: float | None
-    """Nearest safe speed for a stage in a band [rad/s]; None where there is none."""
+    """Nearest safe speed within the limit of the rig for a stage in a band [rad/s]; None where there is none."""
+    above_limit: bool
+    """Whether it turns faster than the rig may."""
+    loses_contact: bool
+    """Whether flanks part at its speed under the start torque, with which it begins or ends."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,9 +101,13 @@ class DwellRecord:
     """[rad/s]"""
     high: float
     """[rad/s]"""
+    speed_limit: float | None
+    """Of the rig [rad/s]; None where the case states none."""
+    speed_limit_source: str
+    """Key that states it."""
     bands: tuple[AvoidedBand, ...]
     safe: tuple[tuple[float, float], ...]
-    """[rad/s]"""
+    """Within the limit of the rig [rad/s]."""
     stages: tuple[DwellStage, ...]
     ramp: tuple[RampStep, ...]
     speeds: tuple[float, ...]

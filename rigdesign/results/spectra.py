@@ -33,7 +33,7 @@ class HeldSpectrum:
     mean: float
     """[N m]"""
     order: Row
-    """(n,) of the time run, as far as its torque is kept: three mesh orders of the highest speed with their sidebands."""
+    """(n,) of the time run, as far as its torque is kept: three mesh orders of the highest speed."""
     amplitude: Row
     """(n,) largest around each order [N m]"""
     harmonic_order: Row

@@ -12,7 +12,7 @@ from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.periodic_loads import loads_left_out
+from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
@@ -334,11 +334,29 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
         yield "bending and tilting of shafts: they only twist, journal stiffness does not enter the loads"
         yield "static position of the journals in their films: axes run through the middle of the hot bores"
         return
-    yield "unbalance, bow of shafts and offset of coupled axes as lateral excitation"
+    yield from _left_out_once_a_turn(solved)
     yield (
         "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the "
         "line of action; the mean tilt of the axes is in the gap of the flanks"
     )
+
+
+def _left_out_once_a_turn(solved: SolvedRig) -> Iterator[str]:
+    """What shakes bending shafts with their turns and is not in every result."""
+    if solved.run is not None:
+        last = solved.points[-1].last
+        lines = lines_left_out(solved.rig, laws_of(last.models), last.system)
+        if lines:
+            yield (
+                f"unbalance, bow and run-out of {', '.join(lines)} in the periodic response (K_V over speed, dynamic "
+                "torques and root stress, contact loss): it repeats in every mesh; the time run, the events and the "
+                'lateral vibration have them; write numerics.response_period = "revolution" where a turn holds them'
+            )
+    if solved.rig.elastic.rig.misalignments:
+        yield (
+            "alternating forces of couplings whose axes stand out of line: their standing force is in the loads of the "
+            "bearings, orders are those that couplings.*.excitation states and those of cross joints"
+        )
 
 
 def not_modelled(solved: SolvedRig) -> list[str]:

@@ -1,8 +1,6 @@
 """At a dwell the motor torque of the momentum balance equals the losses integrated one by one.
 
 Drive torque times speed is the sum of all losses: an identity that no model parameter can repair. The torque comes
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.response.periodic_response import TimeSettings, TimeSettings
 from the momentum gained and lost, the losses from the contacts, the joint rates and the drags.
 """
 

@@ -48,10 +48,16 @@ def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure
             rasterized=True,
         )  # fmt: skip
         lost = np.array([[v is not None and v > 0.0 for v in line] for line in row["lift_off_share"]])
-        unknown = np.isnan(values)
+        unstable = np.array(row["unstable"])
         for marks, marker, colour, label in (
             (lost, "x", VERDICT_COLOURS["fail"], "contact is lost"),
-            (unknown, ".", MUTED, "no response found"),
+            (
+                unstable,
+                "+",
+                VERDICT_COLOURS["fail"],
+                "contact is lost, the motion does not repeat in every mesh",
+            ),
+            (np.isnan(values) & ~unstable, ".", MUTED, "no response found"),
         ):
             torque, speed = np.nonzero(marks)
             if speed.size:
@@ -67,7 +73,7 @@ def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure
     for axes in panels:
         handles |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     if handles:
-        figure.legend(handles.values(), handles.keys(), loc="lower left", bbox_to_anchor=(0.07, 0.0), ncols=2)
+        figure.legend(handles.values(), handles.keys(), loc="lower left", bbox_to_anchor=(0.07, 0.0), ncols=3)
     bar = figure.colorbar(image, ax=list(panels), pad=0.015, fraction=0.05)
     bar.set_label("least torque over the mean [–]")
     figure.subplots_adjust(left=0.075, right=0.87, top=0.89, bottom=0.24, wspace=0.08)

@@ -28,7 +28,9 @@ def ramp_figure(ramp: RampHistory) -> "Figure":
     styles = gearbox_colours(ramp.torque)
     for axes, (name, curves) in zip(axes_list[2:], ramp.torque.items(), strict=True):
         _envelope(axes, ramp, curves, styles[name], step)
-        gearbox_title(axes, f"Dynamic torque in gearbox {words(name)}, extremes of every envelope window", styles[name])
+        gearbox_title(
+            axes, f"Dynamic torque in gearbox {words(name)}, extremes of every envelope window", styles[name]
+        )
     for axes in axes_list:
         _stage_bands(axes, ramp)
         axes.yaxis.set_label_coords(-0.052, 0.5)

@@ -27,4 +27,5 @@ def contact_loss_row(found: ContactLossMap) -> dict[str, Any]:
         "torque_Nm": list(found.torque),
         "least_share": [list(row) for row in found.least_share],
         "lift_off_share": [list(row) for row in found.lift_off],
+        "unstable": [list(row) for row in found.unstable],
     }

@@ -14,6 +14,8 @@ def dwell_row(record: DwellRecord) -> dict[str, Any]:
         "margin": record.margin,
         "low_rpm": record.low * RPM,
         "high_rpm": record.high * RPM,
+        "speed_limit_rpm": None if record.speed_limit is None else record.speed_limit * RPM,
+        "speed_limit_source": record.speed_limit_source,
         "bands": [_band(band) for band in record.bands],
         "safe": [{"low_rpm": low * RPM, "high_rpm": high * RPM} for low, high in record.safe],
         "stages": [_stage(stage) for stage in record.stages],
@@ -54,7 +56,7 @@ def _resonance(one: AvoidedResonance) -> dict[str, Any]:
 
 
 def _stage(stage: DwellStage) -> dict[str, Any]:
-    band = stage.band
+    band, near = stage.band, None if stage.near is None else stage.near.resonance
     return {
         "stage": stage.stage,
         "kind": stage.kind,
@@ -62,4 +64,8 @@ def _stage(stage: DwellStage) -> dict[str, Any]:
         "computed": stage.computed,
         "band": None if band is None else {"low_rpm": band.low * RPM, "high_rpm": band.high * RPM},
         "nearest_safe_rpm": None if stage.nearest_safe is None else stage.nearest_safe * RPM,
+        "nearest_resonance": None if near is None else _resonance(near),
+        "distance": None if stage.near is None else stage.near.distance,
+        "above_limit": stage.above_limit,
+        "loses_contact_at_start_torque": stage.loses_contact,
     }

@@ -1,0 +1,123 @@
+"""The rig under its start torque around the speed at which the torque is first raised: K_V and contact.
+
+A tenth of the test torque and less does not close the deviations of the teeth: slow resonances that the loaded rig
+passes unnoticed let flanks part.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.records.contact_loss_maps import response_under
+from rigdesign.records.curves import own_ratio, resolved
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loop_states import LoopState
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+TOUCHING = 0.05
+"""Share of the test torque that closes the flanks, where the case states none."""
+USUAL_SHARE = 0.5
+"""Of the test torque on the way up (P2, Figure 9), where the case states none."""
+BELOW, ABOVE = 0.7, 1.6
+"""Speeds looked at, over that at which the torque is first raised."""
+SPEEDS = 49
+
+
+def start_torque(rig: Rig) -> float:
+    """Stated torque before the bearings float [N m]."""
+    case = rig.case
+    torque = case.schedule.test_torque
+    return min(case.limits.bearing.start_torque_limit or TOUCHING * torque, USUAL_SHARE * torque)
+
+
+def first_speed(rig: Rig) -> float:
+    """Speed of the first pinion at which the torque may first be raised: the transition speed of the bearings, else the
+    first speed of the schedule [rad/s]."""
+    floating = rig.case.limits.ramp.transition_speed
+    ends = [stage.speed_end for stage in rig.case.schedule.resolved() if stage.speed_end > 0.0]
+    return rig.pinion_speed(min(floating or ends[0], rig.case.schedule.test_speed))
+
+
+@dataclass(frozen=True)
+class StagePeak:
+    """Highest K_V of a mesh in a stage of the time run, and at which speed of the first pinion [rad/s].
+
+    lost : whether flanks part in the stage
+    """
+
+    stage: str
+    factor: float
+    speed: float
+    lost: bool
+
+
+@dataclass(frozen=True, eq=False)
+class StartResponse:
+    """Periodic response under the start torque; speeds of the first pinion, rising [rad/s].
+
+    speed : (n,); factor : (n,) highest K_V of a mesh, NaN where no stable state repeats in every mesh; lost : (n,) True
+    where flanks part
+    """
+
+    speed: Array
+    factor: Array
+    lost: Flags
+
+    def spans(self) -> list[tuple[float, float]]:
+        """Lowest and highest computed speed of every interval in which flanks part, rising."""
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], self.lost.astype(int), [0]))))
+        return [
+            (float(self.speed[first]), float(self.speed[end - 1]))
+            for first, end in zip(edges[::2], edges[1::2])
+        ]
+
+    def holds_at(self, speed: float) -> bool:
+        """Whether the flanks stay in contact at the computed speeds on both sides of one; True outside them."""
+        place = int(np.searchsorted(self.speed, speed))
+        inside = 0 < place < self.speed.size
+        return not inside or not bool(self.lost[place - 1] or self.lost[place])
+
+    def next_held(self, speed: float) -> float | None:
+        """Least computed speed from one on at which the flanks stay in contact there and at the next; None if none."""
+        free = (self.speed[:-1] >= speed) & ~self.lost[:-1] & ~self.lost[1:]
+        return float(self.speed[:-1][free][0]) if free.any() else None
+
+
+def start_response(rig: Rig, run: DynamicRun, states: Sequence[LoopState]) -> StartResponse | None:
+    """Around the speed at which the torque is first raised; None where maps of contact loss are not computed."""
+    if not resolved(rig):
+        return None
+    speeds = np.linspace(BELOW, ABOVE, SPEEDS) * first_speed(rig)
+    curve = response_under(rig, run, states, start_torque(rig), speeds.tolist())
+    factor = np.full(speeds.size, np.nan)
+    lost: Flags = np.isin(speeds, curve.unstable)
+    for point in curve.points:
+        at = int(np.argmin(np.abs(speeds - point.speed)))
+        factor[at] = float(point.dynamic_factor.max())
+        lost[at] = bool((point.lift_off_share > 0.0).any())
+    known = lost | np.isfinite(factor)
+    return StartResponse(speeds[known], factor[known], lost[known]) if known.any() else None
+
+
+def worst_start(rig: Rig, loads: DynamicLoads, sense: Literal[1, -1]) -> StagePeak | None:
+    """Highest K_V of a mesh in the stages of the time run that speed up (1) or slow down (-1) under the start torque;
+    None where the schedule has none."""
+    light = start_torque(rig)
+    own = {
+        stage.name
+        for stage in rig.case.schedule.resolved()
+        if abs(stage.torque_end) <= light and sense * (stage.speed_end - stage.speed_start) > 0.0
+    }
+    found = [
+        StagePeak(load.stage, load.dynamic_factor, load.speed / own_ratio(rig, mesh), load.least_share <= 0.0)
+        for mesh, name in enumerate(rig.mesh_names)
+        for load in loads.meshes[rig.mesh_labels[name]].stage_loads
+        if load.stage in own
+    ]
+    return max(found, key=lambda one: one.factor, default=None)
