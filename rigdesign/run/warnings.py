@@ -18,6 +18,7 @@ from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
@@ -40,6 +41,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="iso_6336_1", text=text) for text in _iso(solved)),
         *(Finding(id="shaft", text=t.finding) for t in solved.rig.shaft_torsions if t.finding),
         *(Finding(id="response", text=text) for text in _response(solved)),
+        *(Finding(id="damping", text=text) for text in _light_dwells(solved)),
         *(Finding(id="unlike_teeth", text=text) for text in _deviating_teeth(solved)),
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
@@ -339,6 +341,13 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
         "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the "
         "line of action; the mean tilt of the axes is in the gap of the flanks"
     )
+
+
+def _light_dwells(solved: SolvedRig) -> Iterator[str]:
+    """Dwells on resonances whose damping no rig of steel has."""
+    if solved.loads is not None:
+        for found in light_dwells(solved.rig, solved.loads, LIGHTLY):
+            yield f"{found.text(LIGHTLY)}, what steel shafts with joints have: {REMEDY}"
 
 
 def _left_out_once_a_turn(solved: SolvedRig) -> Iterator[str]:
