@@ -234,7 +234,7 @@ def _limit(limit: SpeedLimit | None) -> str:
 
 def _outward(safe: float, test: float) -> int:
     """A safe speed in whole rpm, away from the band."""
-    return math.ceil(safe * RPM) if safe > test else math.floor(safe * RPM)
+    return math.ceil(safe * RPM - 1e-6) if safe > test else math.floor(safe * RPM + 1e-6)
 
 
 def _rpm(speed: float) -> str:

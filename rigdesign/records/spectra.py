@@ -146,11 +146,23 @@ def _orders_of_run(rig: Rig, run: DynamicRun, stage: str, mesh: int) -> tuple[Ar
     torque, speed = _part(run.ramp, mesh, start + SETTLED * (end - start), end)
     if torque.size < LEAST_SAMPLES or not speed.mean() > 0.0:
         return nothing, nothing
-    frequency, amplitude = spectrum(torque[None], 1.0 / run.ramp.torque_step)
-    order = 2.0 * math.pi * frequency / (own_ratio(rig, mesh) * float(speed.mean()))
+    turn = own_ratio(rig, mesh) * float(speed.mean()) / (2.0 * math.pi)
+    order, amplitude = order_spectrum(torque, turn * run.ramp.torque_step)
     last = (HIGHEST_HARMONIC + 0.5) * rig.pairs[rig.mesh_names[mesh]].teeth[0]
-    kept = (frequency <= run.ramp.torque_band) & (order <= last)
-    return _pooled(order[kept], amplitude[0, kept], ORDERS)
+    kept = (order * turn <= run.ramp.torque_band) & (order <= last)
+    return _pooled(order[kept], amplitude[kept], ORDERS)
+
+
+def order_spectrum(torque: Array, turned: float) -> tuple[Array, Array]:
+    """Orders (n,) and amplitudes of samples at a steady speed, over the last whole turns: orders are then lines of the
+    transform, and their amplitudes those of the window's middle.
+
+    turned : turns from sample to sample [-]; less than one turn in all is taken as it is
+    """
+    whole = math.floor(torque.size * turned)
+    size = round(whole / turned) if whole else torque.size
+    frequency, amplitude = spectrum(torque[None, torque.size - size :], 1.0 / turned)
+    return frequency, amplitude[0]
 
 
 def _spans(rig: Rig) -> Iterator[tuple[Stage, float, float]]:

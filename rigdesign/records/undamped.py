@@ -37,10 +37,10 @@ class LightDwell:
         """What, where, how much against which limit."""
         one = self.crossing
         return (
-            f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on a resonance without damping: order {one.harmonic} "
-            f"of mesh {one.order_of} meets mode {one.mode} ({one.shape}), {one.frequency:.4g} Hz, at "
-            f"{one.speed * RPM:.1f} rpm, {100.0 * self.distance:.2g} % away; its damping ratio is "
-            f"{one.damping_ratio:.2g}, limit {limit:g}"
+            f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on a resonance without damping: order "
+            f"{one.harmonic} of mesh {one.order_of} meets mode {one.mode} ({one.shape}), {one.frequency:.4g} Hz, at "
+            f"{one.speed * RPM:.1f} rpm, {100.0 * self.distance:.1f} % away; its damping ratio is "
+            f"{abs(one.damping_ratio):.2g}, limit {limit:g}"
         )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigdesign.records.campbell import _meetings
-from rigdesign.records.spectra import _blocks, _pooled, _spectrum
+from rigdesign.records.spectra import _blocks, _pooled, order_spectrum, spectrum
 from rigdesign.results.campbell import CampbellMode
 
 RATE = 40e3
@@ -13,7 +13,7 @@ RATE = 40e3
 def test_a_cosine_has_its_amplitude() -> None:
     """1250 Hz is a line of 4096 samples: the window spreads it to neighbours, the middle keeps the amplitude."""
     time = np.arange(4096) / RATE
-    frequency, amplitude = _spectrum((3.0 + 2.0 * np.cos(2.0 * np.pi * 1250.0 * time))[None], RATE)
+    frequency, amplitude = spectrum((3.0 + 2.0 * np.cos(2.0 * np.pi * 1250.0 * time))[None], RATE)
     at = int(np.argmax(amplitude[0]))
     assert frequency[at] == pytest.approx(1250.0)
     assert amplitude[0, at] == pytest.approx(2.0, rel=1e-9)
@@ -23,10 +23,19 @@ def test_blocks_follow_a_sweep() -> None:
     """From 1 to 5 kHz in one second: the strongest line of a block is the frequency at its middle."""
     time = np.arange(int(RATE)) / RATE
     sweep = np.cos(2.0 * np.pi * (1000.0 * time + 2000.0 * time**2))
-    middles, frequency, amplitude = _blocks(sweep, 512, RATE)
+    middles, frequency, amplitude = _blocks(sweep, 512, RATE, 0.4 * RATE)
     strongest = frequency[np.argmax(amplitude, axis=1)]
     # half a bin of 78 Hz, and the sweep of 51 Hz within a block
     assert strongest == pytest.approx(1000.0 + 4000.0 * middles / RATE, abs=78.0)
+
+
+def test_whole_turns_keep_the_amplitudes_of_orders() -> None:
+    """Order 99 at 23.7 turns a second falls between the lines of all samples, on one of those of whole turns."""
+    turns = 23.7 * np.arange(20000) / RATE
+    order, amplitude = order_spectrum(1.5 * np.cos(2.0 * np.pi * 99.0 * turns), 23.7 / RATE)
+    at = int(np.argmax(amplitude))
+    assert order[at] == pytest.approx(99.0, rel=1e-4)
+    assert amplitude[at] == pytest.approx(1.5, rel=5e-3)
 
 
 def test_pooling_keeps_peaks() -> None:

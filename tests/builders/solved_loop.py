@@ -1,0 +1,17 @@
+"""The 1:1 loop at quick fidelity, solved once a worker: dynamic run, loads and records for the tests of records."""
+
+from functools import cache
+
+from rigdesign import load_case
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.run.main import solve_case
+from tests.builders.paths import CASES
+
+SLOW = "120 rpm"
+"""Speed at which its root stress is asked for: the mesh frequency is a quarter of the first mode of the loop."""
+
+
+@cache
+def solved() -> SolvedRig:
+    case = load_case(CASES / "loop_1to1").with_value("numerics.root_stress_speeds", [SLOW])
+    return solve_case(case, "quick")

@@ -1,0 +1,128 @@
+"""The recommended ramp: what the start torque does, limits of the rig, what the reasons say."""
+
+from collections.abc import Sequence
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rigdesign.case import load_case
+from rigdesign.records.ramp_steps import RampLimits, ramp_steps
+from rigdesign.records.resonance_bands import bands, safe_windows
+from rigdesign.records.speed_limits import SpeedLimit, speed_limit
+from rigdesign.records.start_torque import StagePeak, StartResponse, first_speed, start_torque, worst_start
+from rigdesign.results.dwell import AvoidedResonance, NearResonance, RampStep
+from rigdesign.rig.model import Rig, build_rig
+from tests.builders.paths import CASES
+
+RAD = np.pi / 30.0
+TEST = 12000.0 * RAD
+
+
+@cache
+def rig() -> Rig:
+    return build_rig(load_case(CASES / "uhcf_prototype"), "quick")
+
+
+def peak(rpm: float) -> AvoidedResonance:
+    return AvoidedResonance(
+        kind="shaft torque",
+        where="test_pinion",
+        speed=rpm * RAD,
+        share=0.7,
+        low=0.9 * rpm * RAD,
+        high=1.1 * rpm * RAD,
+    )
+
+
+def response(lost: Sequence[tuple[float, float]]) -> StartResponse:
+    """Under the start torque at 525 to 1200 rpm, every 25; flanks part in these ranges [rpm]."""
+    speed = np.arange(525.0, 1201.0, 25.0)
+    parts = np.zeros(speed.size, bool)
+    for low, high in lost:
+        parts |= (speed >= low) & (speed <= high)
+    return StartResponse(speed * RAD, np.where(parts, 2.5, 1.3), parts)
+
+
+def steps(
+    peaks: Sequence[float] = (),
+    start: StartResponse | None = None,
+    limit: SpeedLimit | None = None,
+    up: StagePeak | None = None,
+) -> dict[str, RampStep]:
+    found = [peak(rpm) for rpm in peaks]
+    avoided = bands(found)
+    points = [
+        SimpleNamespace(speed=rpm * RAD, dynamic_factor=np.array([1.1, 1.4])) for rpm in (1000.0, 5000.0)
+    ]
+    run: Any = SimpleNamespace(
+        curves=SimpleNamespace(named={"180 Nm": (180.0, SimpleNamespace(points=points))})
+    )
+    nearest = min(found, key=lambda one: one.distance(TEST), default=None)
+    near = NearResonance(distance=0.15 if nearest is None else nearest.distance(TEST), resonance=nearest)
+    high = 13500.0 * RAD if limit is None else min(13500.0 * RAD, limit.speed)
+    limits = RampLimits(
+        run=run, bands=avoided, safe=safe_windows(avoided, 500.0 * RAD, high), near={rig().pinion_speed(TEST): near},
+        limit=limit, start=start, up=up, down=None,
+    )  # fmt: skip
+    return {step.action: step for step in ramp_steps(rig(), limits)}
+
+
+def test_the_torque_is_raised_at_the_transition_speed_where_contact_holds_there() -> None:
+    assert first_speed(rig()) == pytest.approx(750.0 * RAD)
+    assert start_torque(rig()) == 10.0
+    for start in (None, response([]), response([(1100.0, 1200.0)])):
+        assert steps(start=start)["run up"].speed == pytest.approx(750.0 * RAD)
+    assert "the bearings float from here on" in steps()["run up"].reason
+
+
+def test_the_torque_is_raised_above_the_speeds_at_which_the_start_torque_loses_contact() -> None:
+    found = steps(start=response([(725.0, 775.0), (900.0, 900.0)]))
+    assert found["run up"].speed == found["raise the torque in part"].speed == pytest.approx(800.0 * RAD)
+    assert "725 to 775 rpm, near 900 rpm" in found["run up"].reason
+    everywhere = steps(start=response([(525.0, 1200.0)]))["run up"]
+    assert everywhere.speed == pytest.approx(750.0 * RAD) and "flanks part here" in everywhere.reason
+
+
+def test_the_time_run_under_the_start_torque_is_in_the_reason() -> None:
+    reason = steps(up=StagePeak("to_transition_speed", 2.78, 736.0 * RAD, lost=True))["run up"].reason
+    assert "K_V 2.78 at 736 rpm in stage to transition speed, flanks part" in reason
+
+
+def test_peaks_of_the_time_run_are_those_of_stages_under_the_start_torque_in_their_sense() -> None:
+    def load(stage: str, factor: float, least: float) -> Any:
+        return SimpleNamespace(stage=stage, dynamic_factor=factor, speed=736.0 * RAD, least_share=least)
+
+    own = [
+        load("to_transition_speed", 2.8, 0.0),
+        load("run_up", 9.0, -0.1),
+        load("to_standstill", 3.1, 0.2),
+    ]
+    loads: Any = SimpleNamespace(
+        meshes={name: SimpleNamespace(stage_loads=own) for name in ("test", "reference")}
+    )
+    up, down = worst_start(rig(), loads, 1), worst_start(rig(), loads, -1)
+    assert up is not None and (up.stage, up.factor, up.lost) == ("to_transition_speed", 2.8, True)
+    assert down is not None and (down.stage, down.factor, down.lost) == ("to_standstill", 3.1, False)
+
+
+def test_no_safe_speed_is_advised_beyond_the_limit_of_the_rig() -> None:
+    """A peak at 11,100 rpm: safe are 9990 rpm and below, and 12,210 rpm that the rig may not turn."""
+    limit = speed_limit(rig())
+    assert limit is not None and limit.speed == pytest.approx(TEST)
+    assert limit.source == "limits.bought_parts.rig_speed"
+    inside, beyond = steps([11100.0], limit=limit)["dwell"].reason, steps([11100.0])["dwell"].reason
+    assert "nearest safe speed 9990 rpm, none above it up to the limit of the rig, 12000 rpm" in inside
+    assert "7.5 % away" in inside and "nearest safe speed 12210 rpm" in beyond
+    slower = steps(limit=SpeedLimit(11000.0 * RAD, "limits.bought_parts.motor"))["dwell"].reason
+    assert "above the limit of the rig, 11000 rpm (limits.bought_parts.motor)" in slower
+
+
+def test_part_of_the_torque_stays_below_the_test_torque_at_the_peaks_passed() -> None:
+    found = steps()
+    assert found["raise the torque in part"].torque == pytest.approx(90.0)
+    assert "K_V up to 1.40" in found["raise the torque in part"].reason
+    assert found["raise to the test torque"].torque == 180.0
+    assert found["relieve and stop"].speed == 0.0
