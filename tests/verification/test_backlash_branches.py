@@ -186,3 +186,19 @@ def test_a_speed_asked_alone_is_that_of_a_curve() -> None:
     for speed in speeds:
         (point,) = light([speed], "harmonic_balance").points
         assert point.dynamic_factor == pytest.approx(known[round(speed)].dynamic_factor, rel=1e-3)
+
+
+def test_maps_keep_stable_states_alone_and_say_where_there_are_none() -> None:
+    """Two walks without traces, as a map of contact loss asks for them: at each speed the state that a search of all
+    branches finds, or none where it is left by another motion."""
+    speeds = [2600.0, 2500.0, 2440.0, 2300.0, 2200.0, 2000.0, 1960.0, 1860.0, 1800.0]
+    curve = periodic_response(
+        assemble(prototype()), prototype_laws(), [value * RPM for value in speeds], LoopLoad(torque=10.0),
+        settings=SweepSettings(methods=("harmonic_balance",), branches=False),
+    )  # fmt: skip
+    assert {2200, 1860, 2440} <= {round(speed / RPM) for speed in curve.unstable}
+    assert not set(curve.unstable) & set(curve.speeds)
+    assert any(point.lift_off_share[0] > 0.1 for point in curve.points)
+    full = {point.speed: point for point in light(speeds, "harmonic_balance").points}
+    for point in curve.points:
+        assert point.dynamic_factor == pytest.approx(full[point.speed].dynamic_factor, rel=1e-3)
