@@ -1,4 +1,4 @@
-"""Load of the tooth pairs in motion: how they share the force of the mesh on their way through it."""
+"""Load of the tooth pairs in motion: how they share the force of the mesh, and how it lies over the face."""
 
 from collections.abc import Iterator
 
@@ -44,6 +44,9 @@ def _pair_share(
     path, share, force = _over_path(moving)
     rest_path, rest_share, _ = _over_path(resting)
     carrying = path[force > 0.0]
+    most, line_load, rest_load = _most_loaded(moving, resting)
+    face, width = _slices(point, mesh)
+    back = bool(point.last.response is not None and point.last.response.flank[mesh] < 0.0)
     grid = np.linspace(float(carrying.min()), float(carrying.max()), POINTS)
     return PairShare(
         mesh=rig.mesh_labels[name],
@@ -52,7 +55,37 @@ def _pair_share(
         share=tuple(np.interp(grid, path, share).tolist()),
         static_share=tuple(np.interp(grid, rest_path, rest_share, left=0.0, right=0.0).tolist()),
         force=tuple(np.interp(grid, path, force).tolist()),
+        most_loaded=most / radius,
+        face=tuple(face.tolist()),
+        line_load=tuple(_over_face(line_load, width, back=back)),
+        static_line_load=tuple(_over_face(rest_load, width, back=back)),
     )
+
+
+def _most_loaded(moving: PairForces, resting: PairForces) -> tuple[float, Array, Array]:
+    """Path at mid-face of the pair with the highest force of all states [m], and the forces of its slices then: in
+    motion, and in the quasi-static state nearest on the path (n_slices,) [N]."""
+    of_pair = moving.force.sum(axis=2)
+    state, pair = np.unravel_index(int(np.argmax(of_pair)), of_pair.shape)
+    path = float(moving.path[state, pair])
+    near = np.unravel_index(int(np.argmin(np.abs(resting.path - path))), resting.path.shape)
+    return path, np.asarray(moving.force[state, pair]), np.asarray(resting.force[near])
+
+
+def _slices(point: PointResult, mesh: int) -> tuple[Array, float]:
+    """Face positions of the slices from mid-face, rising [m], and the width of one [m]; none of a mesh of one slice."""
+    face = point.last.models[mesh].law.slice_face
+    if face is None or face.size < 2:
+        return np.zeros(0), 1.0
+    return np.sort(face), float(np.ptp(face)) / (face.size - 1)
+
+
+def _over_face(force: Array, width: float, *, back: bool) -> list[float]:
+    """Force per face width of the slices (n_slices,) [N/m]; those of the back flank come in reverse."""
+    if force.size < 2:
+        return []
+    found: list[float] = ((force[::-1] if back else force) / width).tolist()
+    return found
 
 
 def _over_path(forces: PairForces) -> tuple[Array, Array, Array]:

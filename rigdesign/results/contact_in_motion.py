@@ -19,6 +19,14 @@ class PairShare:
     """(n,) at rest [-]"""
     force: Row
     """(n,) over the mean force of the mesh, in motion [-]."""
+    most_loaded: float
+    """Rolling angle at which a pair carries most, in motion [rad]."""
+    face: Row
+    """(m,) position of the slices from mid-face [m]; empty for a mesh of one slice, as the line loads."""
+    line_load: Row
+    """(m,) force in the transverse line of action per face width there, in motion [N/m]."""
+    static_line_load: Row
+    """(m,) at rest, at the same place on the path [N/m]."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -97,6 +97,15 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
                 "force over mean [1]": shared["force_over_mean"],
             },
         )
+        if shared["face_mm"]:
+            yield (
+                file_stem("line_load", shared["gearbox"], shared["stage"]),
+                {
+                    "position from mid-face [mm]": shared["face_mm"],
+                    "line load [N/mm]": shared["line_load_N_mm"],
+                    "line load quasi-static [N/mm]": shared["line_load_quasi_static_N_mm"],
+                },
+            )
     for loss in dynamics.contact_loss_maps:
         yield file_stem("contact_loss", loss["gearbox"]), _contact_loss(loss)
     for waterfall in dynamics.waterfalls:
