@@ -54,7 +54,7 @@ def test_the_pairs_in_mesh_share_the_whole_force() -> None:
 
 def test_the_line_load_over_the_face_is_the_force_of_the_most_loaded_pair() -> None:
     """Its integral over the face, times the base radius, is the highest torque that a pair carries: that of the mesh
-    in single contact, where its share is one. At rest and in motion the crowned flank carries most at the same slice."""
+    in single contact. At rest and in motion the crowned flank carries most at the same slice."""
     run = solved().run
     assert run is not None
     for mesh, one in enumerate(pair_shares(solved().rig, run)):
