@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 9108544b
+# compiled from sources da3242d4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 9108544b
+# compiled from sources da3242d4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 9108544b
+# compiled from sources da3242d4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 9108544b
+# compiled from sources da3242d4
 Array = NDArray[np.float64]
 
 

@@ -11,7 +11,7 @@ from rigdesign.records.campbell import excitation_orders
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import state_at
 from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
-from rigdesign.records.section_torques import is_around, torques_over_speed
+from rigdesign.records.section_torques import AROUND, is_around, torques_over_speed
 from rigdesign.results.campbell import CampbellCrossing
 from rigdesign.results.dwell import AvoidedResonance, NearResonance
 from rigdesign.results.section_torques import TorqueOverSpeed
@@ -23,7 +23,7 @@ its peak stays within what it carries under the highest K_V of a mesh."""
 LIVELY = 0.1
 """Damping ratio below which a mode counts where a shaft order meets it (amplification above 5)."""
 REACH = 1.5
-"""Distance up to which a resonance is near, over the margin."""
+"""Distance up to which a resonance is near, over the margin; no further than torques are looked at around a dwell."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def near_dwell(rig: Rig, run: DynamicRun, modes: Sequence[LoopMode], speed: floa
     modes : of the closed loop at the governing held point; speed : of the first pinion [rad/s]
     """
     bounds = bounds_of(rig)
-    reach = REACH * bounds.margin
+    reach = min(REACH * bounds.margin, AROUND)
     found = [
         *bounds.resonances(mesh_shares(rig, run)),
         *bounds.resonances(_near_shafts(rig, run, speed)),

@@ -32,8 +32,8 @@ from rigdesign.results.section_torques import (
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
-AROUND = 0.3
-"""Speeds that count as around a dwell speed, as a share of it: half as much again as the widest usual margin."""
+AROUND = 0.2
+"""Speeds that count as around a dwell speed, as a share of it: twice the usual margin."""
 MOST_SPEEDS = 150
 """Speeds of the curves at most, but for those around the dwell speeds; peaks of the mesh torque are always among
 them."""
