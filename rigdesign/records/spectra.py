@@ -31,6 +31,9 @@ MESH_ORDERS = 1.25
 """Highest frequency of a waterfall over the mesh frequency at its highest speed; modes go as far."""
 ORDERS = 1600
 """Points of the spectrum of a held stage, each the largest around it."""
+SHOWN_ORDERS = 3.1
+"""Mesh orders up to which it is shown: three with their sidebands. Above, the tables of the march leave traces of
+orders beyond the step rate, 1e-4 of the first mesh order."""
 LEAST_SAMPLES = 4096
 """Of a held stage, below which it has no spectrum."""
 HIGHEST_HARMONIC = 4
@@ -148,7 +151,7 @@ def _orders_of_run(rig: Rig, run: DynamicRun, stage: str, mesh: int) -> tuple[Ar
         return nothing, nothing
     turn = own_ratio(rig, mesh) * float(speed.mean()) / (2.0 * math.pi)
     order, amplitude = order_spectrum(torque, turn * run.ramp.torque_step)
-    last = (HIGHEST_HARMONIC + 0.5) * rig.pairs[rig.mesh_names[mesh]].teeth[0]
+    last = SHOWN_ORDERS * rig.pairs[rig.mesh_names[mesh]].teeth[0]
     kept = (order * turn <= run.ramp.torque_band) & (order <= last)
     return _pooled(order[kept], amplitude[kept], ORDERS)
 

@@ -54,7 +54,7 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
     axes.set_ylim(bottom=0)
     finish(
         axes,
-        f"position from mid-face [mm], at φ = {row['most_loaded_angle_deg']:.1f}°",
+        f"position from mid-face [mm], at φ = {round(row['most_loaded_angle_deg'], 1) + 0.0:.1f}°",
         f"line load [{unit_text('N/mm')}]" if first else "",
     )
     if first:
@@ -63,7 +63,7 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
 
 def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
     """A panel for each gearbox: least torque over the mean by speed and torque; crosses where flanks part."""
-    figure = new_figure(3.1)
+    figure = new_figure(3.3)
     panels = figure.subplots(1, len(rows), squeeze=False, sharey=True)[0]
     for axes, row in zip(panels, rows, strict=True):
         values = np.array([[np.nan if v is None else v for v in line] for line in row["least_share"]])
@@ -101,6 +101,6 @@ def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure
         figure.legend(handles.values(), handles.keys(), loc="lower left", bbox_to_anchor=(0.07, 0.0), ncols=3)
     bar = figure.colorbar(image, ax=list(panels), pad=0.015, fraction=0.05)
     bar.set_label("least torque over the mean [–]")
-    figure.subplots_adjust(left=0.075, right=0.87, top=0.89, bottom=0.24, wspace=0.08)
-    bar.ax.set_position((0.895, 0.24, 0.014, 0.65))
+    figure.subplots_adjust(left=0.075, right=0.87, top=0.89, bottom=0.28, wspace=0.08)
+    bar.ax.set_position((0.895, 0.28, 0.014, 0.61))
     return figure

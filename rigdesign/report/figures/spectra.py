@@ -67,9 +67,8 @@ def _mesh_orders(axes: "Axes", row: Mapping[str, Any], last: float) -> None:
         text = "f_z" if harmonic == 1 else f"{harmonic} f_z"
         beyond = slope * high > last
         axes.annotate(
-            text, (slope * speed, speed), textcoords="offset points", xytext=(-3, 2) if beyond else (0, 3),
-            ha="right" if beyond else "center", va="bottom" if not beyond else "top", fontsize=7.5,
-            color="white" if beyond else INK, annotation_clip=False,
+            text, (slope * speed, speed), textcoords="offset points", xytext=(-3, 2) if beyond else (-9, -2),
+            ha="right", va="top", fontsize=7.5, color="white", annotation_clip=False,
         )  # fmt: skip
 
 
