@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources acfcc90a
+# compiled from sources f6d10a39
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources acfcc90a
+# compiled from sources f6d10a39
 Array = NDArray[np.float64]
 
 

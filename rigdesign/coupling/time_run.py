@@ -108,7 +108,7 @@ def run_ramp(
             keep_channels=command.time[-1] * numerics.sample_rate <= MOST_SAMPLES,
             keep_accounts=False,
             cutoff=_cutoff(rig),
-            sections=None if rig.shaft_model == "torsional" else twist_rows_of(rig, loop.at(0.0)),
+            sections=lambda speed: twist_rows_of(rig, loop.at(0.0), speed / rig.pinion_speed(1.0)),
         ),
     )
     require_speeds(rig, schedule, response)

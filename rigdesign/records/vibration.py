@@ -8,20 +8,13 @@ from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.records.campbell import campbell
 from rigdesign.records.contact_in_motion import contact_loss_maps
 from rigdesign.records.dwell_speeds import dwell_record
-from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
-from rigdesign.records.press_fits import press_fits
-from rigdesign.records.seat_torques import held_seat_torques
 from rigdesign.records.section_torques import section_torque_record
-from rigdesign.records.spline_capacity import spline_stresses
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.campbell import CampbellRecord
 from rigdesign.results.contact_in_motion import ContactLossMap
 from rigdesign.results.dwell import DwellRecord
-from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.press_fit import PressFitCapacity
 from rigdesign.results.section_torques import SectionTorqueRecord
-from rigdesign.results.spline_capacity import SplineStress
-from rigdesign.rig.model import Rig
 
 Maps = tuple[ContactLossMap, ...]
 
@@ -34,12 +27,12 @@ class LoopVibration:
     torques: SectionTorqueRecord
     dwell: DwellRecord
     maps: Maps
-    press_fits: tuple[PressFitCapacity, ...]
-    splines: tuple[SplineStress, ...]
 
 
-def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibration:
-    """Campbell diagram, torques of every section, speeds at which the rig may dwell; loads : of the run."""
+def loop_vibration(solved: SolvedRig) -> LoopVibration:
+    """Campbell diagram, torques of every section, speeds at which the rig may dwell, of a rig with loads."""
+    rig, run, loads = solved.rig, solved.run, solved.loads
+    assert run is not None and loads is not None
     top = max(run.curves.response.speeds) / rig.pinion_speed(1.0)
     states = loop_states(rig, run.test, float(top))
     works: list[Callable[[], CampbellRecord | Maps]] = [
@@ -47,15 +40,12 @@ def loop_vibration(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> LoopVibrat
         partial(contact_loss_maps, rig, run, states),
     ]
     with BackgroundTasks(works) as tasks:
-        torques = section_torque_record(rig, run, loads, states)
+        torques = section_torque_record(solved, states)
         diagram, maps = tasks.results()
     assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
-    seats = tuple(held_seat_torques(rig, run.points))
     return LoopVibration(
         campbell=diagram,
         torques=torques,
         dwell=dwell_record(rig, run, loads, torques, diagram),
         maps=maps,
-        press_fits=tuple(press_fits(rig, seats)),
-        splines=tuple(spline_stresses(rig, seats)),
     )
