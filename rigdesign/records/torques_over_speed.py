@@ -76,6 +76,8 @@ def torques_over_speed(
 
     solve : finds the response at more speeds; None where the points are all there is
     """
+    if not points:
+        return (), ()
     found = {point.speed: (point, loop.swings(point)) for point in points}
     for _ in range(ROUNDS if solve is not None else 0):
         speeds = _around_peaks(found)
@@ -84,14 +86,14 @@ def torques_over_speed(
         found |= {point.speed: (point, loop.swings(point)) for point in solve(speeds).points}
     kept = sorted({point.speed for point in points} | set(_peaks(found)))
     listed = [found[speed] for speed in kept]
-    stress = loop.shear_per_torque if listed else {}
+    stress = loop.shear_per_torque
     return tuple(point for point, _ in listed), tuple(
         TorqueOverSpeed(
             place=place,
             swings=tuple(swings[place] for _, swings in listed),
             shear_per_torque=stress.get(place.name, 0.0),
         )
-        for place in (listed[0][1] if listed else ())
+        for place in listed[0][1]
     )
 
 

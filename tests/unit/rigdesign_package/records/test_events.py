@@ -158,6 +158,7 @@ def test_every_stated_limit_is_a_check(rig: SolvedRig) -> None:
 def test_the_torque_flange_is_held_in_the_events_and_in_the_stages(rig: SolvedRig) -> None:
     """Its own coupling counts, not the mesh; without an overload its limit stands."""
     (check,) = overloads(rig)
+    assert check.value is not None
     coupling = max(
         peak.peak
         for event in rig.events
@@ -227,3 +228,14 @@ def test_the_report_shows_what_a_stop_passes(rig: SolvedRig) -> None:
     assert passing["pinion_side", "coupling torque"]["speed_rpm"] == pytest.approx(peak.speed / RPM)
     page = report_html(replace(make_result(), events=[row]))
     assert "Highest torque on the way down" in page
+
+
+def test_limits_of_a_stop_count_what_it_passes(rig: SolvedRig) -> None:
+    case = rig.rig.case.with_values({"events.stop.shaft_torque_maximum": "900 N m"})
+    by_id = {check.id: check for check in checks(replace(rig, rig=replace(rig.rig, case=case)))}
+    check = by_id["event.shaft_torque_maximum.stop"]
+    stop = rig.events[1]
+    marched = max(peak.peak for peak in stop.peaks if peak.quantity == "shaft torque")
+    passed = max(peak.peak for peak in stop.passing if peak.quantity == "shaft torque")
+    assert check.value == pytest.approx(max(marched, passed)) and passed > marched
+    assert "on the way down at" in check.reason
