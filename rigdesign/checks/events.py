@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from rigdesign.case.events import EmergencyStop, LoadedEvent, Overspeed, ToothLoss
+from rigdesign.case.events import EmergencyStop, FeltLoads, Overspeed, ToothLoss
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
@@ -18,7 +18,7 @@ MARCH = (
     "films as warm as at the test"
 )
 PASSED = "; in a stop also in the periodic responses that it passes on its way down"
-Part = type[LoadedEvent] | type[ToothLoss] | type[EmergencyStop] | type[Overspeed]
+Part = type[FeltLoads] | type[ToothLoss] | type[EmergencyStop] | type[Overspeed]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,15 +83,15 @@ def _family(
 
 FAMILIES = (
     _family(
-        "coupling_torque_maximum", "largest torque in a coupling and its flanges", NEWTON_METRE, LoadedEvent,
+        "coupling_torque_maximum", "largest torque in a coupling and its flanges", NEWTON_METRE, FeltLoads,
         _peaks("coupling torque"), f"{MARCH}: largest amount of the torque in a coupling{PASSED}.",
     ),
     _family(
-        "shaft_torque_maximum", "largest torque in a section of a shaft", NEWTON_METRE, LoadedEvent,
+        "shaft_torque_maximum", "largest torque in a section of a shaft", NEWTON_METRE, FeltLoads,
         _peaks("shaft torque"), f"{MARCH}: largest amount of the torque in an element of a shaft{PASSED}.",
     ),
     _family(
-        "bearing_force_maximum", "largest radial force on a bearing", NEWTON, LoadedEvent,
+        "bearing_force_maximum", "largest radial force on a bearing", NEWTON, FeltLoads,
         _peaks("bearing force"), f"{MARCH}: stiffness and damping of the bearing on the motion of its journal, weight "
         "left out; of shafts that only twist the static force times peak over mean of the mesh torque.",
     ),
