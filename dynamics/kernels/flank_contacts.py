@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources f6d10a39
+# compiled from sources da19618d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -67,7 +67,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources f6d10a39
+# compiled from sources da19618d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -390,11 +390,10 @@ def _march(
             samples[sample, 2 * n_slow + d] = drags[d]
         samples[sample, 2 * n_slow + n_drags] = space[ANGLE]
         if states.shape[0] > 0:
-            n_states = state.shape[0]
-            for i in range(n_states):
+            for i in range(state.shape[0]):
                 states[sample, i] = state[i]
             for port in range(2 * n_meshes):
-                states[sample, n_states + port] = space[port // 2 * N_SPACE + port % 2 * PORT + OLD]
+                states[sample, state.shape[0] + port] = space[port // 2 * N_SPACE + port % 2 * PORT + OLD]
         for m in range(n_meshes):
             carried.offset[m] = commands.offsets[sample, m]
     _end(space, carried.ports)

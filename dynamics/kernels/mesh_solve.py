@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources f6d10a39
+# compiled from sources da19618d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

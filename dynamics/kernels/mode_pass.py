@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources f6d10a39
+# compiled from sources da19618d
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 4
 """Numbers in a vector."""

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources f6d10a39
+# compiled from sources da19618d
 Array = NDArray[np.float64]
 
 

@@ -47,7 +47,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources f6d10a39
+# compiled from sources da19618d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
