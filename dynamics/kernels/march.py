@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources da3242d4
+# compiled from sources 08dfd8f0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -297,6 +297,7 @@ def _march(
 ) -> int:
     """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
     step, substeps, history, samples = steps.step, steps.substeps, work.record.history, work.record.samples
+    states = work.record.states
     values = tables.values
     blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
     state, slow = carried.state, carried.slow
@@ -390,6 +391,11 @@ def _march(
         for d in range(n_drags):
             samples[sample, 2 * n_slow + d] = drags[d]
         samples[sample, 2 * n_slow + n_drags] = space[ANGLE]
+        if states.shape[0] > 0:
+            for i in range(state.shape[0]):
+                states[sample, i] = state[i]
+            for port in range(2 * n_meshes):
+                states[sample, state.shape[0] + port] = space[port // 2 * N_SPACE + port % 2 * PORT + OLD]
         for m in range(n_meshes):
             carried.offset[m] = commands.offsets[sample, m]
     _end(space, carried.ports)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources da3242d4
+# compiled from sources 08dfd8f0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -73,6 +73,9 @@ class MarchRecord(NamedTuple):
     angle, approach rate, pinion speed, tau_1]."""
     samples: Array
     """(n_samples, 2 n_slow + n_drags + 1): slow inputs, their speeds, drag torques, angle of the first pinion."""
+    states: Array
+    """(n_samples, n_states + 2 n_meshes): modal state and mesh torques at the end of each sample; no rows where nobody
+    reads them."""
 
 
 class Workspace(NamedTuple):

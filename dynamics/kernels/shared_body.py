@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources da3242d4
+# compiled from sources 08dfd8f0
 Array = NDArray[np.float64]
 
 MOST_SETS = 64

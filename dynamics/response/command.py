@@ -1,6 +1,6 @@
 """Commands of a time run: speed and bracing over time, motor, drag torques, sampling."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -74,7 +74,8 @@ class Sampling:
     keep_accounts : integrate the energy of every joint and contact; without it the run is about twice as fast and
         its energy balance is None
     cutoff : modes above this frequency keep their static effect only [Hz]
-    sections : springs whose largest alternating torque is sought; none when left out
+    sections : springs whose torque is read, by the speed of the pinion of the first mesh at which the run comes to the
+        matrices they are read with [rad/s]; none when left out
 
     Raises DynamicsInputError for fewer than 4 internal steps.
     """
@@ -87,7 +88,7 @@ class Sampling:
     torque_band: float = 0.0
     keep_accounts: bool = True
     cutoff: float = DEFAULT_CUTOFF
-    sections: TwistRows | None = None
+    sections: Callable[[float], TwistRows] | None = None
 
     def __post_init__(self) -> None:
         if self.substeps < LEAST_SUBSTEPS:

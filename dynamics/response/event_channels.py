@@ -1,4 +1,4 @@
-"""What is watched through an event: torque of every shaft section and coupling, forces of the bearings.
+"""What is watched through an event: torque of every shaft section, gear seat and coupling, forces of the bearings.
 
 Each channel is a row, or two across a shaft, on angles and speeds of the freedoms of a drivetrain; so it can be read at
 any instant of a march.
@@ -11,20 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.twist_rows import TwistRows
+from dynamics.drivetrain.twist_rows import TorqueSection, TwistRows
 from dynamics.elastic_rig.running_state import RunningState
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.response.march_inputs import DriveState
 
 Array = NDArray[np.float64]
-ChannelKind = Literal["shaft", "coupling", "bearing", "journal velocity"]
+ChannelKind = Literal["shaft", "spline", "coupling", "motor", "bearing", "journal velocity"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Channel:
     """A torque [N m], or the amount of a force [N] or velocity [m/s] across a shaft.
 
-    place : ``shaft 12.5 mm`` (middle of the element from the left end), name of coupling or bearing
+    place : section of the shaft as in tables, gear of a seat, name of coupling or bearing
+    section : of a torque; its elements are channels of the same place
     angle, speed : (k, n) per angle [rad] and speed [rad/s] of the freedoms, k = 1 or 2; twist : per bracing twist
     """
 
@@ -33,24 +34,22 @@ class Channel:
     angle: Array
     speed: Array
     twist: float = 0.0
+    section: TorqueSection | None = None
 
 
 def torque_channels(rows: TwistRows) -> tuple[Channel, ...]:
-    """Torques of all elements of the shafts and of the couplings, on the freedoms of ``rows``."""
-    found = []
-    for i, (section, middle) in enumerate(zip(rows.sections, rows.middle)):
-        if section.kind == "shaft" or section.kind == "coupling":
-            place = f"{section.part} {1e3 * middle:.1f} mm" if section.kind == "shaft" else section.part
-            found.append(
-                Channel(
-                    place=place,
-                    kind=section.kind,
-                    angle=rows.stiffness[i] * rows.rows[i : i + 1],
-                    speed=rows.damping[i] * rows.rows[i : i + 1],
-                    twist=float(-rows.stiffness[i] * rows.bracing[i]),
-                )
-            )
-    return tuple(found)
+    """Torques of all elements of the shafts and of the joints, on the freedoms of ``rows``."""
+    return tuple(
+        Channel(
+            place=section.name if section.kind == "shaft" else section.part,
+            kind=section.kind,
+            angle=rows.stiffness[i] * rows.rows[i : i + 1],
+            speed=rows.damping[i] * rows.rows[i : i + 1],
+            twist=float(-rows.stiffness[i] * rows.bracing[i]),
+            section=section,
+        )
+        for i, section in enumerate(rows.sections)
+    )
 
 
 def bearing_channels(seen: SeenRig, system: LinearSystem, state: RunningState) -> tuple[Channel, ...]:

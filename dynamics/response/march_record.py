@@ -36,6 +36,8 @@ class Block(NamedTuple):
     """(n_samples, n_drags) drag torques [N m] at the end of each sample."""
     angle: Array
     """(n_samples,) angle of the pinion of the first mesh at the end of each sample [rad]."""
+    sections: Array
+    """(r, n_samples) torque of the springs that are watched at the end of each sample [N m]; no rows without them."""
 
 
 class Accounts(NamedTuple):

@@ -30,7 +30,7 @@ from dynamics.response.march_record import Block as Block
 from dynamics.response.march_tables import MarchTables
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import discretise, modal_state, scaled_state
-from dynamics.response.state_reader import Glance, StateReader, Stretch, inputs_of
+from dynamics.response.state_reader import StateReader
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,6 @@ class TimeMarch:
         self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
         self._marched = 0
         self._reader: StateReader | None = None
-        self.glances: list[Glance] = []
         self._apart, self._apart_since = np.zeros(len(self.laws)), 0
         self._names = system.dofs
         self._record_all = settings.record_all
@@ -202,7 +201,7 @@ class TimeMarch:
             torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
         )
         given = np.ascontiguousarray(given, float)
-        histories, all_samples = [], []
+        histories, all_samples, torques = [], [], []
         for first in range(0, n_samples, SEGMENT):
             part = slice(first, min(first + SEGMENT, n_samples))
             count = part.stop - part.start
@@ -211,19 +210,19 @@ class TimeMarch:
             )
             histories.append(np.empty((n_meshes, 7 if self._record_all else 2, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
+            seen = 0 if self._reader is None else count
+            states = np.empty((seen, len(self._carried.state) + 2 * n_meshes))
             self.tables = self._tables.at(self._pinion_speeds())
-            if self._reader is not None:
-                time, steps = (self._marched + first) * sample_time, kernels.Steps(self.step, self.substeps)
-                stretch = Stretch(self.tables, self.propagator.modes, commands, self._carried, steps)
-                self.glances.append(Glance(time, self._reader, stretch, history_rows=histories[-1].shape[1]))
             self.unconverged += kernels.march(
                 self.tables,
                 self.propagator.modes,
                 commands,
                 self._carried,
                 kernels.Steps(self.step, self.substeps),
-                kernels.MarchRecord(histories[-1], all_samples[-1]),
+                kernels.MarchRecord(histories[-1], all_samples[-1], states),
             )
+            if self._reader is not None:
+                torques.append(self._read(self._reader, states, all_samples[-1]))
         history = histories[0] if len(histories) == 1 else np.concatenate(histories, axis=2)
         samples = all_samples[0] if len(histories) == 1 else np.concatenate(all_samples)
         if not np.all(np.isfinite(self._carried.ports)):
@@ -236,7 +235,18 @@ class TimeMarch:
         )
         slow, speed, braking, angle_1 = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
         braking = braking[:, self._places]
-        return Block(force, acting, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0])
+        return Block(
+            force, acting, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0],
+            np.hstack(torques) if torques else np.empty((0, n_samples)),
+        )  # fmt: skip
+
+    def _read(self, reader: StateReader, states: Array, samples: Array) -> Array:
+        """Torques (r, n) [N m] at the ends of n samples, see ``kernels.MarchRecord``."""
+        marched, ports = np.split(states, (len(self._carried.state),), axis=1)
+        slow, _, braking, _ = np.split(
+            samples, np.cumsum((self._n_slow, self._n_slow, len(self._carried.drags))), axis=1
+        )
+        return reader.read(marched, np.hstack((ports, slow, braking)), slow[:, 1])
 
     def _diverged(self, force: Array, samples: Array) -> str:
         """What is known of a march that left the finite numbers in its last block.
@@ -343,7 +353,7 @@ class TimeMarch:
         loads = DriveLoads(drive_torque=float(self._carried.slow[0]), drag_torques=drags)
         state = self.state()
         march = TimeMarch(system, self.laws, state, self._settings, loads, model)
-        march._marched, march.unconverged, march.glances = self._marched, self.unconverged, self.glances
+        march._marched, march.unconverged = self._marched, self.unconverged
         march.tables, march._tables = self.tables, self._tables
         march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried
@@ -383,7 +393,7 @@ class TimeMarch:
         self._apart_since = 0
 
     def watch(self, reader: StateReader | None) -> None:
-        """Keep a glance at torques at the start of every segment of a march from now on, in ``glances``.
+        """Read torques at the end of every sample from now on, into ``Block.sections``.
 
         reader : of the model and propagator of this march
         """
@@ -414,4 +424,6 @@ class TimeMarch:
         )
 
     def _inputs(self) -> Array:
-        return inputs_of(self._carried)
+        """Inputs (n_inputs,) that act at this instant: mesh torques, slow inputs and drag torques."""
+        carried = self._carried
+        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))

@@ -32,7 +32,7 @@ from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.low_pass import FLAT, LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
 from dynamics.response.march_loads import march_model
-from dynamics.response.state_reader import SectionPeaks, StateReader, section_peaks
+from dynamics.response.state_reader import SectionEnvelopes, SectionStatistics, StateReader
 from dynamics.response.time_march import CREEP_SHARE, TimeMarch
 from dynamics.response.turning_start import turning_start
 
@@ -88,7 +88,7 @@ class TimeResponse:
     drive_limited_share : share of samples at the torque limit of the motor
     speed_missed : lag behind the speed command at the end of the schedule [rad/s]
     end : state at the end; unconverged_steps : contact iterations that ended early
-    sections : largest alternating torque of the springs asked for, None if none were
+    sections : torque of the springs asked for in the same windows, None if none were
     """
 
     time: Array
@@ -108,7 +108,7 @@ class TimeResponse:
     end: DriveState
     unconverged_steps: int
     warnings: tuple[str, ...] = field(default=())
-    sections: SectionPeaks | None = None
+    sections: SectionEnvelopes | None = None
 
     @property
     def torque_band(self) -> float:
@@ -193,15 +193,16 @@ def run_schedule(
     models = {id(system): march.model}
     readers: dict[int, StateReader] = {}
 
-    def watched(own: TimeMarch) -> TimeMarch:
-        """The march with the sections asked for read in it."""
+    def watched(own: TimeMarch, speed: float) -> TimeMarch:
+        """The march with the sections asked for read in it, from a speed of the first pinion on."""
         if sampling.sections is not None:
             key = id(own.system)
-            readers[key] = readers.get(key) or StateReader(sampling.sections, own.model, own.propagator)
+            if key not in readers:
+                readers[key] = StateReader(sampling.sections(speed), own.model, own.propagator)
             own.watch(readers[key])
         return own
 
-    watched(march)
+    watched(march, abs(float(command.speed[0])))
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
     control = motor.speed_control or default_speed_control(system, laws, float(limits[0]))
     bracing = None if command.torque is None else TorqueControl(stiffness=wound.loop_stiffness)
@@ -217,6 +218,7 @@ def run_schedule(
     per_window = max(1, round(sampling.window * sample_rate))
     pinions = [ratios[ports[0]] for ports in system.mesh_ports]
     statistics = WindowStatistics(laws, per_window * substeps, march.step, sampling.lift_off_share, pinions)
+    sections = SectionStatistics(per_window)
     low_pass = LowPass(len(laws), sampling.steps_kept)
     energy_before = march.energy()
     columns: list[tuple[Array, ...]] = []
@@ -251,13 +253,16 @@ def run_schedule(
         block = march.advance(
             given, offsets=offsets, speed_control=control, torque_control=bracing, drags=tables
         )
-        band = drivetrain.at(abs(float(block.slow_speed[-1, 0])) / drive_ratio)
+        now = abs(float(block.slow_speed[-1, 0])) / drive_ratio
+        band = drivetrain.at(now)
         if band is not march.system:
             if id(band) not in models:
                 models[id(band)] = march_model(band, laws, names, sampling.cutoff, rises)
-            march = watched(march.continued(band, models[id(band)], block.force.mean(axis=1)))
+            march = watched(march.continued(band, models[id(band)], block.force.mean(axis=1)), now)
         dynamic = radius * block.force
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
+        if readers:
+            sections.add(block.sections)
         if sampling.keep_channels:
             torques.append(low_pass.decimate(radius * block.acting_force).astype(np.float32))
         columns.append(
@@ -304,17 +309,8 @@ def run_schedule(
         end=march.state(),
         unconverged_steps=march.unconverged,
         warnings=tuple(warnings),
-        sections=_section_peaks(march, windows, slow[:, 0], float(command.time[0])) if readers else None,
+        sections=sections.envelopes(next(iter(readers.values())).sections) if readers else None,
     )
-
-
-def _section_peaks(march: TimeMarch, windows: EnvelopeWindows, drive: Array, start: float) -> SectionPeaks:
-    """Largest alternating torques of the sections that the march has looked at; drive : (n,) motor torque [N m]."""
-    at = start + np.array([glance.time for glance in march.glances])
-    sampled = start + march.step * march.substeps * np.arange(1, len(drive) + 1)
-    carried = [np.interp(at, windows.time - 0.5 * windows.duration, torque) for torque in windows.mean]
-    found = section_peaks(march.glances, np.column_stack([*carried, np.interp(at, sampled, drive)]))
-    return replace(found, time=start + found.time)
 
 
 def _chunks(

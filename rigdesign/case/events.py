@@ -8,19 +8,24 @@ from rigdesign.case.fields import Force, Part, Share, Speed, Text, Time, Torque,
 from rigdesign.case.kinds import kind_from
 
 
-class LoadedEvent(Part):
-    """What every event under load states."""
+class FeltLoads(Part):
+    """Limits of what parts of the rig feel in an event."""
 
-    speed: Speed | None = None
-    """Speed at which it happens, counted as that of the test; the test speed when left out."""
-    torque: Torque | None = None
-    """Torque under which it happens, counted as that of the test; the test torque when left out."""
     coupling_torque_maximum: Torque | None = None
     """Most torque that the couplings and their flanges may feel."""
     shaft_torque_maximum: Torque | None = None
     """Most torque that a section of a shaft may feel."""
     bearing_force_maximum: Force | None = None
     """Most radial force that a bearing may feel."""
+
+
+class LoadedEvent(FeltLoads):
+    """What every event on the ramp states."""
+
+    speed: Speed | None = None
+    """Speed at which it happens, counted as that of the test; the test speed when left out."""
+    torque: Torque | None = None
+    """Torque under which it happens, counted as that of the test; the test torque when left out."""
 
 
 class ToothLoss(LoadedEvent):
@@ -84,7 +89,7 @@ class EmergencyStop(LoadedEvent):
         return self
 
 
-class Overspeed(Part):
+class Overspeed(FeltLoads):
     """The rig runs faster than the schedule asks for, under the torque of the test."""
 
     kind: Literal["overspeed"]

@@ -138,6 +138,8 @@ class StrengthLimits(Part):
     press_fit_safety_minimum: Positive = 1.2
     """Least safety of the press fits of gears against slip, hot and at speed: 1.2 as is usual with DIN 7190-1, whose
     text was not at hand."""
+    shaft_shear_maximum: Stress | None = None
+    """Most nominal torsional stress at the surface of a shaft section, in stages and events; without notch factors."""
     spline_safety_minimum: Positive = 1.0
     """Least allowable stress of a spline over its stress; the allowable stresses of the case carry the safety."""
 
@@ -237,18 +239,25 @@ class BoughtPart(Part):
     """The value, when it does not come from the run."""
     limit: str
     """Limit of its maker, a quantity with unit of the kind of ``quantity``."""
+    overload: str | None = None
+    """Of a coupling, torque flange or shaft with ``torque_peak``: most torque that it survives in an event, as a loss
+    of teeth; ``limit`` when left out."""
     source: Text
     """Where the limit is printed, e.g. the data sheet."""
 
     @model_validator(mode="after")
     def _quantities(self) -> "BoughtPart":
-        for key in ("limit", "given"):
+        for key in ("limit", "given", "overload"):
             text = getattr(self, key)
             if text is not None:
                 try:
                     units.parse(text, RESULT_KINDS[self.quantity])
                 except units.QuantityError as error:
                     raise fault(f"{key}: {error.problem}", error.remedy) from None
+        if self.overload is not None and self.quantity != "torque_peak":
+            raise fault("overload is given of another quantity than torque_peak", "leave it out")
+        if self.overload_si < self.limit_si:
+            raise fault("overload is below limit", "exchange or correct them")
         return self
 
     @property
@@ -260,6 +269,11 @@ class BoughtPart(Part):
     def limit_si(self) -> float:
         """The limit in SI."""
         return units.parse(self.limit, self.kind)
+
+    @property
+    def overload_si(self) -> float:
+        """What it survives in an event in SI: ``overload``, or the limit."""
+        return self.limit_si if self.overload is None else units.parse(self.overload, self.kind)
 
     @property
     def given_si(self) -> float | None:

@@ -22,7 +22,10 @@ def depends(case: Case, check: Check, path: str) -> bool:
     if any(is_under(path, part) for part in MOVE_NO_CHECK):
         return False
     group, _, name = check.id.partition(".")
-    own = [*PATH.findall(check.source), *([f"limits.bought_parts.{name}"] if group == "bought_part" else [])]
+    own = [
+        *PATH.findall(check.source),
+        *([f"limits.bought_parts.{name}"] if group.startswith("bought_part") else []),
+    ]
     if any(is_under(path, part) for part in own):
         return True
     family = REGISTRY.family_of(case, check)

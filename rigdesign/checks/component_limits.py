@@ -17,6 +17,7 @@ from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
+from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.loads import StageBracing
@@ -43,6 +44,13 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
     if value is None:
         return not_applicable(rule, reason)
     return hold(rule, display(value, part.kind), reason)
+
+
+def is_at(torque: PartTorque, part: str) -> bool:
+    """Whether a torque is that of a coupling or shaft of the case, by its path."""
+    kinds = {"couplings": "coupling", "shafts": "shaft"}
+    group, _, name = part.removeprefix("drivetrain.").partition(".")
+    return torque.kind == kinds.get(group) and torque.part == name
 
 
 def _rule(name: str, part: BoughtPart) -> Rule:
@@ -72,9 +80,12 @@ def _torque_mean(solved: SolvedRig, part: str) -> Found:
 
 
 def _torque_peak(solved: SolvedRig, part: str) -> Found:
-    """Highest dynamic torque of the meshes at the part, referred to the gear on its shaft."""
+    """Of a coupling or shaft that in its own sections; of gears that of their meshes, referred to the gear."""
     if solved.loads is None:
         return None, NO_LOADS
+    own = [torque for torque in solved.part_torques if torque.event is None and is_at(torque, part)]
+    if own:
+        return worst((torque.torque, f"{torque.place}, {torque.where}") for torque in own)
     rig, found = solved.rig, solved.loads.meshes
     return worst(
         (
@@ -278,7 +289,8 @@ FAMILIES = (
         _family(
             "torque_peak",
             "highest dynamic torque",
-            "Largest dynamic torque of the meshes at the part, referred to the gear on its shaft.",
+            "Largest torque of a coupling or of the sections of a shaft in the periodic responses of the held stages "
+            "and at the samples of the time run; of a gearbox, mesh or gear that of its meshes, referred to the gear.",
         ),
         moved_by=frozenset({"time run"}),
     ),

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from rigdesign.case.events import EmergencyStop, LoadedEvent, Overspeed, ToothLoss
+from rigdesign.case.events import EmergencyStop, FeltLoads, Overspeed, ToothLoss
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventRecord, Quantity
-from rigdesign.results.units import NEWTON_METRE, NUMBER, DisplayUnit
+from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
 
 GROUP = "events"
 NEWTON, SECOND = DisplayUnit("N"), DisplayUnit("s")
@@ -17,7 +17,8 @@ MARCH = (
     "March in time from the steady state at speed and torque of the event, the twist of the bracing held, gears and "
     "films as warm as at the test"
 )
-Part = type[LoadedEvent] | type[ToothLoss] | type[EmergencyStop] | type[Overspeed]
+PASSED = "; in a stop also in the periodic responses that it passes on its way down"
+Part = type[FeltLoads] | type[ToothLoss] | type[EmergencyStop] | type[Overspeed]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,11 +37,17 @@ def _of(part: Part) -> Callable[[Case], Iterator[str]]:
 
 
 def _peaks(quantity: Quantity) -> Callable[[EventRecord], Values]:
-    return lambda record: (
-        (peak.peak, f"{peak.place} after {1e3 * peak.time:.2f} ms")
-        for peak in record.peaks
-        if peak.quantity == quantity
-    )
+    """Within the time marched, and in a stop on the way down."""
+
+    def values(record: EventRecord) -> Values:
+        for peak in record.peaks:
+            if peak.quantity == quantity:
+                yield peak.peak, f"{peak.place} after {1e3 * peak.time:.2f} ms"
+        for passed in record.passing:
+            if passed.quantity == quantity:
+                yield passed.peak, f"{passed.place} on the way down at {RPM * passed.speed:.0f} rpm"
+
+    return values
 
 
 def _one(value: Callable[[EventRecord], float | None], where: str) -> Callable[[EventRecord], Values]:
@@ -76,15 +83,15 @@ def _family(
 
 FAMILIES = (
     _family(
-        "coupling_torque_maximum", "largest torque in a coupling and its flanges", NEWTON_METRE, LoadedEvent,
-        _peaks("coupling torque"), f"{MARCH}: largest amount of the torque in a coupling.",
+        "coupling_torque_maximum", "largest torque in a coupling and its flanges", NEWTON_METRE, FeltLoads,
+        _peaks("coupling torque"), f"{MARCH}: largest amount of the torque in a coupling{PASSED}.",
     ),
     _family(
-        "shaft_torque_maximum", "largest torque in a section of a shaft", NEWTON_METRE, LoadedEvent,
-        _peaks("shaft torque"), f"{MARCH}: largest amount of the torque in an element of a shaft.",
+        "shaft_torque_maximum", "largest torque in a section of a shaft", NEWTON_METRE, FeltLoads,
+        _peaks("shaft torque"), f"{MARCH}: largest amount of the torque in an element of a shaft{PASSED}.",
     ),
     _family(
-        "bearing_force_maximum", "largest radial force on a bearing", NEWTON, LoadedEvent,
+        "bearing_force_maximum", "largest radial force on a bearing", NEWTON, FeltLoads,
         _peaks("bearing force"), f"{MARCH}: stiffness and damping of the bearing on the motion of its journal, weight "
         "left out; of shafts that only twist the static force times peak over mean of the mesh torque.",
     ),

@@ -1,21 +1,20 @@
-"""Checks of the seats of the gears on their shafts: press fits against slip, splines, hot and at speed."""
+"""Checks of shafts under torque and of the seats of gears: slip of press fits and splines, hot and at speed."""
 
 from dataclasses import replace
 from functools import partial
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RigRule, Topic, Values
-from rigdesign.records.press_fits import FRICTION, press_fits
+from rigdesign.records.press_fits import FRICTION
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.records.spline_capacity import spline_stresses
 from rigdesign.results.check import Check
 from rigdesign.results.spline_capacity import SplineStressKind
-from rigdesign.results.units import NUMBER
+from rigdesign.results.units import MEGAPASCAL, NUMBER
 
 
 def _slip(solved: SolvedRig) -> Values:
     """Slip torque over the torque of the seat at every stage and event."""
-    for found in press_fits(solved.rig, solved.seat_torques):
+    for found in solved.press_fits:
         if found.safety is not None:
             yield (
                 found.safety,
@@ -27,13 +26,20 @@ def _slip(solved: SolvedRig) -> Values:
 
 def _spline(solved: SolvedRig, *kinds: SplineStressKind) -> Values:
     """Allowable stress over stress of every spline, for some kinds of stress."""
-    for found in spline_stresses(solved.rig, solved.seat_torques):
+    for found in solved.splines:
         if found.kind in kinds and found.safety is not None:
             yield (
                 found.safety,
                 f"{found.gear}, {found.where}: {found.kind} {1e-6 * found.stress:.3g} MPa of "
                 f"{1e-6 * found.allowable:.3g} MPa under {found.torque:.0f} N m",
             )
+
+
+def _shear(solved: SolvedRig) -> Values:
+    """Nominal torsional stress of every shaft section at every stage and event."""
+    for found in solved.part_torques:
+        if found.shear_stress is not None:
+            yield found.shear_stress, f"{found.place}, {found.where}: {found.torque:.0f} N m"
 
 
 _RULE = partial(
@@ -46,8 +52,8 @@ _RULE = partial(
     moved_by=frozenset({"strength limits", "time run", "events", "housing", "gear seats"}),
 )
 TORQUE = (
-    "largest torque of the seat in the periodic responses of the held stages, in the time run over the schedule and in "
-    "the events"
+    "largest torque of the seat itself in the periodic responses of the held stages, at the samples of the time run "
+    "over the schedule and in the events"
 )
 _SPLINE = partial(
     _RULE,
@@ -71,7 +77,25 @@ PRESS_FIT = _RULE(
     limit=lambda limits: limits.strength.press_fit_safety_minimum,
     values=_slip,
 )
+SHAFT_SHEAR = RigRule(
+    key="strength.shaft_shear",
+    title="largest nominal shear stress of a shaft section by its torque",
+    procedure=(
+        "Torque over the polar section modulus of the outer and inner diameter, at the largest torque of the section "
+        "in the periodic responses of the held stages, at the samples of the time run over the schedule and in the "
+        "events; bending and notches not counted."
+    ),
+    source="limits.strength.shaft_shear_maximum",
+    unit=MEGAPASCAL,
+    group="dynamics",
+    needs=LOADS,
+    leaves_out=(long_periods,),
+    moved_by=frozenset({"strength limits", "time run", "events", "housing"}),
+    limit=lambda limits: limits.strength.shaft_shear_maximum,
+    values=_shear,
+)
 RULES = (
+    SHAFT_SHEAR,
     PRESS_FIT,
     _SPLINE(
         key="strength.spline_pressure",

@@ -111,7 +111,7 @@ def run_ramp(
             torque_band=SPECTRUM_ORDERS * highest_mesh_frequency(rig, top) / (2.0 * np.pi),
             keep_accounts=False,
             cutoff=_cutoff(rig),
-            sections=None if rig.shaft_model == "torsional" else twist_rows_of(rig, loop.at(0.0)),
+            sections=lambda speed: twist_rows_of(rig, loop.at(0.0), speed / rig.pinion_speed(1.0)),
         ),
     )
     require_speeds(rig, schedule, response)

@@ -21,6 +21,7 @@ from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
+from rigdesign.results.events import EventRecord
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow
 from rigdesign.results.units import ZERO
@@ -41,6 +42,7 @@ class Reference:
     motor_losses: Array | None
     """Torque of all losses at the motor over ``ramp`` [N m], (n,)."""
     loads: DynamicLoads | None
+    events: tuple[EventRecord, ...]
     discretisation: tuple[DiscretisationRow, ...]
     key: str
 
@@ -75,6 +77,7 @@ def solve_reference(
         ramp=ramp,
         motor_losses=losses,
         loads=solved.loads,
+        events=tuple(solved.events),
         discretisation=tuple(solved.discretisation),
         key=f"{case.hash} {fidelity}",
     )
@@ -126,7 +129,7 @@ def _restored(reference: Reference) -> SolvedRig:
     if reference.curves is not None and reference.ramp is not None:
         run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
     solved = with_records(rig, points, run, reference.loads)
-    return replace(solved, discretisation=reference.discretisation)
+    return replace(solved, events=reference.events, discretisation=reference.discretisation)
 
 
 def _point(rig: Rig, point: OperatingPoint, converged: CouplingState) -> PointResult:

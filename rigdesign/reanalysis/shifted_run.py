@@ -2,7 +2,8 @@
 
 In every window of the run the highest and the lowest torque move by what the periodic response at its speed and
 torque moves by: the run passes its speeds slowly against the decay of its vibrations, so that both differ from it by
-the same. Windows below the least torque at which the response is known keep what they have.
+the same. Windows below the least torque at which the response is known keep what they have. Torques of shafts and
+joints alternate in proportion to the mesh whose envelope grows most.
 
 On the prototype, oil at 140 degC moved to 60 and to 180 degC: peaks of the loaded stages within 1.5 % of their
 mean torque and the least torques within 2.5 %; the governing ones within 0.05 and 0.7 %
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from dynamics.response.envelopes import EnvelopeWindows
 from dynamics.response.speed_sweep import ResponseCurve
+from dynamics.response.state_reader import SectionEnvelopes
 from dynamics.response.time_response import TimeResponse
 from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun
@@ -49,7 +51,20 @@ def shifted_run(rig: Rig, stated: DynamicRun, curves: Curves) -> TimeResponse | 
         if edges is None:
             return None
         least[mesh], greatest[mesh] = edges
-    return replace(stated.ramp, windows=replace(windows, least=least, greatest=greatest))
+    moved = replace(windows, least=least, greatest=greatest)
+    sections = None if stated.ramp.sections is None else _widened(stated.ramp.sections, windows, moved)
+    return replace(stated.ramp, windows=moved, sections=sections)
+
+
+def _widened(sections: SectionEnvelopes, before: EnvelopeWindows, after: EnvelopeWindows) -> SectionEnvelopes:
+    """Torques of the sections, alternating about their means as that mesh whose envelope grows most."""
+    width, wider = (windows.greatest - windows.least for windows in (before, after))
+    ratio = np.max(np.where(width > 0.0, wider / np.where(width > 0.0, width, 1.0), 1.0), axis=0)
+    return replace(
+        sections,
+        least=sections.mean + ratio * (sections.least - sections.mean),
+        greatest=sections.mean + ratio * (sections.greatest - sections.mean),
+    )
 
 
 def _shifted(

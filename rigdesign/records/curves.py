@@ -84,7 +84,7 @@ def plan_curves(rig: Rig, warm: IterationResult, *, variants: bool = True) -> Cu
     variants : with the other reading of the mesh stiffness, which the report compares and no check asks for
     """
     numerics = rig.case.numerics
-    governing = _key(signed_torque(rig, warm.point))
+    governing = torque_key(signed_torque(rig, warm.point))
     solve = partial(_curve, rig, warm, laws_of(warm.models))
     works: dict[float | str, Callable[[], ResponseCurve]] = {
         torque: partial(solve, torque, grid(rig, *limits)) for torque, limits in speed_ranges(rig).items()
@@ -117,9 +117,9 @@ def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:
     held = held_points(rig)
     low = max(1.0 - away, SLOWEST) * min(point.speed for point in held)
     high = (1.0 + away) * max(point.speed for point in held)
-    ranges = {_key(signed_torque(rig, point)): (min(first, low), max(last, high)) for point in held}
+    ranges = {torque_key(signed_torque(rig, point)): (min(first, low), max(last, high)) for point in held}
     for stage in rig.case.schedule.resolved():
-        torque = _key(rig.torque_ratio * stage.torque_end * locked_share(rig))
+        torque = torque_key(rig.torque_ratio * stage.torque_end * locked_share(rig))
         low, high = sorted((stage.speed_start, stage.speed_end))
         low, high = max(low, first), min(high, last)
         if stage.kind in ("run_up", "run_down") and abs(stage.torque_end) > light and low < high:
@@ -128,7 +128,7 @@ def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:
     return ranges
 
 
-def _key(torque: float) -> float:
+def torque_key(torque: float) -> float:
     """Torques that differ by round-off are one."""
     return round(torque, 6)
 
@@ -158,14 +158,37 @@ def _curve(
     *,
     refined: bool = True,
 ) -> ResponseCurve:
+    solve = response_solver(rig, warm, torque, (min(speeds), max(speeds)), laws)
+    return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
+
+
+def response_solver(
+    rig: Rig,
+    warm: IterationResult,
+    torque: float,
+    limits: tuple[float, float],
+    laws: Sequence[MeshLaw] | None = None,
+) -> Callable[[Sequence[float]], ResponseCurve]:
+    """Finds the periodic response at speeds of the first pinion [rad/s] at one torque [N m, at the control mesh].
+
+    limits : lowest and highest of these speeds; laws : of the meshes, those of ``warm`` when left out
+    """
     share = torque / signed_torque(rig, warm.point)
-    ends = [speed / rig.pinion_speed(1.0) for speed in (min(speeds), max(speeds))]
+    ends = [speed / rig.pinion_speed(1.0) for speed in limits]
     drivetrain = loop_over_speed(rig, warm, (ends[0], ends[1]), lambda _: share)
-    solve = partial(
-        periodic_response, drivetrain, periodic_laws(rig, laws), load=LoopLoad(torque=torque), drag_torques=warm.drags,
+    return partial(
+        periodic_response, drivetrain, periodic_laws(rig, laws or laws_of(warm.models)), load=LoopLoad(torque=torque),
+        drag_torques=warm.drags,
         settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )  # fmt: skip
-    return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
+
+
+def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float, float]) -> ResponseCurve:
+    """Periodic response over speed at one torque [N m, at the control mesh], warm gears of ``warm``.
+
+    limits : lowest and highest stated speed [rad/s]
+    """
+    return _curve(rig, warm, laws_of(warm.models), torque, grid(rig, *limits))
 
 
 def rating_options(rig: Rig, name: str) -> RatingOptions:

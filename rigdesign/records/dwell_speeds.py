@@ -19,9 +19,9 @@ from rigdesign.records.near_dwell import (
 )
 from rigdesign.records.ramp_steps import RampLimits, ramp_steps
 from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe, safe_windows
-from rigdesign.records.section_torques import is_around
 from rigdesign.records.speed_limits import speed_limit
 from rigdesign.records.start_torque import StartResponse, start_torque, worst_start
+from rigdesign.records.torques_over_speed import is_around
 from rigdesign.results.campbell import CampbellRecord
 from rigdesign.results.dwell import (
     AvoidedResonance,

@@ -15,11 +15,12 @@ from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.reversed_bending import bent_both_ways
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.spectra import held_spectra, waterfalls
 from rigdesign.records.time_run import ramp_history
 from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
-from rigdesign.results.loads import DynamicLoads, MeshLoads
+from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.results.rows.campbell import campbell_row
 from rigdesign.results.rows.contact_in_motion import contact_loss_row, pair_share_row
@@ -35,16 +36,17 @@ from rigdesign.results.rows.tooth_history import tooth_history_row
 from rigdesign.rig.model import Rig
 
 
-def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> DynamicsResult:
-    """All of it as rows of the result; ``loads`` are those of the run."""
+def dynamics_section(solved: SolvedRig) -> DynamicsResult:
+    """All of it as rows of the result, of a rig with loads."""
+    rig, run, loads = solved.rig, solved.run, solved.loads
     drivetrain = rig.drivetrain
-    assert drivetrain is not None
+    assert drivetrain is not None and run is not None and loads is not None
     frequencies = shaft_frequencies(drivetrain)
     top = max(run.curves.response.speeds) * max(own_ratio(rig, m) for m in range(len(rig.mesh_names)))
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
-    vibration = loop_vibration(rig, run, loads)
+    vibration = loop_vibration(solved)
     return DynamicsResult(
         gearboxes={
             rig.mesh_labels[name]: _mesh_section(rig, run, mesh, loads.meshes[rig.mesh_labels[name]])
@@ -74,8 +76,8 @@ def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Dynamics
         campbell=campbell_row(vibration.campbell),
         section_torques=section_torque_rows(vibration.torques),
         dwell=dwell_row(vibration.dwell),
-        press_fits=[press_fit_row(found) for found in vibration.press_fits],
-        splines=[spline_stress_row(found) for found in vibration.splines],
+        press_fits=[press_fit_row(found) for found in solved.press_fits],
+        splines=[spline_stress_row(found) for found in solved.splines],
         contact_loss_maps=[contact_loss_row(found) for found in vibration.maps],
         pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],
         waterfalls=[waterfall_row(found) for found in waterfalls(rig, run)],

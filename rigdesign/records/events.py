@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.twist_rows import TorqueSection
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.event_channels import Channel, Watched, bearing_channels, torque_channels
 from dynamics.response.event_march import (
@@ -37,38 +38,44 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
+from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_modes import held_modes
+from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.resonances import LEAST_GAIN
+from rigdesign.records.run_torques import shear_stress
 from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
 
 CONTROLLED = BracingState(mode="torque_controlled")
+OVERSPEED_TIME = 0.02
+"""Time of the steady rotation at overspeed in which peaks are sought [s]."""
 SLOTS = 400
 """Slots of time of a curve."""
 ORDERS = 3
 """Orders of a mesh frequency whose crossings with a mode count as resonances."""
 QUANTITIES: dict[str, Quantity] = {
-    "coupling": "coupling torque", "shaft": "shaft torque", "bearing": "bearing force"
+    "coupling": "coupling torque", "shaft": "shaft torque", "spline": "seat torque", "bearing": "bearing force"
 }  # fmt: skip
 RPM = math.pi / 30.0
 
 
-def solve_events(rig: Rig, test: PointResult) -> tuple[EventRecord, ...]:
+def solve_events(rig: Rig, run: DynamicRun) -> tuple[EventRecord, ...]:
     """Every event of the case, with the gears and films of the test as warm as they are there.
 
+    run : with the responses over speed that a stop passes on its way down
     Raises DynamicsNotConverged if a march leaves the finite numbers.
     """
-    return tuple(_solved(rig, test, name, event) for name, event in rig.case.events.items())
+    return tuple(_solved(rig, run, name, event) for name, event in rig.case.events.items())
 
 
-def _solved(rig: Rig, test: PointResult, name: str, event: Event) -> EventRecord:
-    place = _EventPlace.of(rig, test, name, event)
+def _solved(rig: Rig, run: DynamicRun, name: str, event: Event) -> EventRecord:
+    place = _EventPlace.of(rig, run.test, name, event)
     if isinstance(event, Overspeed):
-        return _overspeed(place, test)
+        return _overspeed(place, run.test)
     if isinstance(event, EmergencyStop):
-        return _emergency_stop(place, event)
+        return _emergency_stop(place, run, event)
     return _tooth_loss(place, event)
 
 
@@ -202,11 +209,10 @@ class _EventPlace:
         for i, channel in enumerate(self.channels):
             if channel.kind not in QUANTITIES:
                 continue
-            place = self._section(channel.place) if channel.kind == "shaft" else channel.place
-            quantity = QUANTITIES[channel.kind]
+            place, quantity = channel.place, QUANTITIES[channel.kind]
             peak = _peak(place, quantity, float(history.before[i]), np.abs(history.values[i]), history.time)
             if (place, quantity) not in found or peak.peak > found[place, quantity].peak:
-                found[place, quantity] = peak
+                found[place, quantity] = _at_section(peak, channel.section)
         yield from sorted(found.values(), key=lambda peak: list(QUANTITIES.values()).index(peak.quantity))
         if self.rig.shaft_model == "torsional":
             yield from self._static_bearings(history)
@@ -225,7 +231,7 @@ class _EventPlace:
                 worst = max(own, key=lambda peak: peak.peak / max(abs(peak.before), 1e-9))
                 force = loads[name].radial
                 yield EventPeak(
-                    place=name, quantity="bearing force", before=force,
+                    place=name, part=name, quantity="bearing force", before=force,
                     peak=force * worst.peak / max(abs(worst.before), 1e-9), time=worst.time,
                 )  # fmt: skip
 
@@ -233,13 +239,6 @@ class _EventPlace:
         for m, name in enumerate(self.rig.mesh_names):
             amount = np.maximum(np.abs(history.least[m]), np.abs(history.greatest[m]))
             yield _peak(name, "mesh torque", float(history.before_torque[m]), amount, history.time)
-
-    def _section(self, place: str) -> str:
-        """``shaft section n`` of the place of an element."""
-        shaft, position, _ = place.rsplit(" ", 2)
-        assert self.rig.drivetrain is not None
-        ends = np.cumsum([section.length for section in self.rig.drivetrain.shaft(shaft).sections])
-        return f"{shaft} section {min(int(np.searchsorted(ends, 1e-3 * float(position))), len(ends) - 1) + 1}"
 
     def _reversals(self, history: EventHistory) -> Iterator[Reversal]:
         for m, name in enumerate(self.rig.mesh_names):
@@ -254,8 +253,20 @@ class _EventPlace:
 def _peak(place: str, quantity: Quantity, before: float, amount: Array, time: Array) -> EventPeak:
     at = int(amount.argmax())
     return EventPeak(
-        place=place, quantity=quantity, before=before, peak=float(amount[at]), time=float(time[at])
+        place=place,
+        part=place,
+        quantity=quantity,
+        before=before,
+        peak=float(amount[at]),
+        time=float(time[at]),
     )
+
+
+def _at_section(peak: EventPeak, section: TorqueSection | None) -> EventPeak:
+    """The same with what a record says of a section."""
+    if section is None:
+        return peak
+    return replace(peak, part=section.part, shear_stress=shear_stress(section, peak.peak))
 
 
 def _curve(
@@ -307,7 +318,7 @@ def _trip(place: _EventPlace, event: ToothLoss) -> tuple[Trip | None, tuple[str,
     return Trip(channel=channel, limit=event.trip_velocity, delay=event.trip_delay), ()
 
 
-def _emergency_stop(place: _EventPlace, event: EmergencyStop) -> EventRecord:
+def _emergency_stop(place: _EventPlace, run: DynamicRun, event: EmergencyStop) -> EventRecord:
     torque = event.brake_torque
     if torque is None:
         assert event.stop_time is not None
@@ -316,7 +327,8 @@ def _emergency_stop(place: _EventPlace, event: EmergencyStop) -> EventRecord:
     history = place.march().run(event.duration, trip=Trip(channel=None), brake=brake)
     record = place.record(f"brake torque {torque:.3g} N m on the motor", history)
     standstill = time_to_standstill(place.system, place.laws, place.drive_speed, brake, place.drag)
-    return replace(record, tripped=None, standstill=standstill)
+    passed, notes = passing_peaks(place.rig, run, place.point)
+    return replace(record, tripped=None, standstill=standstill, passing=passed, notes=(*record.notes, *notes))
 
 
 def _brake_torque(place: _EventPlace, stop_time: float, onset: float) -> float:
@@ -346,30 +358,17 @@ def _overspeed(place: _EventPlace, test: PointResult) -> EventRecord:
     missing = [*loads_left_out(rig, place.laws, place.system), *lines_left_out(rig, place.laws, place.system)]
     if missing:
         notes = (*notes, f"loads that the period of the response does not hold: {', '.join(missing)}")
-    factors: dict[str, float] = {}
-    peaks: tuple[EventPeak, ...] = ()
     at = [point for point in curve.points if point.speed == speeds[-1]]
-    if at:
-        factors = {name: float(at[0].dynamic_factor[m]) for m, name in enumerate(rig.mesh_names)}
-        peaks = tuple(
-            EventPeak(
-                place=name, quantity="mesh torque", before=float(at[0].mean[m]),
-                peak=float(at[0].maximum[m]), time=0.0,
-            )
-            for m, name in enumerate(rig.mesh_names)
-        )  # fmt: skip
+    factors = {name: float(p.dynamic_factor[m]) for p in at for m, name in enumerate(rig.mesh_names)}
     resonance, distance = _nearest_resonance(place, test)
-    return EventRecord(
-        name=place.name,
-        kind=place.kind,
-        speed=place.point.speed,
-        torque=place.point.torque,
-        what=f"{place.point.speed / RPM:.0f} rpm, {place.point.speed / rig.case.schedule.test_speed:.3f} of the test",
-        peaks=peaks,
+    what = f"{place.point.speed / RPM:.0f} rpm, {place.point.speed / rig.case.schedule.test_speed:.3f} of the test"
+    record = place.record(what, place.march().run(OVERSPEED_TIME))
+    return replace(
+        record,
         dynamic_factor=factors,
         resonance=resonance,
         resonance_distance=distance,
-        notes=(*notes, "bursting of discs and rotors is not modelled"),
+        notes=(*record.notes, *notes, "bursting of discs and rotors is not modelled"),
     )
 
 

@@ -11,7 +11,7 @@ from rigdesign.records.campbell import excitation_orders
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import state_at
 from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
-from rigdesign.records.section_torques import AROUND, is_around, torques_over_speed
+from rigdesign.records.torques_over_speed import AROUND, LoopOverSpeed, is_around, torques_over_speed
 from rigdesign.results.campbell import CampbellCrossing
 from rigdesign.results.dwell import AvoidedResonance, NearResonance
 from rigdesign.results.section_torques import TorqueOverSpeed
@@ -97,8 +97,8 @@ def _near_shafts(rig: Rig, run: DynamicRun, speed: float) -> Iterator[DynamicSha
     points = [point for point in run.curves.response.points if is_around(point.speed, speed)]
     if len(points) > 1:
         state = state_at(rig, run.test, speed / rig.pinion_speed(1.0))
-        curves = tuple(torques_over_speed(rig, run, points, [state]))
-        yield from shaft_shares(rig, [point.speed for point in points], curves)
+        met, curves = torques_over_speed(LoopOverSpeed(rig, run.test.last, [state]), points, None)
+        yield from shaft_shares(rig, [point.speed for point in met], curves)
 
 
 def held_orders(rig: Rig, modes: Sequence[LoopMode], margin: float) -> Iterator[AvoidedResonance]:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from dynamics.rating.mean_stress import PressFit, seat_pressure
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.seat_torques import SeatTorque
+from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, seated_gear, shaft_material
 from rigdesign.results.press_fit import PressFitCapacity
 from rigdesign.results.units import ZERO
@@ -23,16 +23,16 @@ REFERENCE = ZERO + 20.0
 """Temperature at which the interference counts [K] (ISO 1)."""
 
 
-def press_fits(rig: Rig, torques: Iterable[SeatTorque]) -> Iterator[PressFitCapacity]:
+def press_fits(rig: Rig, torques: Iterable[PartTorque]) -> Iterator[PressFitCapacity]:
     """Of every gear whose interference the case states, at every torque of its seat.
 
     A press fit on the teeth of a spline, whose toothing is stated, carries no torque by friction and is left out.
     """
     first = {gear: places[0] for gear, places in gear_meshes(rig).items()}
     for seat in torques:
-        fit = least_fit(rig, first[seat.gear])
-        if fit is not None and not splined(rig, first[seat.gear]):
-            yield _capacity(rig, first[seat.gear], fit, seat)
+        fit = least_fit(rig, first[seat.part])
+        if fit is not None and not splined(rig, first[seat.part]):
+            yield _capacity(rig, first[seat.part], fit, seat)
 
 
 def least_fit(rig: Rig, place: GearInMesh) -> PressFit | None:
@@ -67,15 +67,15 @@ def grown_over_shaft(rig: Rig, place: GearInMesh, point: PointResult) -> tuple[f
     return entry.bore_diameter * grown, warm, cold
 
 
-def _capacity(rig: Rig, place: GearInMesh, fit: PressFit, seat: SeatTorque) -> PressFitCapacity:
+def _capacity(rig: Rig, place: GearInMesh, fit: PressFit, seat: PartTorque) -> PressFitCapacity:
     entry, box = rig.mesh_gear(place.mesh, place.index), rig.mesh(rig.mesh_names[place.mesh])[0]
     disc, _ = seated_gear(rig, place)
     grown, warm, cold = grown_over_shaft(rig, place, seat.point)
     hot = fit.interference - grown
     pressure = seat_pressure(disc, rig.shaft_speed(entry.shaft, seat.speed), replace(fit, interference=hot))
-    width = box.body_width(seat.gear.split(".")[1])
+    width = box.body_width(seat.part.split(".")[1])
     return PressFitCapacity(
-        gear=seat.gear,
+        gear=seat.part,
         stage=seat.point.point.stage,
         where=seat.where,
         interference=fit.interference,

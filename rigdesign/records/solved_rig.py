@@ -9,9 +9,12 @@ from rigdesign.case.model import Case
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.held_torques import held_torques
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
-from rigdesign.records.seat_torques import SeatTorque, seat_torques
+from rigdesign.records.part_torques import PartTorque, part_torques
+from rigdesign.records.press_fits import press_fits
+from rigdesign.records.spline_capacity import spline_stresses
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
 from rigdesign.results.events import EventRecord
@@ -19,7 +22,10 @@ from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.press_fit import PressFitCapacity
 from rigdesign.results.result import DiscretisationRow, MeshShift
+from rigdesign.results.section_torques import HeldTorque
+from rigdesign.results.spline_capacity import SplineStress
 from rigdesign.results.warm_gearbox import WarmGearbox
 from rigdesign.rig.model import Rig
 
@@ -63,10 +69,32 @@ class SolvedRig:
         }
 
     @cached_property
-    def seat_torques(self) -> tuple[SeatTorque, ...]:
-        """Largest torque of the seat of every gear in every held stage, in the stages of the time run and the events;
+    def held_torques(self) -> tuple[HeldTorque, ...]:
+        """Torque of every section and joint in the periodic responses of the held stages."""
+        return tuple(torque for point in self.points for torque in held_torques(self.rig, point))
+
+    @cached_property
+    def part_torques(self) -> tuple[PartTorque, ...]:
+        """Largest torque of every section and joint in the held stages, the stages of the time run and the events;
         empty without loads."""
-        return () if self.loads is None else seat_torques(self.rig, self.points, self.loads, self.events)
+        if self.run is None:
+            return ()
+        return part_torques(self.rig, self.points, self.held_torques, self.run.ramp, self.events)
+
+    @cached_property
+    def seat_torques(self) -> tuple[PartTorque, ...]:
+        """Those of the seats of the gears."""
+        return tuple(torque for torque in self.part_torques if torque.kind == "spline")
+
+    @cached_property
+    def press_fits(self) -> tuple[PressFitCapacity, ...]:
+        """Of every gear whose interference the case states, at every torque of its seat."""
+        return tuple(press_fits(self.rig, self.seat_torques))
+
+    @cached_property
+    def splines(self) -> tuple[SplineStress, ...]:
+        """Of every gear whose spline states allowable stresses, at every torque of its seat."""
+        return tuple(spline_stresses(self.rig, self.seat_torques))
 
     @property
     def mesh_errors(self) -> Mapping[str, float]:

@@ -12,19 +12,19 @@ from dataclasses import replace
 from dynamics.rating.mean_stress import seat_pressure
 from dynamics.standards import dudley_1957 as dudley
 from rigdesign.case.gears import SplineToothing
+from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.press_fits import grown_over_shaft
-from rigdesign.records.seat_torques import SeatTorque
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, seated_gear, shaft_bore
 from rigdesign.results.spline_capacity import SplineStress, SplineStressKind
 from rigdesign.rig.model import Rig
 
 
-def spline_stresses(rig: Rig, torques: Iterable[SeatTorque]) -> Iterator[SplineStress]:
+def spline_stresses(rig: Rig, torques: Iterable[PartTorque]) -> Iterator[SplineStress]:
     """Every stress whose allowable value the case states, at every torque of the seats with a toothing."""
     first = {gear: places[0] for gear, places in gear_meshes(rig).items()}
     cold: set[str] = set()
     for seat in torques:
-        place = first[seat.gear]
+        place = first[seat.part]
         toothing = toothing_of(rig, place)
         if toothing is None:
             continue
@@ -33,8 +33,8 @@ def spline_stresses(rig: Rig, torques: Iterable[SeatTorque]) -> Iterator[SplineS
             tension = _tension(rig, place, toothing, seat)
             yield _stress(seat, "tension of the hub", tension, toothing.allowable_tension)
             still = _press_fit_tension(rig, place, 0.0, 0.0)
-            if still and seat.gear not in cold:
-                cold.add(seat.gear)
+            if still and seat.part not in cold:
+                cold.add(seat.part)
                 rest = replace(seat, torque=0.0, where="at rest, 20 degC")
                 yield _stress(rest, "tension of the hub", still, toothing.allowable_tension)
 
@@ -46,7 +46,7 @@ def toothing_of(rig: Rig, place: GearInMesh) -> SplineToothing | None:
 
 
 def _of_teeth(
-    rig: Rig, place: GearInMesh, toothing: SplineToothing, seat: SeatTorque
+    rig: Rig, place: GearInMesh, toothing: SplineToothing, seat: PartTorque
 ) -> Iterator[SplineStress]:
     spline = _spline(toothing)
     if toothing.allowable_pressure is not None:
@@ -62,7 +62,7 @@ def _of_teeth(
         yield _stress(seat, "shear of the shaft", shear, toothing.allowable_shear)
 
 
-def _tension(rig: Rig, place: GearInMesh, toothing: SplineToothing, seat: SeatTorque) -> float:
+def _tension(rig: Rig, place: GearInMesh, toothing: SplineToothing, seat: PartTorque) -> float:
     """Of the hub hot and at speed [Pa]."""
     entry = rig.mesh_gear(place.mesh, place.index)
     disc, _ = seated_gear(rig, place)
@@ -101,7 +101,7 @@ def _spline(toothing: SplineToothing) -> dudley.Spline:
     )
 
 
-def _stress(seat: SeatTorque, kind: SplineStressKind, stress: float, allowable: float) -> SplineStress:
+def _stress(seat: PartTorque, kind: SplineStressKind, stress: float, allowable: float) -> SplineStress:
     return SplineStress(
-        gear=seat.gear, kind=kind, where=seat.where, torque=seat.torque, stress=stress, allowable=allowable
+        gear=seat.part, kind=kind, where=seat.where, torque=seat.torque, stress=stress, allowable=allowable
     )

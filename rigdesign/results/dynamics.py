@@ -163,8 +163,9 @@ class DynamicsResult:
     """Torque in every section of the shafts, joint and mesh, from the periodic responses: {held: [{place, kind, part,
     from_mm, to_mm, stage, speed_rpm, mean_Nm, half_peak_to_peak_Nm, peak_Nm, time_run_peak_Nm, shear_stress_MPa}],
     over_speed: {torque, speed_rpm, places: [{place, ..., mean_Nm, half_peak_to_peak_Nm, peak_Nm}]}, time_run: [{place,
-    ..., mean_Nm, half_peak_to_peak_Nm, time_s, speed_rpm, stage}]}; of a section where it is highest. Of the time run
-    where one of 40 instants a second finds the torque furthest from its mean; shafts that bend only."""
+    ..., stage, peak_Nm, shear_stress_MPa, half_peak_to_peak_Nm, mean_Nm, time_s, speed_rpm}]}; of a section where it is
+    highest. Of the time run in every stage: highest torque, and the window in which it alternates most, read at every
+    sample."""
     dynamic_root: dict[str, Any] | None = None
     """Root stress in motion over the rolling angle at the held stages and the speeds of numerics.root_stress_speeds:
     {curves: [{gearbox, gear, gauge (empty: the most stressed point), stage (empty: a speed asked for),
@@ -190,9 +191,10 @@ class DynamicsResult:
     torque_Nm, least_share, lift_off_share: rows over torque of columns over speed, None without a response}; empty at
     fidelity quick and where the response repeats after a revolution."""
     press_fits: list[dict[str, Any]] = field(default_factory=list)
-    """Of every gear with an interference, at the held stages: {gear, stage, interference_um, interference_hot_um,
-    gear_degC, shaft_degC, pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
+    """Of every gear with an interference at every torque that its check counts, of held stages, time run and events:
+    {gear, where, stage (whose temperatures count), interference_um, interference_hot_um, gear_degC, shaft_degC,
+    pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
     without torque)}."""
     splines: list[dict[str, Any]] = field(default_factory=list)
-    """Of every gear whose spline states its toothing, at the held stages, each stress with an allowable one: {gear,
-    where, kind, torque_Nm, stress_MPa, allowable_MPa, safety}."""
+    """Of every gear whose spline states its toothing at every torque that its checks count, each stress with an
+    allowable one: {gear, where, kind, torque_Nm, stress_MPa, allowable_MPa, safety}."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-Quantity = Literal["coupling torque", "shaft torque", "mesh torque", "bearing force"]
+Quantity = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -11,13 +11,32 @@ class EventPeak:
     """Largest amount of one quantity of one part [N m], [N]."""
 
     place: str
-    """Coupling, ``shaft section n``, ``gearbox.mesh`` or ``gearbox.bearing``."""
+    """Coupling, section of a shaft as in tables, gear on its seat ``gearbox.gear``, ``gearbox.mesh`` or
+    ``gearbox.bearing``."""
+    part: str
+    """The same, of a section its shaft."""
     quantity: Quantity
     before: float
     """Mean before the event."""
     peak: float
     time: float
     """From the instant of the event [s]."""
+    shear_stress: float | None = None
+    """Nominal torsional stress at the surface of a shaft under the peak [Pa]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassingPeak:
+    """Largest amount of a torque at one place on the way down through the resonances [N m]."""
+
+    place: str
+    part: str
+    quantity: Quantity
+    peak: float
+    speed: float
+    """Stated speed at which it is passed [rad/s]."""
+    shear_stress: float | None = None
+    """As of `EventPeak`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +73,8 @@ class EventRecord:
     what: str
     """In words: teeth lost, brake torque."""
     peaks: tuple[EventPeak, ...] = ()
+    passing: tuple[PassingPeak, ...] = ()
+    """Of a stop, from the periodic responses over speed."""
     reversals: tuple[Reversal, ...] = ()
     tripped: float | None = None
     """Time until the limit of the monitor is crossed [s]."""

@@ -46,7 +46,7 @@ class HeldTorque:
     """[rad/s]"""
     swing: TorqueSwing
     run_peak: float | None
-    """Highest of the time run in this stage [N m]; meshes only."""
+    """Highest of the time run in this stage [N m]."""
     shear_stress: float | None
     """Nominal torsional stress at the surface under the peak [Pa]; shafts only."""
 
@@ -57,22 +57,28 @@ class TorqueOverSpeed:
 
     place: TorquePlace
     swings: tuple[TorqueSwing, ...]
+    shear_per_torque: float
+    """Nominal torsional stress at the surface per torque [Pa/(N m)]; 0 of joints and meshes."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunTorque:
-    """Largest alternating torque at one place in the time run, of those at 40 instants a second."""
+    """Torque at one place in one stage of the time run, read at every sample; of a section where it is highest."""
 
     place: TorquePlace
-    half_peak_to_peak: float
-    """Over the milliseconds from that instant on [N m]."""
-    mean: float
-    """Of the same time, never negative [N m]."""
-    time: float
-    """[s]"""
-    speed: float
-    """[rad/s]"""
     stage: str
+    peak: float
+    """Largest amount in the stage [N m]."""
+    half_peak_to_peak: float
+    """Largest within one window of the run [N m]."""
+    mean: float
+    """Of that window, never negative [N m]."""
+    time: float
+    """End of that window [s]."""
+    speed: float
+    """There [rad/s]."""
+    shear_stress: float | None
+    """Nominal torsional stress at the surface under the peak [Pa]; shafts only."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,4 +92,4 @@ class SectionTorqueRecord:
     """(s,) [rad/s]"""
     curves: tuple[TorqueOverSpeed, ...]
     run: tuple[RunTorque, ...] = ()
-    """Sections and joints; none where the time run did not look at them."""
+    """Of every section and joint in every stage."""

@@ -132,7 +132,7 @@ def solve_case(
     )
     if run is not None and wanted.case.events:
         say("events: " + ", ".join(wanted.case.events))
-        solved = replace(solved, events=solve_events(wanted, solved.test))
+        solved = replace(solved, events=solve_events(wanted, run))
         lap("events")
     say("errors of slices and shaft elements")
     solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
@@ -164,9 +164,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         fidelity=rig.fidelity,
         verdict=overall(checks),
         checks=Checks(checks),
-        dynamics=None
-        if solved.run is None or solved.loads is None
-        else dynamics_section(rig, solved.run, solved.loads),
+        dynamics=None if solved.run is None or solved.loads is None else dynamics_section(solved),
         losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
         oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
         events=[event_row(found) for found in solved.events],

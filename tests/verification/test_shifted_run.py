@@ -46,8 +46,9 @@ def loaded(rig: SolvedRig, least: float) -> dict[tuple[str, str], StageLoad]:
     }
 
 
-def compared(name: str, inlet: str, fidelity: str) -> tuple[float, float]:
-    """Largest difference of a peak and of a least torque of a loaded stage, as shares of the mean torque."""
+def compared(name: str, inlet: str, fidelity: str) -> tuple[float, float, float]:
+    """Largest difference of a peak and of a least torque of a loaded stage, as shares of the mean torque; of the
+    highest torque that a seat, coupling or shaft carries in the run, as a share of it."""
     case = load_case(name)
     reference, _ = solve_reference(case, fidelity)  # type: ignore[arg-type]
     found = both(reference, restored(reference), case.with_value(INLET, inlet))
@@ -55,22 +56,36 @@ def compared(name: str, inlet: str, fidelity: str) -> tuple[float, float]:
     assert one.keys() == other.keys() and one
     peaks = max(abs(one[key].peak - other[key].peak) / other[key].mean for key in one)
     least = max(abs(one[key].least_share - other[key].least_share) for key in one)
-    return peaks, least
+    shifted, marched = (highest(rig) for rig in (found.shifted, found.marched))
+    assert shifted.keys() == marched.keys() and shifted
+    sections = max(abs(shifted[place] - marched[place]) for place in shifted) / max(marched.values())
+    return peaks, least, sections
+
+
+def highest(rig: SolvedRig) -> dict[str, float]:
+    """Of every place in the time run [N m]."""
+    found: dict[str, float] = {}
+    for torque in rig.part_torques:
+        if torque.where.startswith("time run"):
+            found[torque.place] = max(found.get(torque.place, 0.0), torque.torque)
+    return found
 
 
 @pytest.mark.whole_run
 def test_moved_envelopes_are_those_of_the_run_marched_again() -> None:
-    peaks, least = compared("loop_1to1", "80 degC", "quick")
+    peaks, least, sections = compared("loop_1to1", "80 degC", "quick")
     assert peaks < 0.01
     assert least < 0.02
+    assert sections < 0.01
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("inlet", ["60 degC", "100 degC", "180 degC"])
 def test_the_prototype_from_140_degc(inlet: str) -> None:
-    peaks, least = compared("uhcf_prototype", inlet, "standard")
+    peaks, least, sections = compared("uhcf_prototype", inlet, "standard")
     assert peaks < 0.02
     assert least < 0.03
+    assert sections < 0.05
 
 
 @pytest.mark.whole_run

@@ -1,5 +1,6 @@
 """Vibration of the power circuit: modes over speed, dynamic torque, and at which speeds the rig may dwell."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.sections.gearbox_styles import gearbox_styles
@@ -127,6 +128,36 @@ def leading(band: dict[str, Any], most: int = 4) -> list[dict[str, Any]]:
     return sorted(chosen, key=lambda one: float(one["speed_rpm"]))
 
 
+def _details(result: RunResult, draw: Draw) -> Values:
+    dynamics = result.dynamics
+    assert dynamics is not None
+    run = dynamics.section_torques["time_run"] if dynamics.section_torques else []
+    return {
+        "run_torques": _run_torques(run),
+        "press_fits": least_safe(dynamics.press_fits, "gear"),
+        "splines": least_safe(dynamics.splines, "gear", "kind"),
+    }
+
+
+def _run_torques(rows: list[dict[str, Any]]) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    """Of every place its rows in the time run with the highest torque, and with that which alternates most."""
+    by_place: dict[str, list[dict[str, Any]]] = {}
+    for row in rows:
+        by_place.setdefault(row["place"], []).append(row)
+    return [
+        tuple(max(own, key=lambda row: float(row[key])) for key in ("peak_Nm", "half_peak_to_peak_Nm"))  # type: ignore[misc]
+        for own in by_place.values()
+    ]
+
+
+def least_safe(rows: list[dict[str, Any]], *keys: str) -> list[dict[str, Any]]:
+    """Of the rows that agree in some keys that with the least safety; a row without torque is the safest."""
+    found: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for row in sorted(rows, key=lambda row: math.inf if row["safety"] is None else float(row["safety"])):
+        found.setdefault(tuple(row[key] for key in keys), row)
+    return sorted(found.values(), key=rows.index)
+
+
 def _turns(result: RunResult) -> bool:
     return result.dynamics is not None and result.dynamics.campbell is not None
 
@@ -137,5 +168,5 @@ VIBRATION = ReportSection(
 )  # fmt: skip
 VIBRATION_DETAILS = ReportSection(
     id="vibration_details", title="Dynamic torque by section", template="vibration_details.html.j2",
-    applies=_turns, place="appendix",
+    values=_details, applies=_turns, place="appendix",
 )  # fmt: skip

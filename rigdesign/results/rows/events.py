@@ -3,7 +3,7 @@
 from typing import Any
 
 from rigdesign.results.events import EventRecord
-from rigdesign.results.units import RPM
+from rigdesign.results.units import MPA, RPM
 
 UNITS = {"bearing force": "N"}
 LEAST_SHARE = 0.05
@@ -21,14 +21,24 @@ def event_row(found: EventRecord) -> dict[str, Any]:
         "peaks": [
             {
                 "place": peak.place,
+                "part": peak.part,
                 "quantity": peak.quantity,
                 "unit": UNITS.get(peak.quantity, "N m"),
                 "before": peak.before,
                 "peak": peak.peak,
                 "factor": peak.peak / abs(peak.before) if abs(peak.before) > LEAST_SHARE * peak.peak else None,
                 "time_s": peak.time,
+                "shear_stress_MPa": None if peak.shear_stress is None else MPA * peak.shear_stress,
             }
             for peak in found.peaks
+        ],
+        "passing": [
+            {
+                "place": peak.place, "part": peak.part, "quantity": peak.quantity, "unit": "N m",
+                "peak": peak.peak, "speed_rpm": RPM * peak.speed,
+                "shear_stress_MPa": None if peak.shear_stress is None else MPA * peak.shear_stress,
+            }
+            for peak in found.passing
         ],
         "contact": [
             {"mesh": one.mesh, "open_share": one.open_share, "other_flank_Nm": one.other_flank}

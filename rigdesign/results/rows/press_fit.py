@@ -10,6 +10,7 @@ def press_fit_row(found: PressFitCapacity) -> dict[str, Any]:
     """Interference, pressure, torques."""
     return {
         "gear": found.gear,
+        "where": found.where,
         "stage": found.stage,
         "interference_um": UM * found.interference,
         "interference_hot_um": UM * found.interference_hot,

@@ -14,7 +14,7 @@ from rigdesign.results.units import MM, MPA, RPM
 
 
 def section_torque_rows(record: SectionTorqueRecord) -> dict[str, Any]:
-    """Held stages, all places over speed, and the largest of the time run."""
+    """Held stages, all places over speed, and the stages of the time run."""
     return {
         "held": [_held(held) for held in record.held],
         "over_speed": {
@@ -40,11 +40,13 @@ def _held(held: HeldTorque) -> dict[str, Any]:
 
 def _run(torque: RunTorque) -> dict[str, Any]:
     return _place(torque.place) | {
-        "mean_Nm": torque.mean,
+        "stage": torque.stage,
+        "peak_Nm": torque.peak,
+        "shear_stress_MPa": None if torque.shear_stress is None else torque.shear_stress * MPA,
         "half_peak_to_peak_Nm": torque.half_peak_to_peak,
+        "mean_Nm": torque.mean,
         "time_s": torque.time,
         "speed_rpm": torque.speed * RPM,
-        "stage": torque.stage,
     }
 
 

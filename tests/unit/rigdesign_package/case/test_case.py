@@ -146,7 +146,9 @@ def test_extends_follows_a_chain_and_refuses_a_circle(tmp_path: Path) -> None:
         load_case(tmp_path / "x.toml")
 
 
-@pytest.mark.parametrize("name", ["full_addendum", "run_up_simulation", "given_losses", "chamber_radiation"])
+@pytest.mark.parametrize(
+    "name", ["full_addendum", "run_up_simulation", "given_losses", "chamber_radiation", "events"]
+)
 def test_shipped_variants_load(name: str) -> None:
     case = load_case(PROTOTYPE / f"{name}.toml")
     assert case.name != "uhcf_prototype"

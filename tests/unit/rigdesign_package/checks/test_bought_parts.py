@@ -8,20 +8,29 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.drivetrain.twist_rows import TorqueSection
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.component_limits import checks
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import DynamicLoads, MeshLoads, StageBracing
 from rigdesign.rig.model import build_rig
 from tests.builders.idler_case import idler_case
+from tests.builders.made_run import made_ramp
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"
 RPM = math.pi / 30.0
+SECTIONS = (
+    TorqueSection(kind="coupling", part="pinion_side"),
+    TorqueSection(kind="coupling", part="wheel_side"),
+    TorqueSection(kind="shaft", part="test_wheel", start=0.0, end=0.1),
+)
+"""Through which torque passes in a made-up time run: 1 N m, but 250 N m back in run_down and 201 N m in test."""
 PEAKS = {"test": 212.0, "reference": 218.7}
 """Highest dynamic torque of each mesh at its pinion [N m]."""
 
@@ -37,11 +46,17 @@ def solved_rig_of(case: Case) -> SolvedRig:
         initial=SimpleNamespace(shift=-1.2e-3),
         warm=SimpleNamespace(actuator_force=600.0, friction_force=300.0, shift=1.1e-3),
     )
+    made = made_ramp(rig, SECTIONS, {(0, "run_down"): (-250.0, 80.0), (2, "test"): (170.0, 201.0)})
     ramp = SimpleNamespace(
-        drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
-    )
+        drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0]), windows=made.windows,
+        sections=made.sections,
+    )  # fmt: skip
+    point: Any = SimpleNamespace(
+        point=OperatingPoint(stage="test", speed=12000.0 * RPM, torque=180.0), setting=None,
+        last=SimpleNamespace(system=None, response=None),
+    )  # fmt: skip
     return SolvedRig(
-        rig=rig, points=(), run=SimpleNamespace(ramp=ramp),  # type: ignore[arg-type]
+        rig=rig, points=(point,), run=SimpleNamespace(ramp=ramp),  # type: ignore[arg-type]
         loads=DynamicLoads(meshes=meshes, bracing=(StageBracing(stage="test", drift=drift),)),
     )  # fmt: skip
 
@@ -73,9 +88,9 @@ def held(part: str, quantity: str, base: Case | None = None) -> Check:
         ("gearboxes.test", "torque_peak", 212.0),
         ("gearboxes.test.meshes.main", "torque_peak", 212.0),
         ("gearboxes.test.gears.wheel", "torque_peak", 212.0 * 102 / 99),
-        ("drivetrain.couplings.pinion_side", "torque_peak", 218.7),
-        ("drivetrain.couplings.wheel_side", "torque_peak", 218.7 * 102 / 99),
-        ("drivetrain.shafts.test_wheel", "torque_peak", 218.7 * 102 / 99),
+        ("drivetrain.couplings.pinion_side", "torque_peak", 250.0),
+        ("drivetrain.couplings.wheel_side", "torque_peak", 1.0),
+        ("drivetrain.shafts.test_wheel", "torque_peak", 201.0),
         ("gearboxes.test", "oil_flow", 5.0 + 4 * 2.0),
         ("gearboxes.test.oil", "oil_flow", 5.0),
         ("gearboxes.reference.bearing_oil", "oil_flow", 8.0),

@@ -6,33 +6,41 @@ from typing import Any
 
 import pytest
 
+from dynamics.drivetrain.twist_rows import TorqueSection
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.seats import checks
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.seat_torques import held_seat_torques, seat_torques
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.report.sections.vibration import least_safe
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventPeak, EventRecord
+from rigdesign.results.rows.press_fit import press_fit_row
 from rigdesign.rig.model import build_rig
 from tests.builders.checks import check as check_of
+from tests.builders.made_run import made_ramp, made_run
 from tests.builders.warm_prototype import base
 
 FIT = "gearboxes.test.gears.pinion.shaft_interference"
 
 
-def solved(*changes: tuple[str, object], peaks: dict[str, float] | None = None, **more: Any) -> SolvedRig:
-    """The settled prototype with changes that its loop does not feel, and peaks [N m] of its meshes by gearbox in the
-    stage run_up of a made-up time run."""
+def solved(*changes: tuple[str, object], seat: tuple[float, float] | None = None, **more: Any) -> SolvedRig:
+    """The settled prototype with changes that its loop does not feel.
+
+    seat : least and greatest torque [N m] of the seat of the test pinion in the stage run_up of a made-up time run
+    """
     rig, point = base()
     if changes:
         rig = build_rig(rig.case.with_values(dict(changes)), "quick").with_models(rig.models)
-    loads: Any = SimpleNamespace(meshes={label: run_up(peaks, label) for label in ("test", "reference")})
-    return SolvedRig(rig=rig, points=(point,), loads=loads, **more)
+    sections = (
+        TorqueSection(kind="spline", part="test.pinion"),
+        TorqueSection(kind="spline", part="test.wheel"),
+    )
+    ramp = made_ramp(rig, sections, {(0, "run_up"): seat} if seat else {})
+    return SolvedRig(rig=rig, points=(point,), run=made_run(rig, [point], ramp), loads=LOADS, **more)
 
 
-def run_up(peaks: dict[str, float] | None, label: str) -> Any:
-    loads = [SimpleNamespace(stage="run_up", peak=peaks[label])] if peaks else []
-    return SimpleNamespace(stage_loads=loads)
+LOADS: Any = SimpleNamespace()
+"""Something there: no check of seats reads the loads of the meshes."""
 
 
 def slip(found: SolvedRig) -> Check:
@@ -44,11 +52,18 @@ def peak_of(point: PointResult, mesh: int) -> float:
     return float(point.last.response.maximum[mesh])
 
 
+def held_seat(found: SolvedRig) -> float:
+    """Torque of the seat of the test pinion at the held stage [N m]."""
+    return next(
+        one.torque for one in found.seat_torques if (one.part, one.where) == ("test.pinion", "stage test")
+    )
+
+
 def test_the_seat_of_a_gear_carries_the_torque_of_its_mesh() -> None:
     """Drag of the gear takes less than a hundredth; inertia at 12,000 rpm, away from resonances, a twentieth at most.
     The wheel carries z2/z1 of the pinion."""
     rig, point = base()
-    held = {one.gear: one for one in held_seat_torques(rig, [point])}
+    held = {one.part: one for one in solved().seat_torques if one.where == "stage test"}
     assert set(held) == {"test.pinion", "test.wheel", "reference.pinion", "reference.wheel"}
     for mesh, box in enumerate(("test", "reference")):
         mean = abs(float(point.last.response.mean[mesh]))  # type: ignore[union-attr]
@@ -58,27 +73,40 @@ def test_the_seat_of_a_gear_carries_the_torque_of_its_mesh() -> None:
     assert ratio == pytest.approx(second / first, rel=5e-3)
 
 
-def test_time_run_and_events_scale_the_seat_by_their_meshes() -> None:
+def test_time_run_and_events_give_the_torque_of_the_seat_itself() -> None:
+    """Not what a mesh peaks at: each seat its own, with speed and temperatures of the stage or the event."""
     rig, point = base()
-    peaks = {"test": 2.0 * peak_of(point, 0), "reference": 3.0 * peak_of(point, 1)}
     event = EventRecord(
         name="broken", kind="tooth_loss", speed=1000.0, torque=180.0, what="",
         peaks=(
-            EventPeak(place="test.main", quantity="mesh torque", before=180.0, peak=4.0 * peak_of(point, 0), time=0.0),
-            EventPeak(place="wheel_side", quantity="coupling torque", before=180.0, peak=1e6, time=0.0),
+            EventPeak(
+                place="test.main", part="test.main", quantity="mesh torque", before=180.0, peak=900.0, time=0.0
+            ),
+            EventPeak(
+                place="test.pinion", part="test.pinion", quantity="seat torque", before=182.0, peak=480.0, time=0.0
+            ),
         ),
     )  # fmt: skip
-    loads: Any = solved(peaks=peaks).loads
-    found = seat_torques(rig, [point], loads, [event])
-    held = {one.gear: one.torque for one in found if one.where == "stage test"}
-    run = {one.gear: one for one in found if one.where == "time run, stage run_up"}
-    assert run["test.wheel"].torque == pytest.approx(2.0 * held["test.wheel"])
-    assert run["reference.pinion"].torque == pytest.approx(3.0 * held["reference.pinion"])
-    assert run["test.wheel"].speed == pytest.approx(rig.case.schedule.test_speed)
-    of_event = {one.gear: one for one in found if one.where == "event broken"}
-    assert set(of_event) == {"test.pinion", "test.wheel"}
-    assert of_event["test.pinion"].torque == pytest.approx(4.0 * held["test.pinion"])
-    assert of_event["test.pinion"].speed == 1000.0
+    found = solved(seat=(-130.0, 240.0), events=[event]).seat_torques
+    run = {(one.part, one.where): one for one in found if one.where.startswith("time run")}
+    pinion = run["test.pinion", "time run, stage run_up"]
+    assert (pinion.torque, pinion.event) == (240.0, None)
+    assert pinion.speed == pytest.approx(rig.case.schedule.test_speed) and pinion.point is point
+    assert run["test.wheel", "time run, stage run_up"].torque == 1.0
+    assert {where for _, where in run} == {f"time run, stage {s.name}" for s in rig.case.schedule.resolved()}
+    (of_event,) = (one for one in found if one.event == "broken")
+    assert (of_event.part, of_event.torque, of_event.speed) == ("test.pinion", 480.0, 1000.0)
+
+
+def test_the_table_of_the_report_is_what_the_check_holds() -> None:
+    """The least safety of all rows is the value of the check, its row where the check says."""
+    found = solved((FIT, "150 um"), seat=(50.0, 240.0))
+    rows = [press_fit_row(fit) for fit in found.press_fits]
+    check = slip(found)
+    worst = least_safe(rows, "gear")[0]
+    assert worst["safety"] == min(row["safety"] for row in rows) == pytest.approx(check.value)
+    assert worst["where"] == "time run, stage run_up" and f"test.pinion, {worst['where']}" in check.reason
+    assert worst["peak_torque_Nm"] == 240.0
 
 
 def test_without_a_press_fit_nothing_can_slip() -> None:
@@ -108,15 +136,17 @@ def test_a_press_fit_is_held_hot_at_speed_and_at_its_least_interference() -> Non
     still = material.elastic_modulus * (1.0 - share) * left / (2.0 * gear.bore_diameter)
     width = rig.case.gearboxes["test"].body_width("pinion")
     slips = 0.12 * still * 3.14159265 * gear.bore_diameter**2 * width / 2.0
-    (torque,) = (one.torque for one in narrow.seat_torques if one.gear == "test.pinion")
+    torque = held_seat(narrow)
     assert 0.3 * slips / torque < check.value < slips / torque
     assert f"{1e6 * left:.3g} um of 120 um" in check.reason
 
 
 def test_a_higher_torque_of_the_time_run_governs() -> None:
-    peaks = {"test": 2.0 * peak_of(base()[1], 0), "reference": 1.0}
-    quiet, loud = slip(solved((FIT, "150 um"))), slip(solved((FIT, "150 um"), peaks=peaks))
-    assert quiet.value is not None and loud.value == pytest.approx(0.5 * quiet.value, rel=1e-3)
+    quiet = solved((FIT, "150 um"))
+    twice = 2.0 * held_seat(quiet)
+    loud = slip(solved((FIT, "150 um"), seat=(-twice, 10.0)))
+    value = slip(quiet).value
+    assert value is not None and loud.value == pytest.approx(0.5 * value, rel=1e-3)
     assert "time run, stage run_up" in loud.reason
 
 
@@ -155,7 +185,7 @@ def test_a_spline_is_held_at_the_torque_of_its_seat() -> None:
         (f"{SPLINE}.allowable_pressure", "35 MPa"),
         (f"{SPLINE}.allowable_shear", "100 MPa"),
     )
-    (torque,) = (one.torque for one in rig.seat_torques if one.gear == "test.pinion")
+    torque = held_seat(rig)
     pressure = 2.0 * torque / (0.048 * 24 * 0.025 * 0.0018)
     shear = max(4.0 * torque / (0.048 * 24 * 0.025 * math.pi * 0.001), 16.0 * torque / (math.pi * 0.045**3))
     checked = found(rig)
@@ -176,7 +206,7 @@ def test_a_hub_bursts_by_teeth_rotation_and_a_press_fit() -> None:
     rig = solved(*hub)
     gear = rig.case.gearboxes["test"].gears["pinion"]
     material = rig.rig.materials[gear.material]
-    (torque,) = (one.torque for one in rig.seat_torques if one.gear == "test.pinion")
+    torque = held_seat(rig)
     radial = torque * math.tan(math.radians(30.0)) / (math.pi * 0.048 * 0.0142 * 0.025)
     bending = 4.0 * torque / (0.048**2 * 0.025 * 1.5)
     nu, omega = material.poisson_ratio, rig.case.schedule.test_speed

@@ -1,27 +1,25 @@
-"""Alternating torques of the time run as records: the element that counts in a section, its stage and speed."""
+"""Torques of the time run as records: the element that counts in a section, in every stage."""
 
 from functools import cache
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 
+from dynamics.drivetrain.shaft import Section
 from dynamics.drivetrain.twist_rows import TorqueSection
-from dynamics.response.state_reader import SectionPeaks
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.run_torques import run_torques
 from rigdesign.results.rows.section_torques import section_torque_rows
 from rigdesign.results.section_torques import SectionTorqueRecord
 from rigdesign.rig.model import Rig, build_rig
+from tests.builders.made_run import made_ramp
 from tests.builders.paths import CASES
 
-SECTIONS = (
-    TorqueSection(kind="shaft", part="test_pinion", start=0.0, end=0.1),
-    TorqueSection(kind="shaft", part="test_pinion", start=0.0, end=0.1),
-    TorqueSection(kind="coupling", part="pinion_side"),
+SHAFT = TorqueSection(
+    kind="shaft", part="test_pinion", start=0.0, end=0.1, section=Section(length=0.1, outer_diameter=0.04)
 )
+SECTIONS = (SHAFT, SHAFT, TorqueSection(kind="coupling", part="pinion_side"))
 
 
 @cache
@@ -29,29 +27,44 @@ def rig() -> Rig:
     return build_rig(load_case(CASES / "uhcf_prototype"), "quick")
 
 
-def run(sections: SectionPeaks | None) -> Any:
+def test_of_a_section_the_element_with_the_largest_torque_counts_in_every_stage() -> None:
+    """Amount of the torque, half of its peak-to-peak and nominal shear 16 T/(pi d^3) by hand."""
+    torques = {
+        (0, "run_up"): (-103.0, -79.0), (1, "run_up"): (-131.0, -51.0), (2, "run_up"): (83.0, 101.0),
+        (0, "test"): (170.0, 190.0),
+    }  # fmt: skip
+    found = {
+        (one.place.name, one.stage): one for one in run_torques(rig(), made_ramp(rig(), SECTIONS, torques))
+    }
+    stages = [stage.name for stage in rig().case.schedule.resolved()]
+    assert list(found) == [
+        (name, s) for name in ("test_pinion 0 to 100 mm", "coupling pinion_side") for s in stages
+    ]
+    up, test = (found["test_pinion 0 to 100 mm", stage] for stage in ("run_up", "test"))
+    assert (up.peak, up.half_peak_to_peak, up.mean) == (131.0, 40.0, 91.0)
+    assert (test.peak, test.half_peak_to_peak, test.mean) == (190.0, 10.0, 180.0)
+    assert up.shear_stress == pytest.approx(16.0 * 131.0 / (np.pi * 0.04**3))
     schedule = schedule_of(rig())
-    time = np.linspace(0.0, schedule.duration, 1000)
-    return SimpleNamespace(sections=sections, time=time, speed=schedule.at(time).speed)
+    began = float(schedule.starts[stages.index("run_up")])
+    assert up.time == pytest.approx(began + 0.02, abs=1e-9)
+    assert up.speed == pytest.approx(float(schedule.at(np.array([up.time])).speed[0]))
+    coupling = found["coupling pinion_side", "run_up"]
+    assert (coupling.peak, coupling.half_peak_to_peak, coupling.shear_stress) == (101.0, 9.0, None)
+    quiet = found["coupling pinion_side", "test"]
+    assert (quiet.peak, quiet.half_peak_to_peak) == (1.0, 0.0)
 
 
-def test_of_a_section_the_element_with_the_largest_torque_counts() -> None:
-    schedule = schedule_of(rig())
-    up = next(i for i, stage in enumerate(schedule.stages) if stage.name == "run_up")
-    middle = 0.5 * float(schedule.starts[up] + schedule.starts[up + 1])
-    peaks = SectionPeaks(
-        half_peak_to_peak=np.array([12.0, 40.0, 9.0]),
-        mean=np.array([-90.0, -91.0, 92.0]),
-        time=np.array([0.0, middle, middle]),
-    )
-    section, coupling = run_torques(rig(), run(peaks), SECTIONS)
-    assert (section.half_peak_to_peak, section.mean, section.stage) == (40.0, 91.0, "run_up")
-    assert section.speed == pytest.approx(float(schedule.at(np.array([middle])).speed[0]), rel=1e-3)
-    assert (coupling.place.name, coupling.half_peak_to_peak) == ("coupling pinion_side", 9.0)
-    record = SectionTorqueRecord(held=(), torque="", speeds=(), curves=(), run=(section, coupling))
-    row = section_torque_rows(record)["time_run"][0]
-    assert (row["place"], row["half_peak_to_peak_Nm"]) == ("test_pinion 0 to 100 mm", 40.0)
+def test_every_stage_is_a_row() -> None:
+    torques = {(1, "run_up"): (-131.0, -51.0)}
+    run = run_torques(rig(), made_ramp(rig(), SECTIONS, torques))
+    rows = section_torque_rows(SectionTorqueRecord(held=(), torque="", speeds=(), curves=(), run=run))[
+        "time_run"
+    ]
+    row = next(row for row in rows if (row["place"], row["stage"]) == ("test_pinion 0 to 100 mm", "run_up"))
+    assert (row["peak_Nm"], row["half_peak_to_peak_Nm"], row["mean_Nm"]) == (131.0, 40.0, 91.0)
+    assert row["shear_stress_MPa"] == pytest.approx(16e-6 * 131.0 / (np.pi * 0.04**3))
+    assert row["speed_rpm"] > 750.0
 
 
 def test_a_run_that_did_not_look_has_none() -> None:
-    assert run_torques(rig(), run(None), SECTIONS) == ()
+    assert run_torques(rig(), made_ramp(rig(), None)) == ()

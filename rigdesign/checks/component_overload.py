@@ -1,0 +1,84 @@
+"""Overload of bought couplings, torque flanges and shafts in the events of a case."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import display
+from rigdesign.case.limits import BoughtPart
+from rigdesign.case.model import Case
+from rigdesign.checks.component_limits import GROUP, is_at
+from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
+from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.records.solved_rig import NO_LOADS, SolvedRig, worst
+from rigdesign.results.check import Check
+from rigdesign.results.units import NUMBER
+
+KEY = "bought_part_event"
+PASSED = ("drivetrain.couplings.", "drivetrain.shafts.")
+"""Parts that the torque of the events passes through."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverloadFamily(RuleFamily):
+    """Limits of bought couplings and shafts on their torque in the events."""
+
+    def rules(self, case: Case) -> Iterator[Rule]:
+        """The rule of every bought part that the torque of the events passes through."""
+        return (_rule(name, part) for name, part in _parts(case))
+
+    def limits_of(self, rule: Rule) -> tuple[str, ...]:
+        """The overload of the part, or the limit that stands for it."""
+        at = f"limits.bought_parts.{rule.id.partition('.')[2]}"
+        return f"{at}.overload", f"{at}.limit"
+
+
+FAMILY = OverloadFamily(
+    key=KEY,
+    title="highest dynamic torque in the events",
+    procedure=(
+        "March in time through every event: largest torque of a coupling or of the sections of a shaft; in a stop also "
+        "that of the periodic responses which it passes on its way down. Held against overload of the part, or its "
+        "limit where none is stated."
+    ),
+    unit=NUMBER,
+    group=GROUP,
+    source="limits.bought_parts",
+    moved_by=frozenset({"events", "housing"}),
+    one_limit_suffices=True,
+)
+
+
+def checks(solved: SolvedRig) -> Iterator[Check]:
+    """One for each bought part that the torque of the events passes through."""
+    return (_check(solved, name, part) for name, part in _parts(solved.case))
+
+
+def _parts(case: Case) -> Iterator[tuple[str, BoughtPart]]:
+    if case.events:
+        for name, part in case.limits.bought_parts.items():
+            if part.quantity == "torque_peak" and part.given is None and part.part.startswith(PASSED):
+                yield name, part
+
+
+def _rule(name: str, part: BoughtPart) -> Rule:
+    return Rule(
+        id=f"{KEY}.{name}", title=f"{part.title} in the events ({part.part})", unit=KINDS[part.kind].display_unit,
+        source=part.source, group=GROUP, limit=display(part.overload_si, part.kind),
+    )  # fmt: skip
+
+
+def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
+    rule = _rule(name, part)
+    if solved.loads is None:
+        return not_applicable(rule, NO_LOADS)
+    found = [
+        torque for torque in solved.part_torques if torque.event is not None and is_at(torque, part.part)
+    ]
+    if not found:
+        return not_applicable(rule, "no event tells the torque of this part")
+    value, where = worst((torque.torque, f"{torque.place}, {torque.where}") for torque in found)
+    return hold(rule, display(value, part.kind), where)
+
+
+REGISTRY.register(Topic(order=61, families=(FAMILY,), checks=checks))

@@ -1,0 +1,147 @@
+"""Dynamic torque in shafts, joints and meshes over speed: the forces of the meshes drive the linear loop between them.
+
+The loop has the matrices of the nearest of a few speeds (`loop_states`), around a dwell speed those at it; the forces
+are those of every speed. Torsional resonances of the shafts are far narrower than what they do to the meshes, by which
+the speeds of a curve were chosen: around their peaks the response is solved at more speeds.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.section_torque import SectionTorques, section_torques
+from dynamics.response.speed_sweep import CurvePoint, ResponseCurve
+from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.mesh_models import laws_of
+from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.coupling.twist_rows import twist_rows_of
+from rigdesign.records.held_torques import section_swings
+from rigdesign.records.loop_states import LoopState, dwell_speeds, nearest
+from rigdesign.results.section_torques import TorqueOverSpeed, TorquePlace, TorqueSwing
+from rigdesign.rig.model import Rig
+
+ROUNDS = 5
+"""Halvings of the speed step around a peak of a section: of 57 rpm to 2."""
+LEAST_SHARE = 0.1
+"""Half peak-to-peak torque of a peak that is looked at more closely, per mean torque of the first mesh."""
+AROUND = 0.2
+"""Speeds that count as around a dwell speed, as a share of it: twice the usual margin."""
+FLAT = 0.03
+"""Share of a peak by which it stands above the lower of the speeds beside it, below which it is found."""
+
+Swings = Mapping[TorquePlace, TorqueSwing]
+Solve = Callable[[Sequence[float]], ResponseCurve]
+"""Periodic responses at speeds of the first pinion [rad/s], rising."""
+
+
+@dataclass(frozen=True)
+class LoopOverSpeed:
+    """Finds the torque of every section, joint and mesh at points of curves, with the gears of ``warm``."""
+
+    rig: Rig
+    warm: IterationResult
+    states: Sequence[LoopState]
+    _loops: dict[int, SectionTorques] = field(default_factory=dict, repr=False)
+
+    def swings(self, point: CurvePoint) -> Swings:
+        """Of every place."""
+        stated = point.speed / self.rig.pinion_speed(1.0)
+        around = next((dwell for dwell in dwell_speeds(self.rig) if is_around(stated, dwell)), stated)
+        system = nearest(self.states, around).system
+        rows = twist_rows_of(self.rig, self.states[0].system) if not self._loops else self._any.rows
+        if id(system) not in self._loops:
+            self._loops[id(system)] = section_torques(system, self._laws(), rows)
+        torque = self._loops[id(system)].over_period(point, self.warm.drags)
+        found = {place: swing for place, _, swing in section_swings(rows, torque)}
+        for mesh, name in enumerate(self.rig.mesh_names):
+            found[TorquePlace(kind="mesh", part=self.rig.mesh_labels[name])] = mesh_swing(point, mesh)
+        return found
+
+    @property
+    def shear_per_torque(self) -> Mapping[str, float]:
+        """Nominal torsional stress at the surface per torque by the name of a section [Pa/(N m)]."""
+        return {one.name: one.shear_per_torque for one in self._any.rows.sections if one.kind == "shaft"}
+
+    @property
+    def _any(self) -> SectionTorques:
+        return next(iter(self._loops.values()))
+
+    def _laws(self) -> Sequence[MeshLaw]:
+        return periodic_laws(self.rig, laws_of(self.warm.models))
+
+
+def torques_over_speed(
+    loop: LoopOverSpeed, points: Sequence[CurvePoint], solve: Solve | None
+) -> tuple[tuple[CurvePoint, ...], tuple[TorqueOverSpeed, ...]]:
+    """Points by rising speed, those of narrow peaks among them, and the torque of every place at each.
+
+    solve : finds the response at more speeds; None where the points are all there is
+    """
+    if not points:
+        return (), ()
+    found = {point.speed: (point, loop.swings(point)) for point in points}
+    for _ in range(ROUNDS if solve is not None else 0):
+        speeds = _around_peaks(found)
+        if not speeds or solve is None:
+            break
+        found |= {point.speed: (point, loop.swings(point)) for point in solve(speeds).points}
+    kept = sorted({point.speed for point in points} | set(_peaks(found)))
+    listed = [found[speed] for speed in kept]
+    stress = loop.shear_per_torque
+    return tuple(point for point, _ in listed), tuple(
+        TorqueOverSpeed(
+            place=place,
+            swings=tuple(swings[place] for _, swings in listed),
+            shear_per_torque=stress.get(place.name, 0.0),
+        )
+        for place in listed[0][1]
+    )
+
+
+Found = Mapping[float, tuple[CurvePoint, Swings]]
+
+
+def _peaks(found: Found) -> Iterator[float]:
+    """Speeds at which the alternating torque of a place has a peak that counts."""
+    speeds, inner = _table(found)
+    return (speeds[i] for i in np.flatnonzero(inner.any(axis=1)))
+
+
+def _around_peaks(found: Found) -> list[float]:
+    """Speeds half way from every peak that is not flat to its neighbours."""
+    speeds, peaks = _table(found, FLAT)
+    new: set[float] = set()
+    for i in np.flatnonzero(peaks.any(axis=1)):
+        new |= {0.5 * (speeds[i - 1] + speeds[i]), 0.5 * (speeds[i] + speeds[i + 1])}
+    return sorted(new)
+
+
+def _table(found: Found, above: float = 0.0) -> tuple[list[float], NDArray[np.bool_]]:
+    """Rising speeds (n,), and whether each place peaks there (n, n_places); ends are no peaks.
+
+    above : share of a peak by which it stands above one of the speeds beside it at least
+    """
+    speeds = sorted(found)
+    swing = np.array([[one.half_peak_to_peak for one in found[speed][1].values()] for speed in speeds])
+    least = LEAST_SHARE * np.array([abs(float(found[speed][0].mean[0])) for speed in speeds])
+    peaks = np.zeros(swing.shape, bool)
+    middle = swing[1:-1]
+    peaks[1:-1] = (middle >= swing[:-2]) & (middle > swing[2:]) & (middle > least[1:-1, None])
+    peaks[1:-1] &= middle - np.minimum(swing[:-2], swing[2:]) >= above * middle
+    return speeds, peaks
+
+
+def is_around(speed: float, dwell: float) -> bool:
+    """Whether a speed counts as one of those around a dwell speed."""
+    return abs(speed - dwell) <= AROUND * dwell
+
+
+def mesh_swing(point: CurvePoint, mesh: int) -> TorqueSwing:
+    """Torque of a mesh at its pinion."""
+    high, low = float(point.maximum[mesh]), float(point.minimum[mesh])
+    return TorqueSwing(
+        mean=abs(float(point.mean[mesh])), half_peak_to_peak=0.5 * (high - low), peak=max(abs(high), abs(low))
+    )

@@ -1,0 +1,44 @@
+"""A time run that was not marched: what its windows read is known."""
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from dynamics.drivetrain.twist_rows import TorqueSection
+from dynamics.response.envelopes import EnvelopeWindows
+from dynamics.response.state_reader import SectionEnvelopes
+from rigdesign.coupling.time_run import schedule_of, stage_names
+from rigdesign.records.curves import Curves
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.rig.model import Rig
+
+Torques = Mapping[tuple[int, str], tuple[float, float]]
+"""(number of a spring, stage) -> least and greatest torque [N m] in the second of its windows."""
+
+
+def made_ramp(rig: Rig, sections: tuple[TorqueSection, ...] | None, torques: Torques | None = None) -> Any:
+    """Windows of 10 ms over the schedule of the case: every spring carries 1 N m but where ``torques`` says more."""
+    schedule = schedule_of(rig)
+    count = round(schedule.duration / 0.01)
+    time = 0.01 * np.arange(1, count + 1)
+    none = np.zeros((0, count))
+    windows = EnvelopeWindows(
+        duration=0.01, time=time, speed=schedule.at(time).speed, least=none, mean=none, greatest=none,
+        out_of_contact=none, longest_gap=none,
+    )  # fmt: skip
+    if sections is None:
+        return SimpleNamespace(windows=windows, sections=None)
+    least, greatest = np.ones((2, len(sections), count))
+    stages = np.array(stage_names(schedule, time - 0.005))
+    for (spring, stage), (low, high) in (torques or {}).items():
+        at = np.flatnonzero(stages == stage)[1]
+        least[spring, at], greatest[spring, at] = low, high
+    read = SectionEnvelopes(sections=sections, least=least, mean=0.5 * (least + greatest), greatest=greatest)
+    return SimpleNamespace(windows=windows, sections=read)
+
+
+def made_run(rig: Rig, points: Any, ramp: Any, curves: Curves | None = None) -> DynamicRun:
+    """Of held points, a ramp and, where they are asked for, curves."""
+    return DynamicRun(points=tuple(points), curves=curves, ramp=ramp)  # type: ignore[arg-type]
