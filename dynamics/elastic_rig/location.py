@@ -174,11 +174,14 @@ def _check_lateral(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[Elastic
         return
     share = (vectors[:, 0] ** 2).reshape(len(shafts), 4)
     shaft = shafts[int(np.argmax(share.sum(axis=1)))]
-    count = sum(bearing.shaft == shaft for bearing in rig.drivetrain.bearings)
+    places = [bearing.position for bearing in rig.drivetrain.bearings if bearing.shaft == shaft]
+    count = f"{len(places)} bearing{'' if len(places) == 1 else 's'}"
+    if len(places) > 1:
+        count += f" {max(places) - min(places):.6g} m apart, must be above 0 m"
     raise DrivetrainError(
-        f"shaft {shaft!r} with {count} bearing{'' if count == 1 else 's'}: a lateral rigid motion is not held; it "
-        "needs two bearings apart from each other, one that carries moments, or one and a coupling with lateral "
-        "stiffness to a held shaft; add a bearing or the lateral stiffness of the coupling"
+        f"shaft {shaft!r} with {count}: a lateral rigid motion is not held; it needs two bearings at different "
+        "positions, one that carries moments, or one and a coupling with lateral stiffness to a held shaft; add or "
+        "move a bearing, or add the lateral stiffness of the coupling"
     )
 
 

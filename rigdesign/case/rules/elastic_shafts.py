@@ -204,14 +204,22 @@ def _lateral(case: "Case", couplings: Sequence["CouplingInput"]) -> Iterator[Fau
         free = _free_shares(rows, len(group))
         if free.max() > FREE:
             shaft = group[int(np.argmax(free))]
-            count = sum(bearing.shaft == shaft for bearing in own)
+            places = [bearing.position or 0.0 for bearing in own if bearing.shaft == shaft]
             others = [name for name, share in zip(group, free, strict=True) if share > FREE and name != shaft]
             yield Fault(
                 f"drivetrain.shafts.{shaft}", "",
-                f"has {count} bearing{'' if count == 1 else 's'} and can move sideways{_together(others)}: it needs "
-                "two bearings apart from each other, or one and a coupling with lateral stiffness to a held shaft",
-                "add a bearing, or radial_stiffness and angular_stiffness at a coupling to a held shaft",
+                f"has {_counted(places)} and can move sideways{_together(others)}: it needs two at different "
+                "positions, or one and a coupling with lateral stiffness to a held shaft",
+                "add or move a bearing, or add radial_stiffness and angular_stiffness at a coupling to a held shaft",
             )  # fmt: skip
+
+
+def _counted(places: Sequence[float]) -> str:
+    """How many bearings, and how far the outer ones stand apart."""
+    if len(places) < 2:
+        return "1 bearing" if places else "0 bearings"
+    apart = show(max(places) - min(places), "length")
+    return f"{len(places)} bearings {apart} apart, must be above 0 mm,"
 
 
 def _bearing_row(

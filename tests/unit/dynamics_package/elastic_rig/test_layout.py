@@ -118,7 +118,11 @@ def with_bearings(*names: str) -> ElasticRig:
         ),
         (
             lambda: assemble_rig(with_bearings("test_pinion front")),
-            ["shaft 'test_pinion' with 1 bearing:", "not held", "add a bearing"],
+            ["shaft 'test_pinion' with 1 bearing:", "not held", "add or move a bearing"],
+        ),
+        (
+            lambda: assemble_rig(single_shaft(BAR, (0.1, 0.1), 0.1)),
+            ["shaft 'rotor' with 2 bearings 0 m apart, must be above 0 m:", "not held", "add or move a bearing"],
         ),
         (
             lambda: assemble_rig(with_bearings()),

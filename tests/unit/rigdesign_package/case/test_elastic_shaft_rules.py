@@ -131,6 +131,14 @@ def test_a_shaft_that_is_free_is_a_fault_and_stops_the_solver(tmp_path: Path, na
     assert any(f"'{shaft}'" in solver_says(tmp_path, text) for shaft in shafts)
 
 
+def test_two_bearings_at_one_place_are_one(tmp_path: Path) -> None:
+    """The message says how far they stand apart; that no two may stand at one place is a fault of its own."""
+    ends = ("front", "rear")
+    text = "".join(f'gearboxes.reference.bearings.wheel_{end}.position = "48.13 mm"\n' for end in ends)
+    (fault,) = (one for one in faults(tmp_path, text) if one.path == "drivetrain.shafts.reference_wheel")
+    assert "has 2 bearings 0 mm apart, must be above 0 mm, and can move sideways" in fault.problem
+
+
 def test_both_are_named_where_two_shafts_float_together(tmp_path: Path) -> None:
     (fault,) = faults(tmp_path, UNLOCATED)
     assert "locates it and reference_wheel axially: 0 of" in fault.problem
