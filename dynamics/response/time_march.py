@@ -209,8 +209,9 @@ class TimeMarch:
             part = slice(first, min(first + SEGMENT, n_samples))
             count = part.stop - part.start
             if self._following is not None:
-                now, ends = self.state(), sample_time * np.arange(1, count + 1)
-                given[part, 4:] = self._following.ahead(now.angles, now.speeds, ends)
+                now = self.state()
+                times = sample_time * np.arange(1, count + 1)
+                given[part, 4:] = self._following.ahead(now.angles, now.speeds, times)
             commands = kernels.Commands(
                 given=given[part], offsets=held[part], control=control, drags=drag_laws
             )
