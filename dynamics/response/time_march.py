@@ -210,7 +210,7 @@ class TimeMarch:
             count = part.stop - part.start
             if self._following is not None:
                 now = self.state()
-                times = sample_time * np.arange(1, count + 1)
+                times = sample_time * np.arange(1.0, count + 1.0)
                 given[part, 4:] = self._following.ahead(now.angles, now.speeds, times)
             commands = kernels.Commands(
                 given=given[part], offsets=held[part], control=control, drags=drag_laws
