@@ -150,8 +150,8 @@ class ProbeStation:
 class ElasticRig:
     """A drivetrain in six degrees of freedom.
 
-    axially_locating : bearings and meshes whose force, outside the matrices, holds a shaft along x (a rolling bearing
-    that comes with its axial stiffness; a helical mesh). moment_carrying : bearings that resist tilting by themselves.
+    axially_locating : bearings whose force, outside the matrices, holds a shaft along x (a rolling bearing that comes
+    with its axial stiffness). moment_carrying : bearings that resist tilting by themselves.
     reference_shaft : whose speed is the reference of the gyroscopics; that of the motor unless given. rotating : what
     shakes the shafts once a turn; misalignments : of couplings, as they stand; cross_joints : couplings whose torque
     bends their shafts.
@@ -284,7 +284,7 @@ class ElasticRig:
             ("housing support", seats, bearings),
             ("axial location", [location.bearing for location in self.axial_locations], bearings),
             ("axial mesh spring", [spring.mesh for spring in self.axial_mesh_springs], meshes),
-            ("axially_locating", list(self.axially_locating), bearings | meshes),
+            ("axially_locating", list(self.axially_locating), bearings),
             ("moment_carrying", list(self.moment_carrying), bearings),
         ):
             for name in names:

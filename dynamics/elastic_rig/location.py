@@ -1,18 +1,21 @@
 """Is every shaft held, and which rigid motions are left: turning of the shaft lines, axial float.
 
 Lateral motion must be held by bearings, and by couplings that join a shaft to a held one; axial motion by an axial
-location or by a part that the caller names. What is left free is known from the connections alone, so the rigid
-shapes are exact: one for every freedom that takes part, zero elsewhere.
+location, a bearing that the caller names or helical meshes that can (`helical_hold`). What is left free is known from
+the connections alone, so the rigid shapes are exact: one for every freedom that takes part, zero elsewhere.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.parts import MeshConnection
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.freedoms import Freedoms
+from dynamics.elastic_rig.helical_hold import HelicalTie, not_held, turning_together
 from dynamics.elastic_rig.joints import ElasticJoint, port_rows
 from dynamics.elastic_rig.layout import SEAT_DIRECTIONS, ElasticRig
 
@@ -44,7 +47,7 @@ def rigid_motions(rig: ElasticRig, freedoms: Freedoms) -> tuple[RigidMotion, ...
         shafts = tuple(shaft for shaft in lines if lines[shaft] == line)
         member = np.isin(shaft_of, [_index(rig, shaft) for shaft in shafts])
         motions.append(RigidMotion("turn", shafts, (turning & member).astype(float)))
-    for bodies in _floating(rig, tie_meshes=False):
+    for bodies in _floating(rig):
         shape = np.zeros(freedoms.size)
         for body in bodies:
             if body in freedoms.nodes:
@@ -71,42 +74,75 @@ def unresisted(forces: Array, scale: float = 0.0) -> Array:
 
 def check_location(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[ElasticJoint]) -> None:
     """Raise DrivetrainError, naming shaft and remedy, if a shaft can float along x or move sideways without force."""
-    floating = _floating(rig, tie_meshes=True)
-    if floating:
+    for bodies in not_held(_turning(rig), _floating(rig), list(_ties(rig))):
+        helical = [mesh.name for mesh in rig.drivetrain.meshes if _thrust(rig, mesh)]
+        screws = (
+            f" (mesh {', '.join(map(repr, helical))}, single-helical, turns it as it shifts)"
+            if helical
+            else ""
+        )
         raise DrivetrainError(
-            f"shaft or gear {floating[0][0]!r} has no axial location: 0 of its bearings hold it along x, must be 1 for "
-            f"{', '.join(floating[0])}; give an axial location, name the bearing or mesh that locates it, or couple it "
+            f"shaft or gear {bodies[0]!r} has no axial location: 0 of its bearings hold it along x, must be 1 for "
+            f"{', '.join(bodies)}{screws}; give an axial location, name the bearing that locates it, or couple it "
             "axially to a located shaft"
         )
     _check_lateral(rig, freedoms, joints)
 
 
-def _floating(rig: ElasticRig, *, tie_meshes: bool) -> list[tuple[str, ...]]:
-    """Groups of shafts and gears that move along x together and are not held."""
+def _floating(rig: ElasticRig) -> list[tuple[str, ...]]:
+    """Groups of shafts and gears that move along x together and that no spring or bearing holds."""
     groups = _Groups([GROUND, *(shaft.name for shaft in rig.drivetrain.shafts)])
     for gear in rig.drivetrain.gears:
         if gear.seat is not None:
             groups.add(gear.name)
             if gear.seat.axial > 0.0:
                 groups.tie(gear.name, gear.shaft)
-    for a, b in _axial_ties(rig, tie_meshes=tie_meshes):
+    for a, b in _axial_ties(rig):
         groups.tie(a, b)
     return groups.without(GROUND)
 
 
-def _axial_ties(rig: ElasticRig, *, tie_meshes: bool) -> Iterator[tuple[str, str]]:
-    bodies = {g.name: g.name if g.seat is not None else g.shaft for g in rig.drivetrain.gears}
+def _axial_ties(rig: ElasticRig) -> Iterator[tuple[str, str]]:
+    bodies = _bodies(rig)
     shaft_of = {bearing.name: bearing.shaft for bearing in rig.drivetrain.bearings}
     for coupling in rig.drivetrain.couplings:
         if coupling.flexibility.axial > 0.0:
             yield coupling.shafts
     for bearing in (*(location.bearing for location in rig.axial_locations), *rig.axially_locating):
-        if bearing in shaft_of:
-            yield shaft_of[bearing], GROUND
+        yield shaft_of[bearing], GROUND
     springs = [spring.mesh for spring in rig.axial_mesh_springs]
     for mesh in rig.drivetrain.meshes:
-        if mesh.name in springs or (tie_meshes and mesh.name in rig.axially_locating):
+        if mesh.name in springs:
             yield bodies[mesh.pinion], bodies[mesh.wheel]
+
+
+def _bodies(rig: ElasticRig) -> dict[str, str]:
+    """Body that shifts with each gear: its shaft, or itself on a seat that gives."""
+    return {gear.name: gear.name if gear.seat is not None else gear.shaft for gear in rig.drivetrain.gears}
+
+
+def _turning(rig: ElasticRig) -> dict[str, int]:
+    """What turns as one while the torque of the loop is given: lines, open at the coupling that is twisted."""
+    drivetrain = rig.drivetrain
+    joints = [one.shafts for one in drivetrain.couplings if one.name != drivetrain.bracing_coupling]
+    seats = [(gear.name, gear.shaft) for gear in drivetrain.gears if gear.seat is not None]
+    return turning_together(
+        [*(shaft.name for shaft in drivetrain.shafts), *(a for a, _ in seats)], joints + seats
+    )
+
+
+def _ties(rig: ElasticRig) -> Iterator[HelicalTie]:
+    bodies = _bodies(rig)
+    for mesh in rig.drivetrain.meshes:
+        yield HelicalTie(bodies[mesh.pinion], bodies[mesh.wheel], mesh.base_radii, _thrust(rig, mesh))
+
+
+def _thrust(rig: ElasticRig, mesh: MeshConnection) -> float:
+    """Force along x for one along the transverse line of action; none of a double-helical mesh."""
+    if mesh.name in [spring.mesh for spring in rig.axial_mesh_springs]:
+        return 0.0
+    sense = rig.placement(rig.drivetrain.gear(mesh.pinion).shaft).sense
+    return sense * math.tan(mesh.base_helix_angle)
 
 
 def _separate(rig: ElasticRig, freedoms: Freedoms, shaft: str) -> NDArray[np.bool_]:
@@ -138,11 +174,14 @@ def _check_lateral(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[Elastic
         return
     share = (vectors[:, 0] ** 2).reshape(len(shafts), 4)
     shaft = shafts[int(np.argmax(share.sum(axis=1)))]
-    count = sum(bearing.shaft == shaft for bearing in rig.drivetrain.bearings)
+    places = [bearing.position for bearing in rig.drivetrain.bearings if bearing.shaft == shaft]
+    count = f"{len(places)} bearing{'' if len(places) == 1 else 's'}"
+    if len(places) > 1:
+        count += f" {max(places) - min(places):.6g} m apart, must be above 0 m"
     raise DrivetrainError(
-        f"shaft {shaft!r} with {count} bearing{'' if count == 1 else 's'}: a lateral rigid motion is not held; it "
-        "needs two bearings apart from each other, one that carries moments, or one and a coupling with lateral "
-        "stiffness to a held shaft; add a bearing or the lateral stiffness of the coupling"
+        f"shaft {shaft!r} with {count}: a lateral rigid motion is not held; it needs two bearings at different "
+        "positions, one that carries moments, or one and a coupling with lateral stiffness to a held shaft; add or "
+        "move a bearing, or add the lateral stiffness of the coupling"
     )
 
 

@@ -17,7 +17,7 @@ from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.response.march_inputs import DriveState
 
 Array = NDArray[np.float64]
-ChannelKind = Literal["shaft", "spline", "coupling", "motor", "bearing", "journal velocity"]
+ChannelKind = Literal["shaft", "spline", "coupling", "motor", "bearing", "journal velocity", "journal travel"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -31,6 +31,7 @@ from dynamics.response.march_tables import MarchTables
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import discretise, modal_state, scaled_state
 from dynamics.response.state_reader import StateReader
+from dynamics.response.turning_loads import FollowingLoads
 
 Array = NDArray[np.float64]
 
@@ -92,6 +93,7 @@ class TimeMarch:
         self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
         self._marched = 0
         self._reader: StateReader | None = None
+        self._following: FollowingLoads | None = None
         self._apart, self._apart_since = np.zeros(len(self.laws)), 0
         self._names = system.dofs
         self._record_all = settings.record_all
@@ -167,7 +169,7 @@ class TimeMarch:
         ----------
         given : (n_samples, 4 + n_periodic_loads) commands at the end of each sample: motor torque (feed-forward)
             [N m], twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m], then the value of
-            each entry of ``system.periodic_loads``
+            each entry of ``system.periodic_loads``, which counts only as long as none are followed (`follow`)
         offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
         speed_control, torque_control : of motor and bracing; without one its command is followed as it is
         drags : torque over speed of each drag; none brakes when left out
@@ -200,11 +202,15 @@ class TimeMarch:
         drag_laws = kernels.DragLaws(
             torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
         )
-        given = np.ascontiguousarray(given, float)
+        given = np.array(given, float, order="C")
         histories, all_samples, torques = [], [], []
         for first in range(0, n_samples, SEGMENT):
             part = slice(first, min(first + SEGMENT, n_samples))
             count = part.stop - part.start
+            if self._following is not None:
+                now = self.state()
+                times = sample_time * np.arange(1.0, count + 1.0)
+                given[part, 4:] = self._following.ahead(now.angles, now.speeds, times)
             commands = kernels.Commands(
                 given=given[part], offsets=held[part], control=control, drags=drag_laws
             )
@@ -355,6 +361,7 @@ class TimeMarch:
         march = TimeMarch(system, self.laws, state, self._settings, loads, model)
         march._marched, march.unconverged = self._marched, self.unconverged
         march.tables, march._tables = self.tables, self._tables
+        march._following = self._following
         march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried
         after.ports[:], after.slow[:], after.offset[:] = before.ports, before.slow, before.offset
@@ -398,6 +405,13 @@ class TimeMarch:
         reader : of the model and propagator of this march
         """
         self._reader = reader
+
+    def follow(self, loads: FollowingLoads | None) -> None:
+        """Let the periodic loads stand at the angles of their shaft lines from now on, whatever ``given`` says of them.
+
+        They are set anew at the start of every segment; None gives them back to ``given``.
+        """
+        self._following = loads
 
     def preset_integrals(self, torque: float, twist: float = 0.0) -> None:
         """Let the controllers start from a motor torque [N m] and a twist beside that given [rad]."""

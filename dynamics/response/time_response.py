@@ -34,6 +34,7 @@ from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import march_model
 from dynamics.response.state_reader import SectionEnvelopes, SectionStatistics, StateReader
 from dynamics.response.time_march import CREEP_SHARE, TimeMarch
+from dynamics.response.turning_loads import FollowingLoads, TurningLoads
 from dynamics.response.turning_start import turning_start
 
 Array = NDArray[np.float64]
@@ -136,7 +137,8 @@ def run_schedule(
     sampling: Sampling = DEFAULT_SAMPLING,
 ) -> TimeResponse:
     """March over a schedule, from a rigid rotation at its first speed, wound up by its first torque and bent by the
-    loads that alternate with a shaft (``turning_start``).
+    loads that alternate with a shaft (``turning_start``); these stand at the angle and grow with the speed that their
+    shaft line has, not with those of the command.
 
     Parameters
     ----------
@@ -203,6 +205,9 @@ def run_schedule(
         return own
 
     watched(march, abs(float(command.speed[0])))
+    n_periodic = len(system.periodic_loads)
+    if n_periodic:
+        march.follow(FollowingLoads(TurningLoads(system), wound.state.angles))
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
     control = motor.speed_control or default_speed_control(system, laws, float(limits[0]))
     bracing = None if command.torque is None else TorqueControl(stiffness=wound.loop_stiffness)
@@ -225,24 +230,16 @@ def run_schedule(
     torques: list[NDArray[np.float32]] = []
     radius = np.array([law.base_radius_1 for law in laws])[:, None]
     limit_at = np.empty(n_samples)
-    drive_angle = np.zeros(1)
     for first, count, limit in _chunks(command.time, limits, n_samples, sample_rate, per_window):
         limit_at[first : first + count] = limit
         control = replace(control, torque_limit=limit)
         at = command.time[0] + np.arange(first, first + count + 1) / sample_rate
         target = np.interp(at, command.time, command.speed) * drive_ratio
-        given = np.zeros((count, 4 + len(system.periodic_loads)))
+        given = np.zeros((count, 4 + n_periodic))
         given[:, 0] = inertia * np.diff(target) * sample_rate
         if command.twist is not None:
             given[:, 1] = np.interp(at[1:], command.time, command.twist)
         given[:, 2] = target[1:]
-        drive_angle = (
-            drive_angle[-1]
-            + np.concatenate(([0.0], np.cumsum(0.5 * (target[1:] + target[:-1])))) / sample_rate
-        )
-        for i, periodic in enumerate(system.periodic_loads):
-            ratio = float(ratios[periodic.dof]) / drive_ratio
-            given[:, 4 + i] = periodic.at(ratio * drive_angle[1:], ratio * target[1:])
         if command.torque is not None:
             asked = np.interp(at[1:], command.time, command.torque)
             given[:, 3] = asked

@@ -38,7 +38,7 @@ class TurningLoads:
         self._line_speeds = system.rigid[self.dofs] @ lines
 
     def speeds(self, speeds: Array) -> Array:
-        """(n,) speed of the line of each load at its freedom, from the speeds of all freedoms [rad/s]."""
+        """(n,) speed of the line of each load at its freedom, from those of all freedoms [rad/s]; angles likewise."""
         return np.asarray(self._line_speeds @ speeds)
 
     def values(self, angles: Array, speeds: Array) -> Array:
@@ -46,6 +46,34 @@ class TurningLoads:
         own = self._own
         waves = np.cos(self._order * angles[..., own] - self._phase) * speeds[..., own] ** self._power
         return np.asarray(waves @ self._amplitude)
+
+
+class FollowingLoads:
+    """Turning loads of a march stretch by stretch, at the angles and speeds that the lines of the rig really have.
+
+    A line goes on at the acceleration that it had over the last stretch. What its angle missed by then is made up in
+    equal parts over the next one, so that no load jumps.
+    """
+
+    def __init__(self, loads: TurningLoads, angles: Array) -> None:
+        """Begin at the angles (n_freedoms,) of all freedoms [rad] at which the loads stand at 0."""
+        self._loads = loads
+        self._zero = loads.speeds(angles)
+        self._angle = np.zeros_like(self._zero)
+        self._speed = np.zeros_like(self._zero)
+        self._elapsed = 0.0
+
+    def ahead(self, angles: Array, speeds: Array, times: Array) -> Array:
+        """(k, n) values of the loads at times (k,) after this instant [s], of which the last ends the stretch.
+
+        angles, speeds : of all freedoms at this instant [rad], [rad/s]
+        """
+        angle, speed = self._loads.speeds(angles) - self._zero, self._loads.speeds(speeds)
+        acceleration = (speed - self._speed) / self._elapsed if self._elapsed else np.zeros_like(speed)
+        missed, since = angle - self._angle, times[:, None]
+        way = angle + since * (speed + 0.5 * since * acceleration) - missed * (1.0 - since / times[-1])
+        self._angle, self._speed, self._elapsed = way[-1], speed, float(times[-1])
+        return self._loads.values(way, speed + since * acceleration)
 
 
 def acting(loads: Sequence[PeriodicLoad]) -> list[PeriodicLoad]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Tag
 
+from dynamics.bearing.journal_feed import Feed
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.assumption_record import AssumptionRecord
@@ -65,6 +66,9 @@ class JournalBearingInput(Part):
     """Load at the held stages; from the tooth forces when left out."""
     feed_share: Share = 1.0
     """Share of the oil fed that cools the film; 1 as ISO 7902 assumes, less where oil passes by."""
+    feed: Feed = "widest_gap"
+    """Where oil enters. widest_gap: at the widest gap, as ISO 7902-1 has it; two_axial_grooves: by two grooves of
+    20 degrees across the load, as in a split shell (J. W. Lund, K. K. Thomsen 1978)."""
     shell_conductance: HeatTransferCoefficient | None = None
     """Between shell and housing, on the area of the bore, in series with its film; perfect when left out."""
     torsional_damping: TorsionalDamping | None = None
@@ -135,6 +139,7 @@ class JournalBearingInput(Part):
             width=self.width,
             diametral_clearance=place.clearance,
             feed_share=self.feed_share,
+            feed=self.feed,
         )
 
     def running_clearance(self, seats: BearingSeats) -> float:

@@ -6,6 +6,7 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_seats import initial_seats
 from rigdesign.coupling.braced_loop import first_torques
 from rigdesign.coupling.expansion import uniform_expansion
+from rigdesign.coupling.misalignment import warm_misalignment
 from rigdesign.coupling.shaft_positions import axis_tilt, flank_approach, mesh_placements
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
@@ -46,6 +47,8 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
     )
     if rig.shaft_model == "torsional":
         return state
+    as_set = warm_misalignment(rig, {})
+    state = replace(state, coupling_offset=as_set.offset, coupling_angle=as_set.angle)
     placements = mesh_placements(rig, point, state, solve_bearings(rig, point, state))
     return replace(
         state,

@@ -1,12 +1,13 @@
-"""Standing force and moment of couplings whose axes were set up out of line, on both of their shafts.
+"""Standing force and moment of couplings whose axes are out of line, on both of their shafts.
 
-A coupling presses with its stiffness times what the shafts do not give way of the offset and angle: with bearings at
-the reference stiffness of the reduced rig, as the load decides on their own. Both act at the middle of the coupling.
-A cross joint under an angle bends both shafts by half of its torque times that angle on top
-(`dynamics.elastic_rig.cross_joints`).
+Out of line as they were set up, and by what warm housings move the ends of their shafts. A coupling presses with its
+stiffness times what the shafts do not give way of the offset and angle: with bearings at the reference stiffness of the
+reduced rig, as the load decides on their own. Both act at the middle of the coupling. A cross joint under an angle
+bends both shafts by half of its torque times that angle on top (`dynamics.elastic_rig.cross_joints`).
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,11 @@ from dynamics.drivetrain.graph import Drivetrain
 from dynamics.elastic_rig import cross_joints
 from dynamics.elastic_rig.cross_joints import bending_moment
 from dynamics.elastic_rig.rotating_loads import misalignment_load
+from dynamics.elastic_rig.rotating_parts import AxisMisalignment
+from rigdesign.coupling.alignment import coupling_places, end_motion
+from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig
+from thermal.expansion.expansion import Expansion
 
 Array = NDArray[np.float64]
 
@@ -23,17 +28,69 @@ ARM = 1.0
 """Distance of the two forces that stand for a moment [m]."""
 
 
-def coupling_forces(rig: Rig, shaft: str, mesh_torque: Mapping[str, float]) -> Iterator[tuple[float, Array]]:
+@dataclass(frozen=True, kw_only=True)
+class WarmMisalignment:
+    """Of all couplings that resist it: the fields ``coupling_offset`` and ``coupling_angle`` of the coupling state."""
+
+    offset: dict[str, float]
+    angle: dict[str, float]
+
+
+def warm_misalignment(rig: Rig, shapes: Mapping[str, Expansion]) -> WarmMisalignment:
+    """What thermal expansion adds to the misalignment of couplings that a housing moves, as the record of the alignment
+    has it: a shaft end that no expanded housing carries stays where it is. Nothing for shafts that only twist.
+
+    shapes : by gearbox; without one the rig stands as it was set up
+    """
+    power = rig.case.drivetrain
+    offset: dict[str, float] = {}
+    angle: dict[str, float] = {}
+    if rig.shaft_model == "torsional" or power is None:
+        return WarmMisalignment(offset=offset, angle=angle)
+    axes = {box: shape.axes for box, shape in shapes.items()}
+    for place in coupling_places(rig):
+        coupling = power.couplings[place.name]
+        moved = [end_motion(end, axes) for end in (place.first, place.second)]
+        along = [rig.axes[end.shaft].direction for end in (place.first, place.second)]
+        for i, way in enumerate(("lateral", "vertical")):
+            key = f"{place.name}.{way}"
+            if coupling.radial_stiffness:
+                offset[key] = moved[0][0][i] - moved[1][0][i]
+            if coupling.angular_stiffness:
+                angle[key] = along[0] * moved[0][1][i] - along[1] * moved[1][1][i]
+    return WarmMisalignment(offset=offset, angle=angle)
+
+
+def axis_misalignments(rig: Rig, coupling_state: CouplingState) -> tuple[AxisMisalignment, ...]:
+    """Of every coupling that is out of line, as set up and warm."""
+    as_set = {part.coupling: part for part in rig.elastic.rig.misalignments}
+    offset, angle = coupling_state.coupling_offset, coupling_state.coupling_angle
+    names = dict.fromkeys([*as_set, *(key.rpartition(".")[0] for key in (*offset, *angle))])
+    found = []
+    for name in names:
+        own = as_set.get(name, AxisMisalignment(coupling=name))
+        keys = f"{name}.lateral", f"{name}.vertical"
+        both = AxisMisalignment(
+            coupling=name,
+            offset=(own.offset[0] + offset.get(keys[0], 0.0), own.offset[1] + offset.get(keys[1], 0.0)),
+            slope=(own.slope[0] + angle.get(keys[0], 0.0), own.slope[1] + angle.get(keys[1], 0.0)),
+        )
+        if any((*both.offset, *both.slope)):
+            found.append(both)
+    return tuple(found)
+
+
+def coupling_forces(rig: Rig, shaft: str, coupling_state: CouplingState) -> Iterator[tuple[float, Array]]:
     """Forces (2,) in the plane (y, z) [N] on a shaft that bends, each with its place on it [m].
 
-    A moment is two opposite forces; places may lie beyond the ends of the shaft. mesh_torque : of the pinion of every
-    mesh [N m], for the cross joints.
+    A moment is two opposite forces; places may lie beyond the ends of the shaft. Cross joints bend by the torques of
+    the coupling state.
     """
     power = rig.case.drivetrain
     if rig.shaft_model == "torsional" or power is None:
         return
-    pressed = reactions(rig) if rig.elastic.rig.misalignments else {}
-    bent = _bent_by_cross_joints(rig, mesh_torque)
+    pressed = reactions(rig, coupling_state)
+    bent = _bent_by_cross_joints(rig, coupling_state.mesh_torque)
     for name in pressed.keys() | bent.keys():
         coupling = power.couplings[name]
         if shaft not in coupling.shafts:
@@ -91,22 +148,27 @@ def _side_of(drivetrain: Drivetrain, coupling: str) -> set[str]:
         side |= joined
 
 
-def standing_load(rig: Rig, mesh_torque: Mapping[str, float] | None = None) -> Array:
-    """(n,) load of axes out of line on the coordinates of the reduced rig.
-
-    mesh_torque : of the pinion of every mesh [N m], for the cross joints; they are left out without it
-    """
+def standing_load(rig: Rig, coupling_state: CouplingState) -> Array:
+    """(n,) load of axes out of line on the coordinates of the reduced rig, with that of cross joints under torque."""
     elastic = rig.elastic
-    load = misalignment_load(elastic.model, elastic.rig.misalignments)
-    if mesh_torque is not None and elastic.rig.cross_joints:
-        load = load + cross_joints.standing_load(elastic.model, coupling_torques(rig, mesh_torque))
+    load = misalignment_load(elastic.model, axis_misalignments(rig, coupling_state))
+    if elastic.rig.cross_joints:
+        torques = coupling_torques(rig, coupling_state.mesh_torque)
+        load = load + cross_joints.standing_load(elastic.model, torques)
     return elastic.reduced.rows(load)
 
 
-def reactions(rig: Rig) -> dict[str, Array]:
-    """Of every coupling on its first shaft: force along y and z [N], moment along the slopes of y and z [N m]."""
+def reactions(rig: Rig, coupling_state: CouplingState) -> dict[str, Array]:
+    """Of every coupling on its first shaft: force along y and z [N], moment along the slopes of y and z [N m].
+
+    Of axes out of line alone, cross joints left out; empty where all are in line.
+    """
+    misaligned = axis_misalignments(rig, coupling_state)
+    if not misaligned:
+        return {}
     elastic = rig.elastic
-    reduced, load = elastic.reduced, standing_load(rig)
+    reduced = elastic.reduced
+    load = reduced.rows(misalignment_load(elastic.model, misaligned))
     bent = np.zeros(reduced.size)
     bent[reduced.n_rigid :] = load[reduced.n_rigid :] / reduced.squared[reduced.n_rigid :]
     found = {}
@@ -114,7 +176,7 @@ def reactions(rig: Rig) -> dict[str, Array]:
         if joint.kind != "coupling":
             continue
         gap = np.zeros(len(joint.directions))
-        for part in elastic.rig.misalignments:
+        for part in misaligned:
             if part.coupling == joint.name:
                 built_in = dict(zip(SLOPES, (*part.offset, part.slope[0], -part.slope[1]), strict=True))
                 gap = np.array([built_in.get(direction, 0.0) for direction in joint.directions])

@@ -6,6 +6,7 @@ from dataclasses import replace
 from rigdesign.coupling.bearing_seats import bearing_temperatures
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult, PointProblem
+from rigdesign.coupling.misalignment import warm_misalignment
 from rigdesign.coupling.oil_circuits import circuit_balances, supplies
 from rigdesign.coupling.shaft_positions import axis_tilt, flank_approach, mesh_placements
 from rigdesign.coupling.state import CouplingState
@@ -41,6 +42,7 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         rig, done.point.speed, done.expansion, bearing_temperatures(done.bearings, seats)
     )
     placements = mesh_placements(rig, done.point, old, done.bearings)
+    warm = warm_misalignment(rig, {name: shape.deformed for name, shape in done.expansion.items()})
     torque = old.mesh_torque
     if done.response is not None:
         signed = done.response.flank * done.response.mean
@@ -69,6 +71,8 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         seat_temperature=seats,
         flank_approach=flank_approach(placements),
         axis_tilt=axis_tilt(placements),
+        coupling_offset=warm.offset,
+        coupling_angle=warm.angle,
     )
 
 

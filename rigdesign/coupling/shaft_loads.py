@@ -52,7 +52,7 @@ def shaft_loads(rig: Rig, name: str, shaft: str, coupling_state: CouplingState) 
     ]
     couplings = [
         ShaftLoad(position=place, force=force, axial=0.0, arm=np.zeros(2))
-        for place, force in coupling_forces(rig, shaft, coupling_state.mesh_torque)
+        for place, force in coupling_forces(rig, shaft, coupling_state)
     ]
     return [*_weights(rig, name, shaft), *teeth, *couplings]
 

@@ -112,7 +112,7 @@ def _displacements(
         ratio = mesh.base_radii[1] / mesh.base_radii[0]
         teeth -= coupling_state.mesh_torque[mesh.name] * (pinion - ratio * wheel)
     stiffness = reduced.matrices(running).stiffness
-    standing = reduced.rows(rig.elastic.model.weight()) + standing_load(rig, coupling_state.mesh_torque)
+    standing = reduced.rows(rig.elastic.model.weight()) + standing_load(rig, coupling_state)
     springs = _elastic(reduced.n_rigid, stiffness, np.column_stack([teeth, standing]))
     rest = np.zeros(reduced.size)
     for bearing in drivetrain.bearings:

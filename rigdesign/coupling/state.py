@@ -54,6 +54,11 @@ class CouplingState:
     axis_tilt: Values = field(default_factory=dict)
     """Angles of the wheel axis against that of the pinion that bending shafts and journals add, ``mesh.inclination``
     and ``mesh.skew`` [rad] over x: they open the flanks over the face. Empty for shafts that only twist."""
+    coupling_offset: Values = field(default_factory=dict)
+    """How far warm housings set the axis of the first shaft of a coupling off that of the second, ``coupling.lateral``
+    and ``coupling.vertical`` [m], beyond the cold set-up: it loads their bearings. Of couplings that resist it."""
+    coupling_angle: Values = field(default_factory=dict)
+    """The same of its slope over x [rad]."""
 
     def freeze(self, arrows: frozenset[str], initial: "CouplingState") -> "CouplingState":
         """This coupling state with the named arrows cut: those fields stay as in ``initial``.
@@ -72,7 +77,7 @@ class CouplingState:
 
 
 TEMPERATURES = ("gear_temperature", "oil_outlet", "seat_temperature", "oil_supply")
-LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion", "flank_approach")
+LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion", "flank_approach", "coupling_offset")
 TILT_ARM = 0.05
 """Half of a wide face [m], at whose end a tilt of the axes counts as a length."""
 
@@ -84,7 +89,7 @@ def temperature_change(old: CouplingState, new: CouplingState) -> float:
 
 def length_change(old: CouplingState, new: CouplingState) -> float:
     """Largest change of a length between two iterations [m], tilts of the axes included."""
-    tilt = TILT_ARM * _largest_change(old, new, ("axis_tilt",))
+    tilt = TILT_ARM * _largest_change(old, new, ("axis_tilt", "coupling_angle"))
     return max(_largest_change(old, new, LENGTHS), tilt)
 
 

@@ -22,6 +22,8 @@ SCALES = {
     "seat_temperature": 1.0,
     "flank_approach": 1e-6,
     "axis_tilt": 1e-6,
+    "coupling_offset": 1e-6,
+    "coupling_angle": 1e-6,
 }
 """Unit of each field of the coupling state in the vector [K, m, W, N m, rad]."""
 

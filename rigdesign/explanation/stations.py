@@ -311,6 +311,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.bearings.*.diametral_clearance": _at(
         case__bearings="clearance that thermal expansion changes, film of the bearing"
     ),
+    "gearboxes.*.bearings.*.feed": _at(case__bearings="arcs of the film, its load and stiffness"),
     "gearboxes.*.bearings.*.arrangement": _at(
         coupling__bearing_loads="which of two bearings the axial force presses"
     ),

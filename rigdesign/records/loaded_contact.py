@@ -1,8 +1,9 @@
 """Loaded contact of the meshes from influence numbers: quasi-static, warm, at the held points.
 
-All teeth alike, with the modifications of the flanks that carry and the axes of the warm housing. The load is the mean
-torque: a dynamic load on top of it evens out face and pairs. Helix slope deviations of manufacture, bending of the
-shafts and clearance of the bearings are not in the axes, and so not in K_Hbeta.
+All teeth alike, with the modifications of the flanks that carry. The axes are those of the warm housing, of shafts that
+bend also by their bending and by where the journals stand in their clearance (`contact_gap.warm_axes`). The load is the
+mean torque: a dynamic load on top of it evens out face and pairs. Helix slope deviations of manufacture are not in the
+axes, and so not in K_Hbeta.
 """
 
 from dataclasses import dataclass

@@ -117,7 +117,7 @@ def elastic_rig(
         supports=(*_supports(case), *housings),
         axial_locations=tuple(_locations(case)),
         axial_mesh_springs=tuple(_double_helical(case, pairs)),
-        axially_locating=(*_single_helical(case, pairs), *pressed_bearings(case)),
+        axially_locating=tuple(pressed_bearings(case)),
         rotating=tuple(rotating_parts(case, drivetrain, materials)),
         misalignments=tuple(misalignments(case)),
         cross_joints=tuple(cross_joints(case)),
@@ -190,10 +190,3 @@ def _double_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[Axial
             yield AxialMeshSpring(
                 mesh=full, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
             )
-
-
-def _single_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[str]:
-    for full, pair in pairs.items():
-        box, name = full.split(".")
-        if pair.helix_angle and not case.gearboxes[box].meshes[name].double_helical:
-            yield full

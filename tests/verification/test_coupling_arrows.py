@@ -21,6 +21,8 @@ from dynamics.losses.mesh_loss import ToothPath
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
+from rigdesign.coupling.alignment import coupled_ends, coupling_places
+from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.braced_loop import LoadedCircuit, respond
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop import PointResult, solve_point
@@ -39,6 +41,7 @@ TEMPERATURE, LENGTH, TORQUE = 0.05, 0.5e-6, 1e-3
 """Tolerances of the loop: K, m, relative."""
 CLEAR = 20.0
 """A cut arrow must move its result by this many tolerances."""
+ENDS = ("front", "rear")
 ARROWS = frozenset(field.name for field in fields(CouplingState))
 
 
@@ -603,3 +606,44 @@ def test_axis_tilt_opens_the_flanks_over_the_face() -> None:
         slices = len(models[0].law.slice_shift)
         by_hand = 400e-6 * weight(pair.working_pressure_angle) * pair.face_width * (1.0 - 1.0 / slices)
         assert abs(middle[-1] - middle[0]) == pytest.approx(by_hand, rel=0.02)
+
+
+def test_coupling_offset_of_the_warm_housing_loads_the_bearings() -> None:
+    """Both bearings of a shaft carry the force of the coupling: its radial stiffness times the offset, less what the
+    shafts give way."""
+    rig, result = elastic()
+    state = result.last.coupling_state
+    (place,) = (one for one in coupling_places(rig) if one.name == "pinion_side")
+    axes = {name: shape.deformed.axes for name, shape in result.last.expansion.items()}
+    warm = coupled_ends(place, axes).offset
+    offset = [state.coupling_offset[f"pinion_side.{way}"] for way in ("lateral", "vertical")]
+    assert offset == pytest.approx(warm, abs=LENGTH)
+    assert offset[1] > CLEAR * LENGTH
+    without = bearing_loads(rig, replace(state, coupling_offset=dict.fromkeys(state.coupling_offset, 0.0)))
+    loads = bearing_loads(rig, state)
+    both = sum(loads[f"test.pinion_{end}"].force[1] - without[f"test.pinion_{end}"].force[1] for end in ENDS)
+    assert rig.case.drivetrain is not None
+    stiffness = rig.case.drivetrain.couplings["pinion_side"].radial_stiffness
+    assert stiffness is not None
+    # an axis that its housing lifts is drawn down by the coupling
+    assert both == pytest.approx(-stiffness * offset[1], rel=0.05)
+
+
+def test_coupling_angle_of_the_warm_housing_bends_the_shaft() -> None:
+    """A couple on the shaft: its bearings take the moment over their distance, and no force in all."""
+    rig, result = elastic()
+    state = result.last.coupling_state
+    turned = {
+        key: value + 1e-3 * (key == "pinion_side.vertical") for key, value in state.coupling_angle.items()
+    }
+    loads, without = bearing_loads(rig, replace(state, coupling_angle=turned)), bearing_loads(rig, state)
+    change = [loads[f"test.pinion_{end}"].force[1] - without[f"test.pinion_{end}"].force[1] for end in ENDS]
+    assert rig.case.drivetrain is not None
+    coupling = rig.case.drivetrain.couplings["pinion_side"]
+    bearings = rig.case.gearboxes["test"].bearings
+    front, rear = (bearings[f"pinion_{end}"].position for end in ENDS)
+    assert front is not None and rear is not None and coupling.angular_stiffness is not None
+    assert abs(change[1] - change[0]) / 2.0 * (rear - front) == pytest.approx(
+        1e-3 * coupling.angular_stiffness, rel=0.05
+    )
+    assert abs(sum(change)) < 0.05 * max(map(abs, change))

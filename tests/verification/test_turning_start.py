@@ -18,6 +18,7 @@ from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.mesh.law import MeshLaw
 from dynamics.response import time_response
 from dynamics.response.command import Command, MotorDrive, Sampling
+from dynamics.response.march_inputs import SpeedControl
 from dynamics.response.time_response import run_schedule
 from dynamics.response.turning_start import TurningStart, turning_start
 from tests.builders.elastic_rig import bearings, prototype_rig
@@ -25,6 +26,7 @@ from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, wavy_law
 from tests.builders.rig import prototype_laws
 
 Array = NDArray[np.float64]
+MOTOR = MotorDrive(torque_limit=50.0)
 SAMPLING = Sampling(sample_rate=80e3, substeps=4, cutoff=20e3, keep_accounts=False)
 
 
@@ -34,7 +36,9 @@ def unbent(system: LinearSystem, laws: object, speed: float) -> TurningStart:
     return TurningStart(values=np.zeros(len(system.periodic_loads)), load=np.zeros(n), speeds=np.zeros(n))
 
 
-def torques(system: LinearSystem, laws: tuple[MeshLaw, ...], command: Command) -> Iterator[Array]:
+def torques(
+    system: LinearSystem, laws: tuple[MeshLaw, ...], command: Command, motor: MotorDrive = MOTOR
+) -> Iterator[Array]:
     """Of all meshes (n_meshes, n): without the loads, with them from the start, with them from the first sample."""
     with pytest.MonkeyPatch.context() as patch:
         for own, start in (
@@ -43,7 +47,7 @@ def torques(system: LinearSystem, laws: tuple[MeshLaw, ...], command: Command) -
             (system, unbent),
         ):
             patch.setattr(time_response, "turning_start", start)
-            yield run_schedule(own, laws, command, MotorDrive(torque_limit=50.0), sampling=SAMPLING).torque
+            yield run_schedule(own, laws, command, motor, sampling=SAMPLING).torque
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +97,11 @@ def test_run_that_starts_at_a_speed_starts_in_the_forced_motion() -> None:
     )
     law = wavy_law(0.0, damping=2e3)
     command = Command(time=np.array([0.0, 0.1]), speed=np.full(2, speed), twist=np.full(2, 180.0))
-    bare, found, before = torques(system, (law,), command)
+    # torque of the start against the brake of 180 N m; a controller would answer to the wave
+    still = SpeedControl(proportional=1e-6, integral=0.0, torque_limit=250.0, time_constant=0.1)
+    bare, found, before = torques(
+        system, (law,), command, MotorDrive(torque_limit=250.0, speed_control=still)
+    )
     across = np.zeros(6)
     across[system.mesh_ports[0]] = BASE_RADIUS_1, -BASE_RADIUS_2
     tooth = 1.1e8 + 2e3j * speed

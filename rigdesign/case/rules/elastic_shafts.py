@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
+from rigdesign.case.rotation import has_hands, pinion_hand, shaft_senses
 from rigdesign.case.rules.rotating_parts import rotating_part_faults
 
 if TYPE_CHECKING:
@@ -88,30 +89,85 @@ def _stated_bearings(case: "Case") -> Iterator[Fault]:
                 )
 
 
-def _axial(case: "Case", shafts: Collection[str], couplings: Iterable["CouplingInput"]) -> Iterator[Fault]:
-    """Shafts that neither a bearing, a helical mesh nor a coupling ties to one that a bearing locates."""
+def _axial(case: "Case", shafts: Collection[str], couplings: Sequence["CouplingInput"]) -> Iterator[Fault]:
+    """Shafts that nothing ties to one that a bearing locates, neither coupling nor double-helical mesh, and that no
+    meshes of different lead hold."""
     ties = [coupling.shafts for coupling in couplings if coupling.axial_stiffness]
-    ties += [pair for box in case.gearboxes.values() for pair in _helical(box) if set(pair) <= set(shafts)]
+    ties += [
+        pair for box in case.gearboxes.values() for pair in _double_helical(box) if set(pair) <= set(shafts)
+    ]
     located = {
         bearing.shaft
         for box in case.gearboxes.values()
         for bearing in box.bearings.values()
         if bearing.locating
     }
-    for group in _joined(shafts, ties):
-        if located.isdisjoint(group):
-            yield Fault(
-                f"drivetrain.shafts.{group[0]}", "",
-                f"nothing locates it{_and(group[1:])} axially: 0 of the bearings do, must be 1",
-                _locate(case, group),
-            )  # fmt: skip
+    floating = [group for group in _joined(shafts, ties) if located.isdisjoint(group)]
+    for group in _screwing(case, shafts, floating) if floating else []:
+        screws = [name for name, pair in _single_helical(case) if not set(pair).isdisjoint(group)]
+        yield Fault(
+            f"drivetrain.shafts.{group[0]}", "",
+            f"nothing locates it{_and(group[1:])} axially: 0 of the bearings do, must be 1{_screws(screws)}",
+            _locate(case, group),
+        )  # fmt: skip
 
 
-def _helical(box: "Gearbox") -> Iterator[tuple[str, str]]:
-    """Shafts whose gears hold each other axially: those of helical and double-helical meshes."""
-    for mesh in box.meshes.values():
-        if mesh.helix_angle and mesh.pinion in box.gears and mesh.wheel in box.gears:
-            yield box.gears[mesh.pinion].shaft, box.gears[mesh.wheel].shaft
+def _screwing(
+    case: "Case", shafts: Collection[str], floating: Sequence[list[str]]
+) -> Iterator[Sequence[str]]:
+    """Those of the floating groups that helical meshes do not hold (`dynamics.elastic_rig.helical_hold`)."""
+    from dynamics.elastic_rig.helical_hold import HelicalTie, not_held, turning_together
+
+    assert case.drivetrain is not None
+    couplings = case.drivetrain.couplings
+    twisted = case.drivetrain.bracing.coupling or next(iter(couplings), None)
+    known = {name: one for name, one in couplings.items() if set(one.shafts) <= set(shafts)}
+    meshes = [(box, name, pair) for box in case.gearboxes.values() for name, pair in _mesh_shafts(box)]
+    meshes = [mesh for mesh in meshes if set(mesh[2]) <= set(shafts)]
+    senses = shaft_senses(
+        {next(iter(shafts)): 1.0},
+        [pair for _, _, pair in meshes],
+        [(one.shafts, ("end", "start")) for one in known.values()],  # about x, however they are drawn
+    )
+    ties = []
+    for box, name, pair in meshes:
+        mesh = box.meshes[name]
+        scale = 0.5 * mesh.normal_module / math.cos(mesh.helix_angle)
+        radii = (scale * box.gears[mesh.pinion].teeth, scale * box.gears[mesh.wheel].teeth)
+        thrust = pinion_hand(box, name) * senses.get(pair[0], 1.0) * math.tan(mesh.helix_angle)
+        ties.append(HelicalTie(*pair, radii, thrust))
+    turning = turning_together(shafts, [one.shafts for name, one in known.items() if name != twisted])
+    yield from not_held(turning, floating, ties)
+
+
+def _mesh_shafts(box: "Gearbox") -> Iterator[tuple[str, tuple[str, str]]]:
+    """Meshes by name with the shafts of pinion and wheel; those of unknown gears are a fault of their own."""
+    for name, mesh in box.meshes.items():
+        if mesh.pinion in box.gears and mesh.wheel in box.gears:
+            yield name, (box.gears[mesh.pinion].shaft, box.gears[mesh.wheel].shaft)
+
+
+def _double_helical(box: "Gearbox") -> Iterator[tuple[str, str]]:
+    """Shafts whose gears hold each other axially."""
+    for name, pair in _mesh_shafts(box):
+        if box.meshes[name].helix_angle and box.meshes[name].double_helical:
+            yield pair
+
+
+def _single_helical(case: "Case") -> Iterator[tuple[str, tuple[str, str]]]:
+    """Full names of meshes with the shafts that they push along x."""
+    for box_name, box in case.gearboxes.items():
+        yield from (
+            (f"{box_name}.{name}", pair) for name, pair in _mesh_shafts(box) if has_hands(box.meshes[name])
+        )
+
+
+def _screws(meshes: Sequence[str]) -> str:
+    if not meshes:
+        return ""
+    return (
+        f"; a single-helical mesh ({', '.join(meshes)}) lets a shaft screw along its partner and locates none"
+    )
 
 
 def _locate(case: "Case", group: Sequence[str]) -> str:
@@ -148,14 +204,22 @@ def _lateral(case: "Case", couplings: Sequence["CouplingInput"]) -> Iterator[Fau
         free = _free_shares(rows, len(group))
         if free.max() > FREE:
             shaft = group[int(np.argmax(free))]
-            count = sum(bearing.shaft == shaft for bearing in own)
+            places = [bearing.position or 0.0 for bearing in own if bearing.shaft == shaft]
             others = [name for name, share in zip(group, free, strict=True) if share > FREE and name != shaft]
             yield Fault(
                 f"drivetrain.shafts.{shaft}", "",
-                f"has {count} bearing{'' if count == 1 else 's'} and can move sideways{_together(others)}: it needs "
-                "two bearings apart from each other, or one and a coupling with lateral stiffness to a held shaft",
-                "add a bearing, or radial_stiffness and angular_stiffness at a coupling to a held shaft",
+                f"has {_counted(places)} and can move sideways{_together(others)}: it needs two at different "
+                "positions, or one and a coupling with lateral stiffness to a held shaft",
+                "add or move a bearing, or add radial_stiffness and angular_stiffness at a coupling to a held shaft",
             )  # fmt: skip
+
+
+def _counted(places: Sequence[float]) -> str:
+    """How many bearings, and how far the outer ones stand apart."""
+    if len(places) < 2:
+        return "1 bearing" if places else "0 bearings"
+    apart = show(max(places) - min(places), "length")
+    return f"{len(places)} bearings {apart} apart, must be above 0 mm,"
 
 
 def _bearing_row(

@@ -118,7 +118,11 @@ def with_bearings(*names: str) -> ElasticRig:
         ),
         (
             lambda: assemble_rig(with_bearings("test_pinion front")),
-            ["shaft 'test_pinion' with 1 bearing:", "not held", "add a bearing"],
+            ["shaft 'test_pinion' with 1 bearing:", "not held", "add or move a bearing"],
+        ),
+        (
+            lambda: assemble_rig(single_shaft(BAR, (0.1, 0.1), 0.1)),
+            ["shaft 'rotor' with 2 bearings 0 m apart, must be above 0 m:", "not held", "add or move a bearing"],
         ),
         (
             lambda: assemble_rig(with_bearings()),
@@ -155,13 +159,49 @@ def test_one_bearing_that_carries_moments_holds_a_shaft() -> None:
     assemble_rig(replace(rig, moment_carrying=("b0",)))
 
 
-def test_meshes_locate_where_the_caller_says_so_and_leave_the_float_in_the_matrices() -> None:
-    rig = replace(
-        prototype_rig(0.05),
-        axial_locations=(AxialLocation(bearing="reference_wheel rear", stiffness=1e8),),
-        axially_locating=("reference",),
-    )
-    model = assemble_rig(rig)
+ONE_LOCATED = (AxialLocation(bearing="reference_wheel rear", stiffness=1e8),)
+"""The pinion line floats."""
+
+
+def with_hands(*hands: float, second: bool = False) -> ElasticRig:
+    """Test and reference mesh, and a second reference mesh beside the first, with base helix angles [rad]."""
+    rig = prototype_rig(0.05)
+    train = rig.drivetrain
+    gears, meshes = train.gears, train.meshes
+    if second:
+        twins = {g.name: replace(g, name=f"{g.name}_2") for g in gears if g.name.startswith("reference")}
+        gears = (*gears, *twins.values())
+        pinion, wheel = (twin.name for twin in twins.values())
+        meshes = (*meshes, replace(meshes[1], name="second", pinion=pinion, wheel=wheel))
+    meshes = tuple(replace(m, base_helix_angle=hand) for m, hand in zip(meshes, hands, strict=True))
+    return replace(rig, drivetrain=replace(train, gears=gears, meshes=meshes), axial_locations=ONE_LOCATED)
+
+
+@pytest.mark.parametrize(
+    ("hands", "second"),
+    [
+        ((0.0, 0.0), False),  # spur: the line shifts freely
+        (
+            (0.0, 0.3),
+            False,
+        ),  # torque of the loop has nothing to lean on: the line screws until the flanks part
+        ((0.3, -0.3), False),  # the same
+        ((0.3, 0.3), False),
+        ((0.0, 0.3, 0.3), True),  # one lead, two meshes: the shaft screws through both
+    ],
+)
+def test_a_helical_mesh_that_a_shaft_can_screw_along_does_not_locate_it(
+    hands: tuple[float, ...], second: bool
+) -> None:
+    with pytest.raises(DrivetrainError) as error:
+        assemble_rig(with_hands(*hands, second=second))
+    assert "'test_pinion' has no axial location: 0 of its bearings" in str(error.value)
+    assert ("single-helical" in str(error.value)) == any(hands)
+
+
+def test_two_meshes_of_opposite_hands_hold_a_line_and_leave_the_float_in_the_matrices() -> None:
+    """A double-helical gear as the two gears that it is."""
+    model = assemble_rig(with_hands(0.0, 0.3, -0.3, second=True))
     assert [(m.kind, m.bodies) for m in model.rigid] == [
         ("turn", ("test_pinion", "reference_pinion")),
         ("turn", ("test_wheel", "reference_wheel")),
@@ -171,6 +211,21 @@ def test_meshes_locate_where_the_caller_says_so_and_leave_the_float_in_the_matri
         assert np.abs(model.stiffness @ motion.shape).max() < 1e-14 * abs(model.stiffness).max()
         assert np.abs(model.damping @ motion.shape).max() < 1e-9
         assert set(motion.shape) == {0.0, 1.0}
+
+
+def test_a_gear_that_slides_on_its_seat_is_held_by_its_mesh_only_with_a_partner_of_other_hand() -> None:
+    rig = with_hands(0.0, 0.3)
+    free = JointStiffness(axial=0.0, lateral=5e8, angular=2e5)
+    gears = tuple(
+        replace(g, seat=free) if g.name == "reference_wheel_gear" else g for g in rig.drivetrain.gears
+    )
+    rig = replace(
+        rig,
+        drivetrain=replace(rig.drivetrain, gears=gears),
+        axial_locations=prototype_rig(0.05).axial_locations,
+    )
+    with pytest.raises(DrivetrainError, match="'reference_wheel_gear' has no axial location"):
+        assemble_rig(rig)
 
 
 def test_an_axial_mesh_spring_ties_the_floating_line_to_the_located_one() -> None:

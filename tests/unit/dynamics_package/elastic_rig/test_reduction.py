@@ -170,11 +170,15 @@ def test_a_common_housing_ties_them(model: ElasticModel) -> None:
 
 
 def test_axial_float_is_a_rigid_motion_of_the_reduced_rig(model: ElasticModel) -> None:
-    rig = replace(
-        model.rig,
-        axial_locations=(AxialLocation(bearing="reference_wheel rear", stiffness=1e8),),
-        axially_locating=("reference",),
-    )
+    """Of a line that two meshes of opposite hands hold, outside the matrices."""
+    rig = model.rig
+    train = rig.drivetrain
+    pinion, wheel = (replace(g, name=f"{g.name}_2") for g in train.gears if g.name.startswith("reference"))
+    left = replace(train.meshes[1], base_helix_angle=-0.3)
+    right = replace(left, name="second", base_helix_angle=0.3, pinion=pinion.name, wheel=wheel.name)
+    train = replace(train, gears=(*train.gears, pinion, wheel), meshes=(train.meshes[0], left, right))
+    located = (AxialLocation(bearing="reference_wheel rear", stiffness=1e8),)
+    rig = replace(rig, drivetrain=train, axial_locations=located)
     floating = assemble_rig(rig)
     reduced = reduce_rig(floating, bearings(rig), 10e3)
     assert reduced.n_rigid == 3

@@ -108,6 +108,11 @@ FREE_RIGS = {
     "nothing locates": (UNLOCATED, ["reference_pinion"]),
     "one bearing": (ONE_BEARING, ["reference_wheel"]),
     "quill on one coupling": (quills(HELD, TORSION), ["wheel_quill"]),
+    "half of a double-helical gear": (
+        "gearboxes.reference.meshes.main.double_helical = false\n"
+        "gearboxes.reference.bearings.pinion_front.locating = false\n",
+        ["reference_pinion"],
+    ),
     "one bearing each, hinged": (ONE_EACH + wheel_side(**RADIAL), ["test_wheel", "reference_wheel"]),
 }
 
@@ -126,11 +131,43 @@ def test_a_shaft_that_is_free_is_a_fault_and_stops_the_solver(tmp_path: Path, na
     assert any(f"'{shaft}'" in solver_says(tmp_path, text) for shaft in shafts)
 
 
+def test_two_bearings_at_one_place_are_one(tmp_path: Path) -> None:
+    """The message says how far they stand apart; that no two may stand at one place is a fault of its own."""
+    ends = ("front", "rear")
+    text = "".join(f'gearboxes.reference.bearings.wheel_{end}.position = "48.13 mm"\n' for end in ends)
+    (fault,) = (one for one in faults(tmp_path, text) if one.path == "drivetrain.shafts.reference_wheel")
+    assert "has 2 bearings 0 mm apart, must be above 0 mm, and can move sideways" in fault.problem
+
+
 def test_both_are_named_where_two_shafts_float_together(tmp_path: Path) -> None:
     (fault,) = faults(tmp_path, UNLOCATED)
     assert "locates it and reference_wheel axially: 0 of" in fault.problem
     assert "gearboxes.reference.bearings.pinion_front or gearboxes" in fault.remedy
     assert "axial_stiffness at a coupling" in fault.remedy
+
+
+def test_a_single_helical_mesh_locates_no_shaft(tmp_path: Path) -> None:
+    """A helical test gear at one end, spur gears at the other: the pinion of the 1:1 loop would screw out of mesh."""
+    file = tmp_path / "case.toml"
+    helical = (
+        'gearboxes.test.meshes.main = { helix_angle = "12 deg", remove = ["contact_ratio", "tip_cut"] }\n'
+    )
+    base = f'extends = "{(CASES / "loop_1to1" / "case.toml").as_posix()}"\n{helical}'
+    file.write_text(base, encoding="utf-8")
+    load_case(file)
+    free = "gearboxes.test.bearings.pinion_rear.locating = false\n"
+    file.write_text(base + free, encoding="utf-8")
+    with pytest.raises(CaseError) as caught:
+        load_case(file)
+    assert [fault.path for fault in caught.value.faults] == ["drivetrain.shafts.test_pinion"]
+    (fault,) = caught.value.faults
+    assert "0 of the bearings do, must be 1; a single-helical mesh (test.main)" in fault.problem
+    assert "locating = true at gearboxes.test.bearings.pinion_front or" in fault.remedy
+    file.write_text(base + free + 'drivetrain.shaft_model = "torsional"\n', encoding="utf-8")
+    with pytest.raises(
+        DrivetrainError, match=r"'test_pinion' has no axial location.*'test.main', single-helical"
+    ):
+        _ = build_rig(load_case(file), "quick").elastic.model
 
 
 def test_every_shaft_that_is_free_is_named_at_once(tmp_path: Path) -> None:

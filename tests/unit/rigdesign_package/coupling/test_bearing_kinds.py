@@ -1,17 +1,26 @@
 """A further kind of bearing: whoever reads the state of a bearing reads the fields that every kind has."""
 
+import math
 from dataclasses import fields, replace
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
+from dynamics.bearing.journal_feed import FEEDS
+from dynamics.bearing.journal_lateral import journal_lateral
+from dynamics.bearing.journal_state import JournalState
+from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, LateralOperation, OilSupply
+from rigdesign.case import load_case
+from rigdesign.case.bearing_place import BearingPlace
+from rigdesign.case.bearings import JournalBearingInput
 from rigdesign.checks import films, ramp
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import IterationParts, PointProblem, run_iteration
 from rigdesign.coupling.losses import bearing_ratings
+from tests.builders.paths import CASES
 from tests.builders.warm_prototype import base
 
 
@@ -50,3 +59,29 @@ def test_a_journal_bearing_states_all_its_ratings() -> None:
     _, result = base()
     ratings = bearing_ratings(result.last.bearings["test.pinion_front"])
     assert set(ratings) == {"specific_load_MPa", "minimum_film_um", "transition_speed_rpm"}
+
+
+def test_the_stiffness_of_a_film_is_that_of_the_feed_which_the_case_states() -> None:
+    """With grooves that of Lund and Thomsen at B/D 0.5 and S 0.580, K c / W = 2.67 along the load and 1.75 across;
+    without the key that of ISO 7902-1, fed at the widest gap."""
+    entry = load_case(CASES / "loop_1to1").gearboxes["test"].bearings["pinion_front"]
+    assert isinstance(entry, JournalBearingInput)
+    assert entry.feed == "widest_gap"
+    speed, viscosity, clearance, diameter = 300.0, 0.02, 80e-6, entry.diameter
+    width = 0.5 * diameter
+    load = viscosity * speed / (2.0 * math.pi) * width * diameter * (diameter / clearance) ** 2 / 0.580
+    oil = OilSupply(
+        inlet_temperature=333.0, flow=1e-4, viscosity=lambda _: viscosity, density=850.0, heat_capacity=2e3
+    )
+    found = {}
+    for feed in FEEDS:
+        bearing = entry.model_copy(update={"feed": feed, "width": width}).as_it_runs(
+            BearingPlace(clearance=clearance, lubrication="fed")
+        )
+        state = bearing.operating_state(BearingOperation(load=load, speed=speed, oil=oil))
+        assert isinstance(state, JournalState)
+        assert state.film.feed == feed
+        lateral = journal_lateral(state.film, LateralOperation(force=(0.0, -load), sense=1))
+        found[feed] = np.diag(lateral.stiffness) * 0.5 * clearance / load
+    assert found["two_axial_grooves"] == pytest.approx([1.75, 2.67], rel=0.02)
+    assert np.abs(found["widest_gap"] / found["two_axial_grooves"] - 1.0).max() > 0.05

@@ -74,7 +74,7 @@ def test_the_bearings_of_both_shafts_carry_half_of_torque_times_angle(rig: Rig, 
     other = rig_with(side, "constant_velocity")
     plain, bent = bearing_loads(other, state), bearing_loads(rig, state)
     for shaft in rig.case.drivetrain.couplings[side].shafts:
-        here, there = (list(coupling_forces(one, shaft, state.mesh_torque)) for one in (rig, other))
+        here, there = (list(coupling_forces(one, shaft, state)) for one in (rig, other))
         (near, one), (far, two) = (
             (place, force - old) for (place, force), (_, old) in zip(here, there, strict=True)
         )

@@ -9,11 +9,13 @@ import pytest
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.misalignment import reactions, standing_load
+from rigdesign.coupling.misalignment import reactions, standing_load, warm_misalignment
+from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.elastic_rig import REFERENCE_STIFFNESS
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
+from thermal.expansion.expansion import expand
 
 COUPLING = "drivetrain.couplings.wheel_side"
 STIFF = {f"{COUPLING}.radial_stiffness": "2e7 N/m", f"{COUPLING}.angular_stiffness": "5e3 N m/rad"}
@@ -23,6 +25,7 @@ OUT = {
     f"{COUPLING}.cold_angle_lateral": "0.6 mrad",
     f"{COUPLING}.cold_angle_vertical": "-0.4 mrad",
 }
+FIELDS = ("coupling_offset", "coupling_angle")
 
 
 @cache
@@ -32,11 +35,16 @@ def rig(*keys: str) -> Rig:
     return build_rig(load_case(CASES / "uhcf_prototype").with_values(values), "standard")
 
 
-def forces(of: Rig) -> dict[str, np.ndarray]:
-    """Force of the shaft on every bearing (2,) under its weight alone."""
+def cold(of: Rig) -> CouplingState:
+    """Initial state, without torque."""
     (point, *_) = held_points(of)
     state = initial_state(of, point)
-    loads = bearing_loads(of, replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 0.0)))
+    return replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 0.0))
+
+
+def forces(of: Rig, state: CouplingState | None = None) -> dict[str, np.ndarray]:
+    """Force of the shaft on every bearing (2,) under its weight alone."""
+    loads = bearing_loads(of, state or cold(of))
     return {name: np.array(load.force) for name, load in loads.items()}
 
 
@@ -45,9 +53,11 @@ def test_bearings_carry_what_the_coupling_presses() -> None:
     straight, bent = rig(), rig(*OUT)
     reduced = bent.elastic.reduced
     moved = np.zeros(reduced.size)
-    moved[reduced.n_rigid :] = standing_load(bent)[reduced.n_rigid :] / reduced.squared[reduced.n_rigid :]
+    moved[reduced.n_rigid :] = (
+        standing_load(bent, cold(bent))[reduced.n_rigid :] / reduced.squared[reduced.n_rigid :]
+    )
     before, after = forces(straight), forces(bent)
-    pressed = np.abs(reactions(bent)["wheel_side"][:2]).max()
+    pressed = np.abs(reactions(bent, cold(bent))["wheel_side"][:2]).max()
     assert pressed > 100.0
     for name, port in reduced.ports.items():
         assert after[name] - before[name] == pytest.approx(
@@ -58,6 +68,41 @@ def test_bearings_carry_what_the_coupling_presses() -> None:
 def test_shafts_give_way_to_a_stiff_coupling() -> None:
     """The coupling presses less than its stiffness times the offset, and not at all where axes are in line."""
     bent = rig(f"{COUPLING}.cold_offset_vertical")
-    force = abs(reactions(bent)["wheel_side"][1])
+    force = abs(reactions(bent, cold(bent))["wheel_side"][1])
     assert 0.2 * 2e7 * 0.1e-3 < force < 2e7 * 0.1e-3
-    assert not np.any(standing_load(rig()))
+    assert not np.any(standing_load(rig(), cold(rig())))
+
+
+def test_warm_housings_load_a_coupling_as_if_it_had_been_set_up_so() -> None:
+    """Offset and angle by thermal expansion add to those of the cold set-up, whichever of them makes the whole."""
+    straight, bent = rig(), rig(*OUT)
+    warm = replace(
+        cold(straight),
+        coupling_offset={"wheel_side.lateral": -0.05e-3, "wheel_side.vertical": 0.1e-3},
+        coupling_angle={"wheel_side.lateral": 0.6e-3, "wheel_side.vertical": -0.4e-3},
+    )
+    for name, force in forces(bent).items():
+        assert forces(straight, warm)[name] == pytest.approx(force, rel=1e-9, abs=1e-6), name
+    undone = {field: {key: -value for key, value in getattr(warm, field).items()} for field in FIELDS}
+    for name, force in forces(straight).items():
+        assert forces(bent, replace(cold(bent), **undone))[name] == pytest.approx(force, rel=1e-9, abs=1e-6)
+
+
+def test_a_heated_housing_lifts_its_shafts_out_of_line() -> None:
+    """Of one temperature it lifts every axis by its height over the foot times the strain; its partner stays put."""
+    own = rig()
+    setup, model = own.expansion["test"], own.models["test"]
+    reference, rise = own.case.ambient.reference_temperature, 60.0
+    shape = expand(setup, np.full(len(model.mesh.points), reference + rise), reference)
+    found = warm_misalignment(own, {"test": shape})
+    assert set(found.offset) == set(cold(own).coupling_offset)
+    assert set(found.angle) == set(cold(own).coupling_angle)
+    points = model.mesh.points
+    bore = points[model.mesh.surfaces["bearing_bore_test_pinion_front"].ravel(), 2]
+    height = 0.5 * float(bore.min() + bore.max()) - float(points[:, 2].min())  # over the foot
+    strain = own.materials["structural_steel"].expansion_coefficient * rise
+    for coupling in ("pinion_side", "wheel_side"):
+        lift = found.offset[f"{coupling}.vertical"]
+        assert lift == pytest.approx(height * strain, rel=2e-3), coupling
+        assert abs(found.angle[f"{coupling}.vertical"]) < 1e-6 * lift / np.ptp(points[:, 0])
+    assert not any(warm_misalignment(own, {}).offset.values())
