@@ -264,7 +264,8 @@ class Rig:
         return ElasticDrivetrain(
             rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
-            cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain)) / self.coarsening.modes,
+            cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain))
+            / self.coarsening.modes,
             pressed=frozenset(pressed_bearings(self.case)),
         )
 

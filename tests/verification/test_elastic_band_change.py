@@ -1,9 +1,11 @@
 """Speed bands of shafts that bend, against a direct integration whose matrices change all the time.
 
-Prototype in six degrees of freedom, run up from 200 to 400 rad/s in 0.1 s; films stiffen with the root of the speed,
-gyroscopic moments with the speed. Direct: trapezoidal rule on absolute motions in the coordinates of the reduced rig,
-matrices of the instant's speed every 0.1 ms, k(phi) meshes in closed form. The march passes bands as wide as those of
-a run, a factor of 1.25, with the state carried. Envelope of the mesh forces in windows of 2.5 ms, over their swing.
+Prototype in six degrees of freedom, run up from 200 to 312.5 rad/s at 400 rad/s2, two bands as wide as those of a run,
+a factor of 1.25, with the state carried. Films stiffen with the root of the speed, gyroscopic moments with the speed.
+Direct: trapezoidal rule on absolute motions in the coordinates of the reduced rig, extrapolated from two steps,
+matrices of the instant's speed every 0.1 ms, k(phi) meshes in closed form. Envelopes over 2.5 ms, over their swing.
+Measured: rms 0.8 % and 1.0 %, highest force of the run-up 0.4 % and 1.2 %; with the same matrices throughout, where no
+band changes, the two methods differ by 0.6 % and 0.9 % rms: the trapezoidal rule on the flanks of resonances.
 """
 
 import math
@@ -11,6 +13,7 @@ from functools import cache
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
@@ -26,7 +29,8 @@ from tests.performance.test_dynamics_speed import BACKLASH, DAMPING, DEPTHS, pha
 from tests.unit.dynamics_package.elastic_rig.test_seen_system import FILM, seen
 
 Array = NDArray[np.float64]
-FIRST, LAST, RATE, TORQUE = 200.0, 400.0, 2000.0, 180.0
+pytestmark = pytest.mark.slow
+FIRST, LAST, RATE, TORQUE = 200.0, 312.5, 400.0, 180.0
 CUTOFF, STEP, SUBSTEPS = 8e3, 1.0 / 320e3, 8
 STEPS = round((LAST - FIRST) / RATE / STEP)
 UPDATED, BLOCK = 32, 100
@@ -79,8 +83,9 @@ def marched(bands: int) -> Array:
 
 
 @cache
-def direct() -> Array:
-    """The same with the matrices of the instant's speed."""
+def direct(finer: int) -> Array:
+    """The same with the matrices of the instant's speed; steps ``finer`` times as short."""
+    step = STEP / finer
     first, (wound, drive) = system(FIRST), start()
     load = first.twist_load * wound.state.twist
     load[first.drive_dof] += drive
@@ -98,28 +103,28 @@ def direct() -> Array:
     force = shape(q[pinions]) * (spring * (rows @ q + play) + DAMPING * (rows @ v))
     a = np.linalg.solve(first.inertia, load - first.stiffness @ q - first.damping @ v - rows.T @ force)
     forces = np.empty((2, STEPS // SUBSTEPS))
-    for step in range(STEPS):
-        if step % UPDATED == 0:
-            at = system(FIRST + RATE * STEP * (step + 0.5 * UPDATED))
-            whole = at.stiffness + 2.0 / STEP * at.damping + 4.0 / STEP**2 * at.inertia
+    for count in range(STEPS * finer):
+        if count % (UPDATED * finer) == 0:
+            at = system(FIRST + RATE * step * (count + 0.5 * UPDATED * finer))
+            whole = at.stiffness + 2.0 / step * at.damping + 4.0 / step**2 * at.inertia
             factored = lu_factor(whole)
             yielding = lu_solve(factored, rows.T)
             between = rows @ yielding
-        old = 2.0 / STEP * q + v
-        given = load + at.damping @ old + at.inertia @ (2.0 / STEP * old + 2.0 / STEP * v + a)
+        old = 2.0 / step * q + v
+        given = load + at.damping @ old + at.inertia @ (2.0 / step * old + 2.0 / step * v + a)
         free = lu_solve(factored, given)
-        angle = q[pinions] + STEP * v[pinions] + 0.5 * STEP**2 * a[pinions]
+        angle = q[pinions] + step * v[pinions] + 0.5 * step**2 * a[pinions]
         waved = shape(angle)
         # force = waved (spring (x + play) + damper (2 x / h - x_old)), x = x_free - between force
-        tangent = waved * (spring + 2.0 * DAMPING / STEP)
+        tangent = waved * (spring + 2.0 * DAMPING / step)
         known = waved * (spring * play - DAMPING * (rows @ old))
         force = np.linalg.solve(np.eye(2) + tangent[:, None] * between, tangent * (rows @ free) + known)
         new = free - yielding @ force
-        rate = 2.0 / STEP * (new - q) - v
-        a = 2.0 / STEP * (rate - v) - a
+        rate = 2.0 / step * (new - q) - v
+        a = 2.0 / step * (rate - v) - a
         q, v = new, rate
-        if step % SUBSTEPS == SUBSTEPS - 1:
-            forces[:, step // SUBSTEPS] = force
+        if count % (SUBSTEPS * finer) == SUBSTEPS * finer - 1:
+            forces[:, count // (SUBSTEPS * finer)] = force
     return forces
 
 
@@ -131,11 +136,25 @@ def envelope(force: Array, window: int = 100) -> Array:
 
 
 def test_run_up_in_bands_is_that_of_matrices_that_change_all_the_time() -> None:
-    bands = math.ceil(math.log(LAST / FIRST) / math.log(WIDTH))
-    exact = envelope(direct())
-    swing = exact.max(axis=1) - np.abs(direct()).mean(axis=1)
-    errors = {n: np.abs(envelope(marched(n)) - exact) / swing[:, None] for n in (1, bands, 4 * bands)}
-    for n, error in errors.items():
-        print(n, error.max(axis=1), np.sqrt(np.mean(error**2, axis=1)))
-    assert errors[bands].max() < 0.02
-    assert errors[1].max() > 2.0 * errors[bands].max()
+    coarse, fine = direct(1), direct(2)
+    exact = envelope(fine + (fine - coarse) / 3.0)
+    swing = exact.max(axis=1) - np.abs(fine).mean(axis=1)
+    bands = math.ceil(math.log(LAST / FIRST) / math.log(WIDTH) - 1e-9)
+    found = {n: envelope(marched(n)) for n in (bands, 4 * bands)}
+    for n, force in found.items():
+        error = (force - exact) / swing[:, None]
+        rms = np.sqrt(np.mean(error**2, axis=1))
+        print(
+            n,
+            "largest",
+            np.abs(error).max(axis=1),
+            "rms",
+            rms,
+            "peak",
+            force.max(axis=1) / exact.max(axis=1) - 1.0,
+        )
+        assert (rms < 0.015).all()
+        assert found[n].max(axis=1) == pytest.approx(exact.max(axis=1), rel=0.02)
+    jump = (found[bands] - found[4 * bands]) / swing[:, None]
+    print("bands alone", np.abs(jump).max(axis=1), np.sqrt(np.mean(jump**2, axis=1)))
+    assert (np.sqrt(np.mean(jump**2, axis=1)) < 0.01).all()
