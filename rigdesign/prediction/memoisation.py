@@ -144,7 +144,7 @@ def shape_key(
     gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
     return (
         name,
-        rig.coarsening,
+        rig.coarsening.slices,
         rig.pairs[name],
         rig.mesh_stiffness,
         rig.tooth_influence,

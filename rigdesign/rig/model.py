@@ -197,7 +197,9 @@ class Rig:
         rig = replace(self, coarsening=coarsening)
         kept = ["models", "topographies", "axes", "_seats"]
         if coarsening.elements == self.coarsening.elements:
-            kept += ["drivetrain", "elastic"]
+            kept += ["drivetrain"]
+            if coarsening.modes == self.coarsening.modes:
+                kept += ["elastic"]
         rig.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
         return rig
 
@@ -262,7 +264,8 @@ class Rig:
         return ElasticDrivetrain(
             rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
-            cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain)),
+            cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain))
+            / self.coarsening.modes,
             pressed=frozenset(pressed_bearings(self.case)),
         )
 

@@ -33,10 +33,14 @@ BENDING_FOLLOWED = 1.25
 
 
 class Coarsening(NamedTuple):
-    """How many times coarser than the rules, or the case, the loop is divided: for estimates of their errors."""
+    """How many times coarser than the rules, or the case, the loop is divided: for estimates of their errors.
+
+    modes : of shafts that bend, how many times lower the highest one that is kept
+    """
 
     slices: int = 1
     elements: int = 1
+    modes: int = 1
 
 
 AS_RULED = Coarsening()

@@ -1,9 +1,11 @@
-"""How far the dynamic loads behind the checks are from those of infinitely many slices and shaft elements.
+"""How far the dynamic loads behind the checks are from those of infinitely many slices, shaft elements and modes.
 
-The periodic response behind a check is solved again, once with half the slices of every mesh and once with shaft
-elements twice as long; each change gives an error of its own, and they are added. Both are of second order (midpoint
-rule over the face, lumped inertia), so that a third of the change is left where the rules of `rig.resolution` decide;
-slices or elements that the case states may be too few for any order: there the whole change counts. Peaks and least
+The periodic response behind a check is solved again, once with half the slices of every mesh, once with shaft elements
+twice as long, and of shafts that bend once with modes up to half the frequency; each change gives an error of its own,
+and they are added. Slices and elements are of second order (midpoint rule over the face, lumped inertia), modes fall at
+least as fast, for static shapes stand for those left out: a third of the change is left where the rules of
+`rig.resolution` decide; slices or elements that the case states may be too few for any order: there the whole change
+counts. Peaks and least
 torques of the time run take the error of the periodic response at the speed and torque at which they occur: the run
 itself is not marched again. Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123.
 """
@@ -29,12 +31,13 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.resolution import Coarsening
 
 HALVED = (Coarsening(slices=2), Coarsening(elements=2))
+FEWER_MODES = Coarsening(modes=2)
 ORDER = 2.0
 RPM = math.pi / 30.0
 Value = Callable[[CurvePoint, int], float]
 Place = tuple[str, float, float, str]
 Rigs = tuple[Rig, ...]
-"""As the result has it, with half the slices, with elements twice as long."""
+"""As the result has it, with half the slices, with elements twice as long, and with fewer modes where shafts bend."""
 
 
 @dataclass(frozen=True)
@@ -53,15 +56,15 @@ class _Loaded:
 
     def responses(self, rigs: Rigs) -> tuple[CurvePoint, ...]:
         """Of each rig; nothing where one of them finds none."""
-        systems: dict[int, LinearSystem] = {}
+        systems: dict[tuple[int, int], LinearSystem] = {}
         try:
             return tuple(respond(rig, self._circuit(rig, systems)) for rig in rigs)
         except DynamicsNotConverged:
             return ()
 
-    def _circuit(self, rig: Rig, systems: dict[int, LinearSystem]) -> LoadedCircuit:
-        """Rigs with shaft elements of one length share their matrices."""
-        elements = rig.coarsening.elements
+    def _circuit(self, rig: Rig, systems: dict[tuple[int, int], LinearSystem]) -> LoadedCircuit:
+        """Rigs with the same shaft elements and modes share their matrices."""
+        elements = rig.coarsening.elements, rig.coarsening.modes
         if elements not in systems:
             bearings = solve_bearings(rig, self.point, self.coupling_state)
             systems[elements] = loop_system(rig, self.point, self.coupling_state, bearings)
@@ -86,7 +89,8 @@ def load_errors(solved: SolvedRig) -> tuple[DiscretisationRow, ...]:
     """
     if solved.run is None:
         return ()
-    rigs = (solved.rig, *(solved.rig.coarsened(halved) for halved in HALVED))
+    coarser = HALVED if solved.rig.shaft_model == "torsional" else (*HALVED, FEWER_MODES)
+    rigs = (solved.rig, *(solved.rig.coarsened(one) for one in coarser))
     wanted = [*_held(solved), *_in_the_run(solved)]
     places = {one.loaded.place: one.loaded for one in wanted}
     with BackgroundTasks([partial(loaded.responses, rigs) for loaded in places.values()]) as tasks:
@@ -161,14 +165,16 @@ def _row(solved: SolvedRig, wanted: _Wanted, responses: tuple[CurvePoint, ...]) 
         numerics.slices_spur is None and numerics.slices_helical is None,
         numerics.shaft_element_length is None,
     )
+    bends = solved.rig.shaft_model != "torsional"
     fine, *halved = (wanted.value(response, wanted.mesh) for response in responses)
-    shares = [1.0 / (2.0**ORDER - 1.0) if rule else 1.0 for rule in ruled]
+    shares = [1.0 / (2.0**ORDER - 1.0) if rule else 1.0 for rule in (*ruled, *(True,) * bends)]
     parts = [share * abs(fine - other) for share, other in zip(shares, halved, strict=True)]
     return DiscretisationRow(
         quantity=f"dynamics.{wanted.key}.{solved.label(wanted.mesh)}", gearbox="", stage="", value=fine,
         error=sum(parts), unit="-", order=ORDER if all(ruled) else None,
         method=f"periodic response at {responses[0].speed / RPM:.0f} rpm of the first pinion, half the slices "
         f"{halved[0]:.4f}, elements twice as long {halved[1]:.4f}"
+        + (f", modes up to half the frequency {halved[2]:.4f}" if bends else "")
         + ("" if all(ruled) else "; whole change where the case states slices or element length"),
     )  # fmt: skip
 
