@@ -10,6 +10,7 @@ import pytest
 from rigdesign.cli import ending
 from rigdesign.cli import main as cli
 from tests.builders.paths import CASES
+from tests.builders.shared_runs import run_cache
 
 PROTOTYPE = CASES / "uhcf_prototype"
 
@@ -53,11 +54,10 @@ Write = Callable[[str], Path]
 def rigdesign(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
-    tmp_path_factory: pytest.TempPathFactory,
 ) -> Rigdesign:
     """Call a command as the entry point does, but in this process and with a cache folder of the test run."""
     if "RIGDESIGN_CACHE_DIR" not in os.environ:
-        monkeypatch.setenv("RIGDESIGN_CACHE_DIR", str(tmp_path_factory.getbasetemp() / "rigdesign-cache"))
+        monkeypatch.setenv("RIGDESIGN_CACHE_DIR", str(run_cache()))
 
     def call(*arguments: object) -> Ended:
         tokens = [str(argument) for argument in arguments]

@@ -10,6 +10,7 @@ import pytest
 
 from rigdesign.cli.main import app
 from tests.builders.paths import CASES
+from tests.builders.shared_runs import run_cache
 
 CASE = CASES / "uhcf_main"
 PRINTED = 345.23
@@ -24,7 +25,7 @@ pytestmark = pytest.mark.slow
 def document(tmp_path_factory):
     out = tmp_path_factory.mktemp("diagnosis")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("RIGDESIGN_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("RIGDESIGN_CACHE_DIR", str(run_cache()))
         arguments = [
             "diagnose",
             str(CASE / "as_published.toml"),

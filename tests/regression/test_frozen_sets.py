@@ -13,15 +13,16 @@ from rigdesign.case import load_case
 from rigdesign.diagnosis.run import diagnose_measurement
 from tests.blind.metrics import canonical
 from tests.builders.paths import ROOT
+from tests.builders.shared_runs import run_cache
 
 FROZEN = ROOT / "tests" / "blind" / "frozen"
 ANSWERS = json.loads((FROZEN / "answers.json").read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _cache(tmp_path_factory):
+def _cache():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("RIGDESIGN_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("RIGDESIGN_CACHE_DIR", str(run_cache()))
         yield
 
 

@@ -11,6 +11,7 @@ from nptdms import ChannelObject, TdmsWriter
 from rigdesign.cli.main import app
 from tests.builders.page_files import commands, written_out
 from tests.builders.paths import ROOT
+from tests.builders.shared_runs import run_cache
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 RECORDED = {"P01": (61.55, 468.0), "P02": (72.27, 2867.5), "P03": (79.12, 1799.0)}
@@ -41,7 +42,7 @@ def done(tmp_path_factory):
     written_out(README, folder)
     recorded(folder / "labview")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("RIGDESIGN_CACHE_DIR", str(folder / "cache"))
+        patch.setenv("RIGDESIGN_CACHE_DIR", str(run_cache()))
         patch.chdir(folder)
         for arguments in commands(README):
             assert app(arguments, result_action="return_value") == 0, arguments

@@ -12,12 +12,16 @@ from rigdesign.cli import main as cli
 from rigdesign.cli.ending import exit_status
 from tests.builders.page_files import missing_lines, shown, written_out
 from tests.builders.paths import CASES, ROOT
+from tests.builders.shared_runs import run_cache
 
 PAGES = sorted((CASES / "loop_1to1" / "tutorial").glob("*.md"))
 FAILING = ["check", "my_rig", "--fidelity", "quick"]
 """The command whose verdict is a fail, as its page says."""
-SLOW = "diagnose"
-"""The command that takes minutes: run with the slow tests."""
+
+
+def takes_minutes(arguments: list[str]) -> bool:
+    """The diagnosis, and studies of more than three points: run with the slow tests."""
+    return arguments[0] == "diagnose" or "--boundary" in arguments or arguments.count("--vary") > 1
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +30,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     place = tmp_path_factory.mktemp("reader")
     (place / "cases").symlink_to(ROOT / "cases")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("RIGDESIGN_CACHE_DIR", str(place / "cache"))
+        patch.setenv("RIGDESIGN_CACHE_DIR", str(run_cache()))
         patch.setenv("COLUMNS", "80")
         patch.chdir(place)
         yield place
@@ -36,7 +40,7 @@ def run(page: Path, folder: Path, capsys: pytest.CaptureFixture[str], *, slow: b
     """Run the commands of a page and hold their output against it; the number that ran."""
     text = page.read_text(encoding="utf-8")
     written_out(text, folder)
-    wanted = [pair for pair in shown(text) if (pair[0][0] == SLOW) is slow]
+    wanted = [pair for pair in shown(text) if takes_minutes(pair[0]) is slow]
     for arguments, lines in wanted:
         status = exit_status(lambda arguments=arguments: cli.run(arguments))
         printed = capsys.readouterr().out
@@ -72,6 +76,13 @@ def test_the_study_says_what_the_page_tells(folder: Path, capsys: pytest.Capture
     assert (last["verdict"], last["first_failing_check"]) == ("fail", "temperature.oil_outlet")
     assert 80.0 + 20.0 * margins[0] / (margins[0] - margins[1]) == pytest.approx(97.0, abs=0.6)
     assert margins == pytest.approx([17.85, -2.75], rel=0.02)
+
+
+@pytest.mark.slow
+def test_the_limit_and_the_map_are_those_of_the_page(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(PAGES[1], folder, capsys, slow=True) == 2
 
 
 @pytest.mark.slow

@@ -12,9 +12,10 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.report.results_json import results_document
 from rigdesign.results.result import RunResult
+from rigdesign.run.main import run_case
 from tests.builders.fzg_case import BEARINGS
 from tests.builders.rolling_rig import FED, SPLASH, rolling_case
 

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.reanalysis.affected_parts import PARTS, Reanalysis
 from rigdesign.reanalysis.modified_rig import modified_rig
 from rigdesign.reanalysis.reference import Reference, restored, solve_reference
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.loads import StageLoad
+from rigdesign.run.main import run_case
 from rigdesign.studies.from_base import FromBase
 
 INLET = "gearboxes.test.oil.inlet_temperature"

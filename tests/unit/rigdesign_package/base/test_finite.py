@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.base.errors import NonFiniteResultError
 from rigdesign.base.finite import require_finite
 from rigdesign.cli import ending
@@ -15,6 +15,7 @@ from rigdesign.cli import main as cli
 from rigdesign.coupling import iteration as passes
 from rigdesign.results.result import RunResult
 from rigdesign.run import main as run_module
+from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 from tests.builders.report import make_result
 

@@ -13,7 +13,7 @@ from tests.builders.mutant import mutations
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"
-MUTANTS = 150
+MUTANTS = 75
 
 
 @pytest.mark.parametrize("seed", [1, 2])

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.case.shipped import shipped_cases
 from rigdesign.checks import held_checks
 from rigdesign.checks.component_limits import RESULTS
@@ -27,6 +27,7 @@ from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import Rig
+from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 from tests.builders.shaft_weight import weight_on_bearing
 from tests.builders.warm_prototype import base, settled

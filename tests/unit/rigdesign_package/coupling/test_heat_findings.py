@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -19,6 +19,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.report import results_document
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
+from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 from thermal.conditions.boundary import Radiation
 

@@ -12,8 +12,8 @@ from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.readings import readings
 from rigdesign.rig.model import build_rig
-from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
+from tests.builders.shared_runs import quick_run
 
 pytestmark = pytest.mark.whole_run
 
@@ -34,7 +34,7 @@ CHANNELS = (
 
 @pytest.fixture(scope="module")
 def checked():
-    return run_case(CASE, "quick")
+    return quick_run("uhcf_prototype")
 
 
 @pytest.fixture(scope="module")

@@ -4,15 +4,16 @@ from functools import cache
 
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.report.pages.report import report_html
 from rigdesign.results.result import RunResult
 from tests.builders.paths import CASES
+from tests.builders.shared_runs import shipped_run
 
 
 @cache
 def hunting() -> RunResult:
-    return run_case(load_case(CASES / "loop_hunting"), fidelity="quick")
+    return shipped_run("loop_hunting")
 
 
 def test_modes_say_where_they_are_largest() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case.model import Case
 from rigdesign.cli import ending
@@ -14,6 +14,7 @@ from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
+from rigdesign.run.main import run_case
 from tests.builders import step_housing
 from tests.builders.paths import CASES
 from thermal.housing.mesh_file import read_mesh

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.base.errors import CaseError, UsageError
 from rigdesign.case.model import Case
 from rigdesign.cli import ending
@@ -15,8 +15,10 @@ from rigdesign.cli import main as cli
 from rigdesign.cli.mesh_export import export_meshes
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
+from rigdesign.run.main import run_case
 from tests.builders.msh_file import write_msh
 from tests.builders.paths import CASES
+from tests.builders.shared_runs import quick_run
 from thermal.fe.mesh import NamedMesh, named_mesh
 from thermal.housing.mesh_file import read_mesh
 
@@ -29,8 +31,8 @@ END = "shaft_test_pinion_end_front"
 @cache
 def box() -> tuple[RunResult, NamedMesh]:
     """The shipped case with given losses, on its quick mesh."""
-    case = load_case(GIVEN)
-    return run_case(case, "quick"), build_rig(case, "quick").models["test"].mesh
+    mesh = build_rig(load_case(GIVEN), "quick").models["test"].mesh
+    return quick_run("uhcf_prototype", "given_losses.toml"), mesh
 
 
 def on_file(folder: Path, body: str = "", name: str = "box.msh") -> Case:

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign import load_case, run_case
+from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.reanalysis import modified_rig
 from rigdesign.reanalysis.affected_parts import PARTS, Part, parts_of
 from rigdesign.reanalysis.reference import Reference
 from rigdesign.results.check import Check
+from rigdesign.run.main import run_case
 from rigdesign.uncertainty.plan import RangeEnd, plan
 from rigdesign.uncertainty.point import EndResult, solve_end, solve_stated
 from rigdesign.uncertainty.run import with_ranges
