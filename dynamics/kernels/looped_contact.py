@@ -8,8 +8,8 @@ e_i = w_i (x + kappa z_i - g_i). The forces are those of the largest
 
 so that dU/dx = sum w F is the force along the line of action, dU/dkappa = sum w z F its moment over the face and
 r_b1 dU/ds the torque that the change over the path puts on the pinion. Sets of points that touch are tried one after
-the other, starting from those of the step before (primal-dual active set: Hintermueller, Ito and Kunisch, SIAM J. Optim.
-13, 2002).
+the other, starting from those of the step before (primal-dual active set: Hintermueller, Ito and Kunisch, SIAM J.
+Optim. 13, 2002).
 """
 
 import math

@@ -4,8 +4,8 @@ The linear part is taken over a step exactly, mode by mode, under forces that ar
 the step are found by Newton's method on the motion of the meshes: what a force gives to the motion of its own step is
 small, so that one look at the contacts is mostly enough.
 
-Each mesh has the seven rows of ``dynamics.elastic_rig.wrench_rows``: approach and tilt of both flanks, turns of both gears
-and slide.
+Each mesh has the seven rows of ``dynamics.elastic_rig.wrench_rows``: approach and tilt of both flanks, turns of both
+gears and slide.
 """
 
 import math
@@ -41,7 +41,7 @@ N_RECORD = 8
 
 
 class LoopedMesh(NamedTuple):
-    """Plain numbers of one mesh; its flank that carries is the front of ``table`` where ``side`` is 1, else the back."""
+    """Plain numbers of one mesh; its flank that carries is in front where ``side`` is 1, else on the back."""
 
     base_radius_1: float
     base_radius_2: float
@@ -102,7 +102,7 @@ class LoopedState(NamedTuple):
 @njit(cache=True)
 def _tooth_gaps(mesh: LoopedMesh, table: PhaseTable, path: float, gaps: Array) -> None:
     """Write what the teeth of each point add to its gap."""
-    gone = int(math.floor((path - table.start) / table.pitch))
+    gone = math.floor((path - table.start) / table.pitch)
     n_1, n_2 = len(mesh.deviations_1), len(mesh.deviations_2)
     for i in range(len(gaps)):
         number = table.pair[i] + gone

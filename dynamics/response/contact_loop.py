@@ -1,9 +1,9 @@
 """March of an elastic drivetrain with the tooth contact in the loop, in six degrees of freedom.
 
 In every step the contact of each mesh is solved from the influence numbers of its gears at the positions and tilts that
-the gears have (`dynamics.kernels.looped_contact`): both flanks, loss of contact, tip corners, the load over the face. Its
-forces act in the directions in which its motion is seen (`dynamics.elastic_rig.wrench_rows`): each flank along its own
-normal, moments over the face, friction across the normals. It is the reference of the faster march on contact tables
+the gears have (`dynamics.kernels.looped_contact`): both flanks, loss of contact, tip corners, the load over the face.
+Its forces act in the directions in which its motion is seen (`dynamics.elastic_rig.wrench_rows`): each flank along its
+own normal, moments over the face, friction across the normals. It is the reference of the faster march on tables
 (`dynamics.response.time_march`), which has one approach per mesh on the flank that carries.
 
 What the shafts' mean load tilts is in the flanks' gap already, as the coupling loop has it; the moment of the mean load

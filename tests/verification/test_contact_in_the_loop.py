@@ -1,5 +1,5 @@
-"""March with the tooth contact in the loop: the contact is that of the quasi-static solver, its forces have a potential,
-the linear part is exact, and no energy comes or goes."""
+"""March with the tooth contact in the loop: the contact is that of the quasi-static solver, its forces have a
+potential, the linear part is exact, and no energy comes or goes."""
 
 from functools import cache
 
@@ -142,7 +142,7 @@ def test_one_step_of_the_linear_part_is_exact() -> None:
 
 
 def test_no_energy_comes_or_goes() -> None:
-    """Without friction and dampers: what the meshes do on the drivetrain leaves their teeth; second order in the step."""
+    """Without friction and dampers: what the meshes do leaves their teeth; second order in the step."""
     lost = []
     for step in (4e-6, 2e-6):
         loop = looped(step, lossless=True)
