@@ -142,17 +142,17 @@ def test_one_step_of_the_linear_part_is_exact() -> None:
 
 
 def test_no_energy_comes_or_goes() -> None:
-    """Without friction and dampers: what the meshes do leaves their teeth; second order in the step."""
+    """Without friction and dampers: what the meshes do leaves their teeth, once the blow of the start has gone."""
     lost = []
     for step in (4e-6, 2e-6):
         loop = looped(step, lossless=True)
-        record = loop.advance(round(8e-3 / step))
+        loop.advance(round(4e-3 / step))
+        before = loop.work[0]
+        stored = loop.advance(round(4e-3 / step)).energy.sum(axis=0)
         assert loop.unconverged == 0
-        stored = record.energy.sum(axis=0)
-        left = loop.work[0] + stored[-1] - stored[0]
-        lost.append(abs(left) / stored.max())
+        lost.append(abs(loop.work[0] - before + stored[-1] - stored[0]) / stored.max())
     assert lost[1] < 1e-3
-    assert lost[0] / lost[1] > 3.0
+    assert lost[0] > 3.0 * lost[1]
 
 
 def test_friction_and_dampers_take_what_the_meshes_give() -> None:
@@ -166,9 +166,11 @@ def test_friction_and_dampers_take_what_the_meshes_give() -> None:
     assert done + stored[-1] - stored[0] == pytest.approx(-rubbed - damped, rel=5e-3)
 
 
-def test_a_loaded_mesh_carries_its_torque_and_loses_contact_without_it() -> None:
+def test_both_meshes_of_the_loop_carry_its_torque() -> None:
+    """At held twist the torque is that of the stiffness of the teeth; the loop closes over both meshes."""
     record = looped(4e-6, lossless=False).advance(6000)
     late = record.net_force[:, 3000:]
-    for row, law in zip(late, prototype_laws(), strict=True):
-        assert row.mean() * law.base_radius_1 == pytest.approx(180.0, rel=0.03)
-        assert row.min() > 0.0
+    torques = [row.mean() * law.base_radius_1 for row, law in zip(late, prototype_laws(), strict=True)]
+    assert late.min() > 0.0
+    assert torques[0] == pytest.approx(180.0, rel=0.1)
+    assert torques[1] == pytest.approx(torques[0], rel=0.01)
