@@ -92,14 +92,15 @@ class LoadedMesh:
                     f"{1e6 * most:.0f} um; reduce the load or the gap of the flanks"
                 )
 
-    def points(self, reach: float, n_positions: int | None = None) -> ContactPoints:
-        """Potential contact points for approaches up to ``reach`` [m]."""
+    def points(self, reach: float, n_positions: int | None = None, beyond: int = 0) -> ContactPoints:
+        """Potential contact points for approaches up to ``reach`` [m]; arguments as in `contact_points`."""
         return contact_points(
             self.pair,
             self.grid,
             gap=self.gap,
             tips=self.tips,
             n_positions=self.n_positions if n_positions is None else n_positions,
+            beyond=beyond,
             reach=reach,
         )
 

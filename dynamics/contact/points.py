@@ -80,11 +80,13 @@ def contact_points(
     gap: FlankGap = no_gap,
     tips: tuple[TipEnd, TipEnd] | None = None,
     n_positions: int = 64,
+    beyond: int = 0,
     reach: float,
 ) -> ContactPoints:
     """Points of all tooth pairs that touch under an approach up to ``reach`` [m], over one base pitch.
 
     gap : of the flanks, see ``FlankGap``; tips : ends of the flanks, None: those of the pair
+    beyond : further positions ahead of the pitch and behind it, at the same distance
 
     Raises DynamicsInputError for a reach or number of positions that is not positive, or a gap that is not finite.
     """
@@ -92,7 +94,7 @@ def contact_points(
         raise DynamicsInputError(f"n_positions = {n_positions} and reach = {reach} m must be positive")
     first, last = path_reach(pair, reach)
     pitch, lag = pair.base_pitch, grid.position * tan(pair.base_helix_angle)
-    position = pair.path.start + pitch * np.arange(n_positions) / n_positions
+    position = pair.path.start + pitch * np.arange(-beyond, n_positions + beyond) / n_positions
     lowest = floor((position[0] - lag.max() - last) / pitch)
     highest = ceil((position[-1] - lag.min() - first) / pitch)
     pairs = np.arange(lowest, highest + 1)

@@ -73,6 +73,10 @@ class SeenRig:
             ),
         )
 
+    def on_freedoms(self, rows: Array) -> Array:
+        """Rows (m, n) on the freedoms of the system of rows (m, n_full) on those of the whole rig."""
+        return np.asarray(self.reduced.rows(rows) @ self._back)
+
     @cached_property
     def _rows(self) -> dict[str, Array]:
         """Row (n_full,) of everything that is seen, by name."""
