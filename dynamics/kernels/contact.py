@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 08dfd8f0
+# compiled from sources 396e05cd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

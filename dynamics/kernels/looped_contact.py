@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import sliding_direction
 
-# compiled from sources 00000000
+# compiled from sources 396e05cd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

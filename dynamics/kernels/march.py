@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 08dfd8f0
+# compiled from sources 396e05cd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

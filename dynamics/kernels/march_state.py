@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 08dfd8f0
+# compiled from sources 396e05cd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
