@@ -8,6 +8,7 @@ A machine without them fails the tests that need them: a page nobody has drawn i
 import base64
 import io
 import json
+import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -80,8 +81,9 @@ class Browser:
         return [address for address in asked if not address.startswith(OWN)]
 
     def print_pages(self) -> list[str]:
-        """Text of every page as printed on A4."""
-        return [page.extract_text() for page in PdfReader(io.BytesIO(self.print_pdf())).pages]
+        """Text of every page as printed on A4; ligatures of the font as letters."""
+        pages = PdfReader(io.BytesIO(self.print_pdf())).pages
+        return [unicodedata.normalize("NFKC", page.extract_text()) for page in pages]
 
     def print_pdf(self) -> bytes:
         """The page as printed on A4, a PDF document."""

@@ -138,7 +138,7 @@ def test_mesh_orders_of_the_time_run_are_those_of_the_periodic_response() -> Non
 @cache
 def advice() -> DwellRecord:
     found = solved()
-    return loop_vibration(found.rig, found.run, found.loads).dwell
+    return loop_vibration(found).dwell
 
 
 def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
@@ -149,7 +149,7 @@ def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
     near = near_dwell(rig, found.run, found.loads.modes, TEST_SPEED)
     assert near.resonance is not None
     (check,) = checks(replace(found, rig=rig))
-    vibration = loop_vibration(rig, found.run, found.loads)
+    vibration = loop_vibration(replace(found, rig=rig))
     (stage,) = vibration.dwell.stages
     assert stage.band is not None and stage.near is not None
     assert check.value == stage.near.distance == near.distance
