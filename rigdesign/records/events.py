@@ -1,13 +1,14 @@
 """Events of a case on its solved rig: marches from the steady state at the speed and torque of each."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.twist_rows import TorqueSection
@@ -31,7 +32,7 @@ from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.braced_loop import BracingState, shifted_laws, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.loop_system import loop_system, running_state
+from rigdesign.coupling.loop_system import bearing_coefficients, loop_system, running_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.state import CouplingState, OperatingPoint
@@ -39,6 +40,7 @@ from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.event_journals import LINEAR_FILMS, journal_channels, largest_travels, travel_warnings
 from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.resonances import LEAST_GAIN
@@ -93,6 +95,8 @@ class _EventPlace:
     laws: Sequence[MeshLaw]
     channels: tuple[Channel, ...]
     drags: dict[str, float]
+    films: Mapping[str, LateralCoefficients]
+    """Of the bearings with a film, where their journals are watched."""
 
     @classmethod
     def of(cls, rig: Rig, test: PointResult, name: str, event: Event) -> "_EventPlace":
@@ -108,12 +112,16 @@ class _EventPlace:
         bearings = solve_bearings(rig, point, state)
         system = loop_system(rig, point, state, bearings)
         channels = torque_channels(twist_rows_of(rig, system, speed))
+        films: dict[str, LateralCoefficients] = {}
         if rig.shaft_model != "torsional":
             running = running_state(rig, point, state, bearings)
+            found = bearing_coefficients(rig, state, bearings)
+            films = {name: found[name] for name, _, entry in rig.bearings() if entry.has_film}
             channels += bearing_channels(rig.elastic.seen, system, running)
+            channels += journal_channels(rig.elastic.seen, system, list(films))
         laws = periodic_laws(rig, shifted_laws(rig, mesh_models(rig, point, state), CONTROLLED))
         drags = drags_at(rig, test.last, state, speed)
-        return cls(name, event.kind, rig, test.last, point, state, system, laws, channels, drags)
+        return cls(name, event.kind, rig, test.last, point, state, system, laws, channels, drags, films)
 
     @property
     def pinion_speed(self) -> float:
@@ -185,7 +193,7 @@ class _EventPlace:
             peaks=tuple(self._peaks(history)),
             reversals=tuple(self._reversals(history)),
             tripped=history.tripped,
-            notes=self.notes,
+            notes=(*self.notes, *self._journals(history)),
             time=[float(history.time[slot[-1]]) for slot in slots],
             curves=(
                 *(
@@ -200,6 +208,12 @@ class _EventPlace:
                 ),
             ),
         )
+
+    def _journals(self, history: EventHistory) -> Iterator[str]:
+        if self.films:
+            travels = largest_travels(self.channels, history, self.films)
+            yield LINEAR_FILMS
+            yield from travel_warnings(self.rig, travels, self.coupling_state.bearing_clearance)
 
     def _peaks(self, history: EventHistory) -> Iterator[EventPeak]:
         for m, name in enumerate(self.rig.mesh_names):
