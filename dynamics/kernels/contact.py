@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 396e05cd
+# compiled from sources c8f98351
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

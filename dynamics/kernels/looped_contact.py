@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import sliding_direction
 
-# compiled from sources 396e05cd
+# compiled from sources c8f98351
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -132,12 +132,12 @@ def contact_work(table: PhaseTable) -> ContactWork:
 
 @njit(cache=True)
 def _cubic(table: Array, k: int, t: float, i: int) -> float:
-    return table[k, 0, i] + t * (table[k, 1, i] + t * (table[k, 2, i] + t * table[k, 3, i]))
+    return float(table[k, 0, i] + t * (table[k, 1, i] + t * (table[k, 2, i] + t * table[k, 3, i])))
 
 
 @njit(cache=True)
 def _slope(table: Array, k: int, t: float, i: int) -> float:
-    return table[k, 1, i] + t * (2.0 * table[k, 2, i] + t * 3.0 * table[k, 3, i])
+    return float(table[k, 1, i] + t * (2.0 * table[k, 2, i] + t * 3.0 * table[k, 3, i]))
 
 
 @njit(cache=True)
@@ -182,7 +182,9 @@ def _close(
 
 @njit(cache=True, fastmath={"contract", "reassoc", "nsz", "arcp"})
 def _cubic_2(table: Array, k: int, t: float, i: int, j: int) -> float:
-    return table[k, i, j, 0] + t * (table[k, i, j, 1] + t * (table[k, i, j, 2] + t * table[k, i, j, 3]))
+    return float(
+        table[k, i, j, 0] + t * (table[k, i, j, 1] + t * (table[k, i, j, 2] + t * table[k, i, j, 3]))
+    )
 
 
 @njit(cache=True, fastmath={"contract", "reassoc", "nsz", "arcp"})

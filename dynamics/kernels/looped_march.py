@@ -23,7 +23,7 @@ from dynamics.kernels.looped_contact import (
     press_phase,
 )
 
-# compiled from sources 396e05cd
+# compiled from sources c8f98351
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]

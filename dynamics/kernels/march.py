@@ -68,7 +68,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN_OLD,
 )
 
-# compiled from sources 396e05cd
+# compiled from sources c8f98351
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
