@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources c8f98351
+# compiled from sources 1e4f1075
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import sliding_direction
 
-# compiled from sources c8f98351
+# compiled from sources 1e4f1075
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

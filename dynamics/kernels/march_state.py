@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources c8f98351
+# compiled from sources 1e4f1075
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -69,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources c8f98351
+# compiled from sources 1e4f1075
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources c8f98351
+# compiled from sources 1e4f1075
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 4
 """Numbers in a vector."""

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources c8f98351
+# compiled from sources 1e4f1075
 Array = NDArray[np.float64]
 
 
