@@ -18,7 +18,7 @@ from tests.builders.study import VARIED, ExampleCase, InProcess, run_example, ru
 
 pytestmark = pytest.mark.whole_run
 
-STEPS = (1, 4, 11, 16, 18, 20, 21, 22, 23, 24, 60)
+STEPS = (1, 2, 4, 7, 11, 14, 16, 18, 20, 21, 22, 23, 24, 26, 28, 30, 60)
 
 
 @pytest.mark.parametrize("mode", ["kill", "full"])
@@ -27,7 +27,7 @@ def test_no_file_is_half_written_at_any_step(mode: str, tmp_path: Path) -> None:
     whole = published(tmp_path / "whole")
     assert "results.json" in whole and "report.html" in whole
     stopped = -signal.SIGKILL if mode == "kill" else REFUSED
-    assert set(ended) == {stopped, WRITTEN} and ended[-1] == WRITTEN and ended.count(stopped) >= 7
+    assert set(ended) == {stopped, WRITTEN} and ended[-1] == WRITTEN and ended.count(stopped) >= 10
     for step, status in zip(STEPS, ended, strict=True):
         out = tmp_path / str(step)
         if mode == "full" and status == REFUSED:
