@@ -17,6 +17,7 @@ from rigdesign.records.press_fits import press_fits
 from rigdesign.records.spline_capacity import spline_stresses
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
+from rigdesign.results.contact_in_loop import LoopedContact
 from rigdesign.results.events import EventRecord
 from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
@@ -50,6 +51,8 @@ class SolvedRig:
     """None where no thermal history was asked for."""
     events: Sequence[EventRecord] = ()
     """Of a rig with a drivetrain."""
+    contact_in_loop: Sequence[LoopedContact] = ()
+    """At fidelity reference."""
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
 
