@@ -191,6 +191,10 @@ class ContactLoop:
         """See the class."""
         return self._state.work.copy()
 
+    def kick(self, speeds: Array) -> None:
+        """Change all speeds at once by (n,) [rad/s]."""
+        self._state.modes[:] += self._linear.kicked(self._system, speeds)
+
     def advance(self, steps: int, drive_torque: float | None = None) -> LoopRecord:
         """March a number of steps under a motor torque [N m]; that of the start when left out.
 

@@ -71,6 +71,10 @@ class ModesOverStep:
         found = moving - np.where(fast, held / np.where(fast, self._poles, 1.0), 0.0)
         return _stacked(found[self._kept, None])[:, 0].copy()
 
+    def kicked(self, system: LinearSystem, speeds: Array) -> Array:
+        """What a sudden change of all speeds (n,) adds to the modes (2 n_kept,)."""
+        return _stacked((self._loads @ (system.inertia @ speeds))[self._kept, None])[:, 0].copy()
+
     def _pushes(self, pushed: Complex) -> tuple[Complex, Complex]:
         """Modes at the end per force at the start and at the end, from their forcing (n_kept, n)."""
         phi_1, phi_2, _ = self._phi

@@ -1,8 +1,8 @@
 """Steady response with the tooth contact in the loop: a march until the factors of the meshes stay as they are.
 
-The twist of the bracing is held, and the motor torque is corrected until the speed stays. A step is a whole part of the
-shortest mesh period: what is faster than the steps then falls on harmonics of the mesh, and not beside them, where it
-would beat with the mesh and find other modes of the drivetrain.
+The twist of the bracing is held; motor torque and speed are corrected from window to window. A step is a whole part of
+the shortest mesh period: what is faster than the steps then falls on harmonics of the mesh, and not between them, where
+it would beat with the mesh and find other modes of the drivetrain.
 """
 
 import math
@@ -29,7 +29,7 @@ WINDOW, WINDOW_PERIODS = 0.03, 40
 CORRECTED = 0.7
 """Share of the drift in speed that a correction of the motor torque takes away."""
 STEADY_SPEED = 1e-4
-"""Change of the speed from window to window, over the speed, with which it stays [-]."""
+"""Distance of the mean speed from the one asked for, over that, with which it is held [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,23 +121,40 @@ def looped_response(
         drag_torques=problem.drag_torques,
     )  # fmt: skip
     count = math.ceil(max(WINDOW, WINDOW_PERIODS * float(periods.max())) / step)
-    inertia = _inertia(problem)
-    drive, speed, windows = problem.drive_torque, math.nan, _Windows()
+    held, windows = _HeldSpeed(problem), _Windows()
     while True:
-        record = loop.advance(count, drive)
-        before, speed = speed, float(record.speed[0].mean())
-        drift = 0.0 if math.isnan(before) else speed - before
-        drive -= CORRECTED * inertia * drift / (count * step)
+        record = loop.advance(count, held.drive)
         windows.add(record)
-        steady = not math.isnan(before) and abs(drift) <= STEADY_SPEED * problem.speed
-        time = windows.count * count * step
+        speed, time = float(record.speed[0].mean()), windows.count * count * step
+        steady = abs(speed - problem.speed) <= STEADY_SPEED * problem.speed
         settled = steady and bool(np.all(windows.to_come <= tolerance))
         if settled or time + count * step > longest:
             break
+        held.correct(loop, speed, count * step)
     return LoopedResponse(
         speed=speed, **_in_motion(record), change=windows.to_come, settled=settled, time=time,
         steps=windows.count * count, unconverged=loop.unconverged,
     )  # fmt: skip
+
+
+class _HeldSpeed:
+    """Motor torque and kicks by which the mean speed of the first pinion comes to the one asked for, and stays."""
+
+    def __init__(self, problem: LoopedProblem) -> None:
+        system = problem.system
+        self.drive, self._speed = problem.drive_torque, problem.speed
+        self._ratios = pinion_ratios(system, [mesh.law for mesh in problem.meshes])
+        self._inertia = float(self._ratios @ system.inertia @ self._ratios / self._ratios[system.drive_dof])
+        self._before = math.nan
+
+    def correct(self, loop: ContactLoop, mean: float, window: float) -> None:
+        """After a window [s] with a mean speed [rad/s]."""
+        drift = 0.0 if math.isnan(self._before) else mean - self._before
+        self.drive -= CORRECTED * self._inertia * drift / window
+        # at the end of a window the rigid motion is half a window ahead of its mean
+        kick = self._speed - mean - 0.5 * drift
+        loop.kick(kick * self._ratios)
+        self._before = mean + kick
 
 
 class _Windows:
@@ -175,10 +192,3 @@ def _in_motion(record: LoopRecord) -> dict[str, Array]:
         "apart": ((record.force == 0.0) & (record.other_force == 0.0)).mean(axis=1),
         "tilt": np.ptp(record.tilt, axis=1),
     }
-
-
-def _inertia(problem: LoopedProblem) -> float:
-    """Motor torque per angular acceleration of the first pinion [kg m2]."""
-    system = problem.system
-    ratios = pinion_ratios(system, [mesh.law for mesh in problem.meshes])
-    return float(ratios @ system.inertia @ ratios / ratios[system.drive_dof])

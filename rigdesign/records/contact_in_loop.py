@@ -6,7 +6,7 @@ across them (`dynamics.response.contact_loop`). It is held against the periodic 
 same loads: all teeth alike and nothing that alternates once a turn, so that both repeat in every mesh.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.elastic_rig.wrench_rows import wrench_rows
 from dynamics.errors import DynamicsNotConverged
@@ -103,17 +102,21 @@ def _same(place: _Place, speed: float, run: DynamicRun) -> bool:
     return place.held is run.test and abs(speed - place.speed) <= SAME_SPEED * max(speed, place.speed)
 
 
-def _both(rig: Rig, place: _Place) -> _Both | None:
-    """Both responses, under the same matrices, drag torques and bracing twist."""
-    last, state = place.held.last, place.held.last.coupling_state
-    point = replace(place.held.point, speed=place.speed)
+def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoint, LoopedProblem] | None:
+    """The response on contact tables at a stated speed [rad/s], gears as warm as at the held point, and what the march
+    with the contact in the loop starts from: the same matrices, drag torques and bracing twist.
+
+    None where there is no response.
+    """
+    last, state = held.last, held.last.coupling_state
+    point = replace(held.point, speed=speed)
     system = replace(loop_system(rig, point, state, solve_bearings(rig, point, state)), periodic_loads=())
-    laws = [alike_teeth(law, True, True) for law in laws_of(last.models)]
-    drags = drags_at(rig, last, state, place.speed)
+    laws = [alike_teeth(law) for law in laws_of(last.models)]
+    drags = drags_at(rig, last, state, speed)
     curve = periodic_response(
         system,
         laws,
-        [rig.pinion_speed(place.speed)],
+        [rig.pinion_speed(speed)],
         LoopLoad(torque=signed_torque(rig, point)),
         drag_torques=drags,
         settings=SweepSettings(cutoff=rig.highest_mode),
@@ -121,25 +124,11 @@ def _both(rig: Rig, place: _Place) -> _Both | None:
     if not curve.points:
         return None
     (by_table,) = curve.points
-    try:
-        return _Both(by_table, looped_response(_problem(rig, place, system, laws, by_table, drags)))
-    except DynamicsNotConverged:
-        return None
-
-
-def _problem(
-    rig: Rig,
-    place: _Place,
-    system: LinearSystem,
-    laws: list[MeshLaw],
-    by_table: CurvePoint,
-    drags: Mapping[str, float],
-) -> LoopedProblem:
     rows = np.vstack([wrench_rows(rig.elastic.model, name) for name in rig.mesh_names])
-    return LoopedProblem(
+    return by_table, LoopedProblem(
         system=system,
         rows=rig.elastic.seen.on_freedoms(rows),
-        meshes=_meshes(rig, place, laws, by_table.flank),
+        meshes=_meshes(rig, held, laws, by_table.flank),
         speed=by_table.speed,
         twist=by_table.twist,
         drive_torque=by_table.drive_torque,
@@ -148,10 +137,18 @@ def _problem(
     )
 
 
-def _meshes(rig: Rig, place: _Place, laws: list[MeshLaw], flank: Array) -> list[MeshInLoop]:
+def _both(rig: Rig, place: _Place) -> _Both | None:
+    try:
+        found = problem_in_loop(rig, place.held, place.speed)
+        return None if found is None else _Both(found[0], looped_response(found[1]))
+    except DynamicsNotConverged:
+        return None
+
+
+def _meshes(rig: Rig, held: PointResult, laws: list[MeshLaw], flank: Array) -> list[MeshInLoop]:
     found = []
     for number, law in enumerate(laws):
-        contact = held_contact(rig, place.held, number)
+        contact = held_contact(rig, held, number)
         assert contact is not None
         found.append(
             MeshInLoop(contact=_coarser(contact.mesh), law=law, force=float(flank[number]) * contact.force)

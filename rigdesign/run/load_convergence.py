@@ -5,10 +5,10 @@ twice as long, and of shafts that bend once with modes up to half the frequency;
 and they are added. Slices and elements are of second order (midpoint rule over the face, lumped inertia), modes fall at
 least as fast, for static shapes stand for those left out: a third of the change is left where the rules of
 `rig.resolution` decide; slices or elements that the case states may be too few for any order: there the whole change
-counts. Peaks and least
-torques of the time run take the error of the periodic response at the speed and torque at which they occur: the run
-itself is not marched again. At fidelity reference the difference to the contact solved in the loop
-(`rigdesign.records.contact_in_loop`) is added whole, of its places that with the nearest speed. Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123.
+counts. Peaks and least torques of the time run take the error of the periodic response at the speed and torque at which
+they occur: the run itself is not marched again. At fidelity reference the difference to the contact solved in the loop
+(`rigdesign.records.contact_in_loop`) is added whole, of its places that with the nearest speed.
+Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123.
 """
 
 import math
