@@ -1,8 +1,10 @@
-"""Modes of a drivetrain over one step, under forces on some of its rows that are linear in it.
+"""Modes of a drivetrain over one step, under forces on some of its rows that are held over it.
 
-The modes of the linear part are taken over the step exactly; those above a cutoff follow their forces at once and with
-their delay (`dynamics.kernels.looped_march`).
+The modes of the linear part are taken over the step exactly, forces as `dynamics.response.step_hold` holds them; modes
+above a cutoff follow their forces at once and with their delay (`dynamics.kernels.looped_march`).
 """
+
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import ModalForm
 from dynamics.kernels.looped_march import HeldModes
-from dynamics.response.phi_functions import phi_functions
+from dynamics.response.step_hold import HeldInput, numerov, phi
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -22,23 +24,32 @@ SLOW = 1.0
 class ModesOverStep:
     """Complex modes, one of each conjugate pair, and what forces on the rows do to them and to the rows in one step."""
 
-    def __init__(self, form: ModalForm, rows: Array, step: float, cutoff: float) -> None:
+    def __init__(
+        self,
+        form: ModalForm,
+        rows: Array,
+        step: float,
+        cutoff: float,
+        hold: Callable[[Complex], HeldInput] = numerov,
+    ) -> None:
         """Prepare.
 
         rows : (n_rows, n) on the freedoms of the form; step : [s]
         cutoff : modes above this frequency [Hz] are not marched
+        hold : weights of the forces at the end of a step, by poles times step
         """
         upper = form.poles.imag >= 0.0
         poles = form.poles[upper]
         seen = (rows @ form.velocity_shapes[:, upper]) * np.where(poles.imag > 0.0, 2.0, 1.0)
         self._loads, self._poles, self._seen, self._step = form.loads[upper], poles, seen, step
         self._kept = kept = np.abs(poles) <= 2.0 * np.pi * cutoff
-        self._phi = phi_functions(poles[kept] * step)
-        self._decay = np.exp(poles[kept] * step)
+        scaled = poles[kept] * step
+        self._phi_1, self._phi_2, self._hold = phi(1, scaled), phi(2, scaled), hold(scaled)
+        self._decay = np.exp(scaled)
         pushed = self._loads @ rows.T
         old, new = self._pushes(pushed[kept])
         self._pushed = _stacked(np.hstack([old, new]))
-        moving, steady = seen[:, kept] * (step * self._phi[0]), seen[:, kept] * self._decay
+        moving, steady = seen[:, kept] * (step * self._phi_1), seen[:, kept] * self._decay
         self._rows = np.vstack([_seen(moving), _seen(steady)])
         self._given = np.block(
             [
@@ -77,17 +88,16 @@ class ModesOverStep:
 
     def _pushes(self, pushed: Complex) -> tuple[Complex, Complex]:
         """Modes at the end per force at the start and at the end, from their forcing (n_kept, n)."""
-        phi_1, phi_2, _ = self._phi
-        return pushed * (self._step * (phi_1 - phi_2))[:, None], pushed * (self._step * phi_2)[:, None]
+        late = self._hold.state
+        return pushed * (self._step * (self._phi_1 - late))[:, None], pushed * (self._step * late)[:, None]
 
     def _by_kept(
         self, pushed: Complex, old: Complex, new: Complex
     ) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Motion in the step and speed at its end per force at its start and its end, (n_rows, n) each."""
-        _, phi_2, phi_3 = self._phi
-        seen, square = self._seen[:, self._kept], self._step**2
+        seen, square, late = self._seen[:, self._kept], self._step**2, self._hold.turn
         return (
-            ((seen * (square * (phi_2 - phi_3)) @ pushed).real, (seen * (square * phi_3) @ pushed).real),
+            ((seen * (square * (self._phi_2 - late)) @ pushed).real, (seen * (square * late) @ pushed).real),
             ((seen @ old).real, (seen @ new).real),
         )
 
