@@ -3,6 +3,7 @@
 import pytest
 
 from tests.builders.commands import rigdesign, write
+from tests.builders.file_order import longest_first
 from tests.builders.shared_runs import close_folder, open_folder
 
 __all__ = ["rigdesign", "write"]
@@ -16,3 +17,9 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_unconfigure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         close_folder()
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """In a process of pytest-xdist, which takes files as they come (`--no-loadscope-reorder`)."""
+    if hasattr(config, "workerinput"):
+        longest_first(items)

@@ -176,7 +176,7 @@ class BranchSearch:
         fine = resample(start, replace(start.grid, samples=2 * start.grid.samples))
         trace = BranchTrace(self._over_speed, fine, rising=rising)
         most = int(MOST_POINTS * min(1.0, FEW_HARMONICS / start.grid.harmonics) ** 2)
-        for place, state in crossings(trace.points((low, high), most), start, speeds):
+        for place, state in crossings(trace.points((low, high), most, speeds), start, speeds):
             i = gap[place]
             if i in self.states.found and i in self.states.other:
                 continue

@@ -33,6 +33,11 @@ MOST_ITERATIONS, EASY = 10, 4
 """Iterations of a step at most, and those up to which the next step is longer."""
 ACCURACY = 1e-4
 """Residual up to which a step counts [-]; the shortest steps may stall at ``STALL_LIMIT``."""
+SETTLED = 0.1 * ACCURACY
+"""Residual at which a step is not improved any further [-]; states at asked speeds are solved anew from the trace."""
+CRAWLING, STANDING = 10, 40
+"""Steps in a row after which a trace is given up: too short to reach an asked speed, and with too little change of
+speed for it, which a resonance passes in fewer."""
 DIFFERENCE = 1e-6
 """Relative change of speed for derivatives over it [-]."""
 
@@ -92,13 +97,28 @@ class BranchTrace:
         self._sense = 1.0 if rising else -1.0
         self._length = FIRST_STEP
 
-    def points(self, limits: tuple[float, float], most: int) -> Iterator[TracedPoint]:
-        """Points of the branch until it leaves the limits of speed [rad/s], ends, or ``most`` were found."""
-        for _ in range(most):
+    def points(
+        self, limits: tuple[float, float], most: int, asked: Array | None = None
+    ) -> Iterator[TracedPoint]:
+        """Points of the branch until it leaves the limits of speed [rad/s], ends, or ``most`` were found.
+
+        asked : speeds [rad/s] for which it is traced. Where a mesh chatters, tangents hold for the shortest steps only;
+        a trace that gets on so slowly that the points left reach none of these speeds is given up.
+        """
+        crawled, passed = 0, [self._at.speed]
+        for left in range(most - 1, -1, -1):
             if not limits[0] <= self._at.speed <= limits[1] or not self._advance():
                 return
             assert self._chord is not None
             yield TracedPoint(solution=self._at, rising=self._chord.speed > 0.0)
+            if asked is None:
+                continue
+            away = float(np.abs(asked - self._at.speed).min())
+            crawled = crawled + 1 if left * self._length * self._scale < away else 0
+            passed = [*passed[-STANDING:], self._at.speed]
+            stands = len(passed) > STANDING and left * np.abs(np.diff(passed)).mean() < away
+            if crawled >= CRAWLING or stands:
+                return
 
     def _advance(self) -> bool:
         """One step; False where none is short enough."""
@@ -151,7 +171,7 @@ class BranchTrace:
             error = equations.error(residual)
             if best is None or error < best[0].residual:
                 best = equations.solution(state, error, iteration), iteration
-            if error < 1e-6 or (error > 0.5 * best[0].residual and iteration >= best[1] + 2) or error > 1e3:
+            if error < SETTLED or (error > 0.5 * best[0].residual and iteration >= best[1] + 2) or error > 1e3:
                 break
             move = self._move(equations, residual, reactions, state, tangent, (ahead, speed_ahead, speed))
             if move is None:

@@ -10,7 +10,7 @@ Checks that need the time run or the response over speed are left out.
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import partial
 
@@ -115,28 +115,41 @@ def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
 
 @dataclass(frozen=True)
 class Search:
-    """What an input has to turn: the governing checks, those that hold at the stated values, and how to solve them."""
+    """What an input has to turn: the governing checks, those that hold at the stated values, and how to solve them.
+
+    Each changed case is solved once.
+    """
 
     targets: Sequence[Check]
     held: Sequence[Check]
     solve: Solve
+    _solved: dict[str, Mapping[str, Check] | None] = field(default_factory=dict, compare=False, repr=False)
 
     def utilisation(self, case: Case) -> float | None:
         """Highest of the governing checks; None where one of them has none, or the case no result."""
-        try:
-            found = self.solve(case)
-        except (CaseError, NotConvergedError):
+        found = self._checks(case)
+        if found is None:
             return None
         values = [found[target.id].utilisation if target.id in found else None for target in self.targets]
         known = [value for value in values if value is not None]
         return max(known) if len(known) == len(values) else None
 
     def broken(self, case: Case) -> list[Check]:
-        """Checks that hold at the stated values and break in this case."""
-        found = self.solve(case)
+        """Checks that hold at the stated values and break in this case, which has a utilisation."""
+        found = self._checks(case)
+        assert found is not None
         own = {target.id for target in self.targets}
         ids = [check.id for check in self.held if check.id in found and check.id not in own]
         return [found[name] for name in ids if not _held(found[name])]
+
+    def _checks(self, case: Case) -> Mapping[str, Check] | None:
+        """Checks of a changed case; None where it has no result."""
+        if case.hash not in self._solved:
+            try:
+                self._solved[case.hash] = self.solve(case)
+            except (CaseError, NotConvergedError):
+                self._solved[case.hash] = None
+        return self._solved[case.hash]
 
 
 def _held(check: Check) -> bool:

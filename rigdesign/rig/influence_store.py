@@ -2,7 +2,7 @@
 
 A file is named after the hash of the gear model and begins with the hash of that and of what follows, an archive of
 arrays. A file that is damaged, cut off or of another gear is not used: its numbers are computed again and replace it.
-Deleting the folder loses time only.
+Deleting the folder loses time only. A gear is computed by one process at a time; others that need it wait for it.
 """
 
 import hashlib
@@ -10,8 +10,9 @@ import io
 import json
 import os
 import tempfile
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from dynamics.influence.build import influence_numbers
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers, RootFillet
 from rigdesign.base.cache_folder import cache_folder
+from rigdesign.base.file_lock import FileLock, HeldError
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -29,6 +31,8 @@ Progress = Callable[[str], None]
 SCHEMA = 2
 """Of the numbers and of how they are computed; raise it with any change of either."""
 ABSENT = (FileNotFoundError, NotADirectoryError)
+POLL = 0.2
+"""Between two looks whether another process has finished a gear [s]."""
 SEAL = 64
 """Length of the hash at the beginning of a file [bytes]."""
 
@@ -72,16 +76,52 @@ class InfluenceStore:
         return found
 
     def compute(self, model: GearModel) -> InfluenceNumbers:
-        """Numbers of a gear, computed now and stored."""
-        made = influence_numbers(model)
-        # a cache that cannot be written costs time only
-        with suppress(OSError):
-            _write(self.file(model), identity(model), made)
-        return made
+        """Numbers of a gear, computed now and stored, or read where another process has done so meanwhile."""
+        with self._alone(model):
+            found = self.stored(model)
+            if found is not None:
+                return found
+            made = influence_numbers(model)
+            # a cache that cannot be written costs time only
+            with suppress(OSError):
+                _write(self.file(model), identity(model), made)
+            return made
+
+    def in_progress(self, model: GearModel) -> bool:
+        """Whether another process is computing the numbers of a gear."""
+        lock = self._lock(model)
+        try:
+            if lock.exists():
+                FileLock(lock).release()
+        except HeldError:
+            return True
+        except OSError:
+            return False
+        return False
 
     def file(self, model: GearModel) -> Path:
         """Where the numbers of a gear are kept."""
         return self.folder / f"{identity(model)[:32]}.influence"
+
+    def _lock(self, model: GearModel) -> Path:
+        return self.file(model).with_suffix(".lock")
+
+    @contextmanager
+    def _alone(self, model: GearModel) -> Iterator[None]:
+        """While no other process computes this gear; at once where no lock can be had: both then compute it."""
+        lock: FileLock | None = None
+        with suppress(OSError):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            while lock is None:
+                try:
+                    lock = FileLock(self._lock(model))
+                except HeldError:
+                    time.sleep(POLL)
+        try:
+            yield
+        finally:
+            if lock is not None:
+                lock.release()
 
 
 def identity(model: GearModel) -> str:

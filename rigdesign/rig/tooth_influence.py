@@ -51,8 +51,10 @@ class ToothInfluence:
         if missing:
             say(f"influence numbers of gears not yet known: {len(missing)}, half a minute each; then kept")
         at_once = _at_once()
-        for first in range(0, len(missing), at_once):
-            batch = missing[first : first + at_once]
+        while missing:
+            # what another process computes comes last: it is read then
+            missing.sort(key=self.store.in_progress)
+            batch, missing = missing[:at_once], missing[at_once:]
             with BackgroundTasks([partial(self.store.compute, model) for model in batch]) as tasks:
                 self._found.update(zip(batch, tasks.results(), strict=True))
 

@@ -16,7 +16,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.response.harmonic_balance import solve_periodic
-from dynamics.response.harmonic_continuation import BranchTrace, SpeedProblem
+from dynamics.response.harmonic_continuation import CRAWLING, BranchTrace, SpeedProblem
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.response.harmonic_stability import instability
 from dynamics.response.periodic_response import periodic_by_time
@@ -119,6 +119,20 @@ def test_one_branch_joins_both_responses_and_is_unstable_between_its_turning_poi
     assert (~stable).sum() > 10
     at = int(np.argmin(np.abs(frequency - 0.75) + np.where(amplitude < 0.25, 1.0, 0.0)))
     assert amplitude[at] == pytest.approx(0.3183 - 0.64 * (frequency[at] - 0.75), abs=0.003)
+
+
+def test_a_trace_is_given_up_where_the_points_left_reach_no_asked_speed() -> None:
+    """Both turning points are passed on the way from 0.4 to 1; 20 points are too few, which ten steps show."""
+    over, start = oscillator()
+    limits, asked = (0.0, 1.2 / TEETH), np.array([1.0 / TEETH])
+
+    def reached(most: int, asked: Array | None) -> tuple[int, float]:
+        found = list(BranchTrace(over, start, rising=True).points(limits, most, asked))
+        return len(found), found[-1].solution.speed
+
+    assert reached(300, asked)[1] > asked[0]
+    assert reached(20, None)[0] == 20 and reached(20, None)[1] < asked[0]
+    assert CRAWLING <= reached(20, asked)[0] < 20
 
 
 def test_jumps_in_time_are_the_turning_points() -> None:

@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 
 from rigdesign import Case, load_case, run_case
-from rigdesign.reanalysis.flips import governing
+from rigdesign.base.errors import NotConvergedError
+from rigdesign.reanalysis.flips import Search, governing
+from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from tests.builders.checks import check
 
@@ -31,6 +33,25 @@ def test_without_a_broken_check_the_nearest_one_counts() -> None:
 
 def test_a_nearer_check_that_is_not_looked_at_leaves_nothing_to_show() -> None:
     assert governing([HELD, NEARER]) == []
+
+
+def test_a_changed_case_is_solved_once() -> None:
+    """By the search and by the look at what else breaks; also one without a result."""
+    case, solved = load_case("loop_1to1"), []
+
+    def solve(changed: Case) -> dict[str, Check]:
+        solved.append(changed.schedule.test_torque)
+        if changed.schedule.test_torque > 305.0:
+            raise NotConvergedError("no state")
+        return {BROKEN.id: replace(BROKEN, utilisation=0.9), HELD.id: replace(HELD, utilisation=1.2)}
+
+    search = Search([BROKEN], [HELD], solve)
+    for torque in (301.0, 310.0, 301.0, 310.0):
+        changed = case.with_value("schedule.test_torque", f"{torque} N m")
+        assert search.utilisation(changed) == (0.9 if torque < 305.0 else None)
+    found = search.broken(case.with_value("schedule.test_torque", "301 N m"))
+    assert [check.id for check in found] == [HELD.id]
+    assert solved == [301.0, 310.0]
 
 
 @pytest.fixture(scope="module")

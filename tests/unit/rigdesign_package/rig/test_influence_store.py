@@ -8,6 +8,7 @@ import pytest
 
 from dynamics.influence.gear_body import GearBody
 from rigdesign.base import parallel
+from rigdesign.base.file_lock import FileLock
 from rigdesign.rig import influence_store
 from rigdesign.rig.influence_store import InfluenceStore, identity
 from rigdesign.rig.tooth_influence import ToothInfluence, gear_model
@@ -53,6 +54,41 @@ def test_second_call_reads_what_the_first_stored(tmp_path: Path, built):
     assert len(built) == 1 and len(said) == 1
     assert same(first, again)
     assert [file.suffix for file in tmp_path.iterdir()] == [".influence"]
+
+
+def test_a_gear_that_another_process_computes_is_waited_for(tmp_path: Path, built, monkeypatch):
+    """The other one stores its numbers while this one waits; nothing is computed twice, and no lock is left."""
+    store = InfluenceStore(tmp_path)
+    other = FileLock(store.file(MODEL).with_suffix(".lock"))
+    assert store.in_progress(MODEL) and not store.in_progress(WHEEL)
+
+    def other_ends(_: float) -> None:
+        influence_store._write(store.file(MODEL), identity(MODEL), invented_numbers(seed=7))
+        other.release()
+
+    monkeypatch.setattr(influence_store.time, "sleep", other_ends)
+    assert same(store.compute(MODEL), invented_numbers(seed=7))
+    assert built == [] and not store.in_progress(MODEL)
+    assert [file.suffix for file in tmp_path.iterdir()] == [".influence"]
+
+
+def test_a_lock_file_of_a_killed_process_holds_up_nobody(tmp_path: Path, built):
+    store = InfluenceStore(tmp_path)
+    store.file(MODEL).with_suffix(".lock").write_text('{"host": "gone", "pid": 1, "since": ""}')
+    assert not store.in_progress(MODEL)
+    store.compute(MODEL)
+    assert built == [MODEL]
+
+
+def test_gears_that_another_process_computes_come_last(tmp_path: Path, built, monkeypatch):
+    monkeypatch.setattr(parallel, "cores", lambda: 1)
+    influence = ToothInfluence(InfluenceStore(tmp_path))
+    pinion = gear_model(helical_pair(), 0)
+    lock = influence.store.file(pinion).with_suffix(".lock")
+    other = FileLock(lock)
+    monkeypatch.setattr(influence_store.time, "sleep", lambda _: other.release())
+    influence.prepare([helical_pair()])
+    assert built == [gear_model(helical_pair(), 1), pinion]
 
 
 def test_another_gear_is_built_for_itself(tmp_path: Path, built):

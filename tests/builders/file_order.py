@@ -1,0 +1,34 @@
+"""Order in which the processes of pytest-xdist take up the test files: the long ones first, so that none is waited for.
+
+The first two also share out what is made once and kept: one computes the influence numbers of the gears while the
+other compiles the kernels, and each finds what the other has stored.
+"""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from tests.builders.paths import ROOT
+
+LONGEST = (
+    "regression/test_cases.py",
+    "verification/test_rolling_bearing_rig.py",
+    "regression/test_frozen_sets.py",
+)
+"""Files of the tests folder, those that take longest first."""
+
+
+def longest_first(items: list[pytest.Item]) -> None:
+    """Sort tests by file: `LONGEST`, files with whole runs, then the rest; most tests first, in each as they stand."""
+    first = {ROOT / "tests" / name: place for place, name in enumerate(LONGEST)}
+    gone = [str(file) for file in first if not file.is_file()]
+    if gone:
+        raise pytest.UsageError(f"tests/builders/file_order.py: no such file: {', '.join(gone)}")
+    counts = Counter(item.path for item in items)
+    whole = {item.path for item in items if item.get_closest_marker("whole_run")}
+
+    def place(item: pytest.Item) -> tuple[int, bool, int, Path]:
+        return first.get(item.path, len(first)), item.path not in whole, -counts[item.path], item.path
+
+    items.sort(key=place)
