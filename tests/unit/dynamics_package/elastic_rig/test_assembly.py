@@ -9,13 +9,7 @@ from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.damped_modes import damped_modes
 from dynamics.elastic_rig.layout import HousingSupport, ProbeStation, isotropic_support
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import (
-    BearingCoefficients,
-    RunningState,
-    full_matrices,
-    isotropic_bearing,
-)
-from dynamics.elastic_rig.statics import static_deflection
+from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState, isotropic_bearing
 from tests.builders.elastic_rig import (
     bearings,
     motion_of_all,
@@ -25,6 +19,8 @@ from tests.builders.elastic_rig import (
     running,
     single_shaft,
 )
+from tests.builders.full_matrices import full_matrices
+from tests.builders.static_deflection import static_deflection
 
 BAR = (Section(length=0.15, outer_diameter=0.05), Section(length=0.25, outer_diameter=0.03))
 
