@@ -11,7 +11,8 @@ import numpy as np
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
-from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response, refined_response
+from dynamics.response.response_curve import ResponseCurve
+from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.braced_loop import locked_share, signed_torque

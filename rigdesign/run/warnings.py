@@ -6,11 +6,12 @@ import numpy as np
 
 from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.checks.omissions import thrust
-from rigdesign.coupling.boundary import GEAR_OIL, printed_films
+from rigdesign.coupling.boundary import printed_films
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
+from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss

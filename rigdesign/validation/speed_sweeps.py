@@ -15,7 +15,8 @@ from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.tip_contact import tip_separation
 from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
+from dynamics.response.response_curve import Method
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.initial_state import initial_state

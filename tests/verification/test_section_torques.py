@@ -18,8 +18,9 @@ from dynamics.elastic_rig.twist_rows import elastic_twist_rows
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.motion_kind import Motion
+from dynamics.response.response_curve import CurvePoint
 from dynamics.response.section_torque import section_torques
-from dynamics.response.speed_sweep import CurvePoint, periodic_response
+from dynamics.response.speed_sweep import periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.full_matrices import full_matrices
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype, synthetic_law
