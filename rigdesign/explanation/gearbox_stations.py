@@ -140,6 +140,15 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__loop_over_speed="its damper, by the mesh frequency of every speed",
     ),
     "gearboxes.*.gears.*.spline": stations_at(rig__drivetrain="spring and damper between gear and shaft"),
+    **{
+        f"gearboxes.*.gears.*.spline.{key}": stations_at(
+            rig__drivetrain="seat of a gear with all its freedoms on a shaft that bends"
+        )
+        for key in ("radial_stiffness", "axial_stiffness", "angular_stiffness", "lateral_damping_time")
+    },
+    "gearboxes.*.gears.*.seat_offset": stations_at(
+        rig__drivetrain="place of the seat, and lever of the gear on a shaft that bends"
+    ),
     "gearboxes.*.meshes.*": stations_at(
         rig__gears="geometry of the gear pair",
         coupling__mesh_models="mesh law: stiffness over the path of contact",

@@ -135,6 +135,22 @@ def test_condensed_housing_moves_one_bearing_under_the_load_of_another() -> None
     assert model.names[-1] == "b1 seat u_z"
 
 
+def test_thrust_of_a_locating_bearing_presses_on_its_seat() -> None:
+    """An axial force passes the spring of the bearing and the seat: F (1 / k_b + h_xx); the other seat follows it."""
+    rig = single_shaft((Section(length=0.4, outer_diameter=0.05),), (0.0, 0.4), 0.1)
+    flexibility = np.diag([2e-9, 3e-9, 5e-9, 2e-9, 3e-9, 5e-9])
+    flexibility[2, 5] = flexibility[5, 2] = 1e-9
+    housing = HousingSupport(
+        name="housing", bearings=("b0", "b1"), stiffness=np.linalg.inv(flexibility), mass=2.0 * np.eye(6)
+    )
+    model = assemble_rig(replace(rig, supports=(housing,)))
+    pull = model.rows("b0")[0]
+    deflection = static_deflection(model, running(rig), 1e3 * pull).deflection
+    assert pull @ deflection == pytest.approx(1e3 * (1e-9 + 5e-9), rel=1e-9)
+    seats = [deflection[model.freedoms.seats[b]][2] for b in ("b0", "b1")]
+    assert seats == pytest.approx([5e-6, 1e-6], rel=1e-9)
+
+
 def test_rolling_bearing_locates_and_resists_tilting() -> None:
     bar = (Section(length=0.4, outer_diameter=0.05),)
     rig = replace(
