@@ -52,7 +52,8 @@ class HousingSupport:
 
     bearings : names of k of them. stiffness, mass, damping : (d k, d k) symmetric [N/m], [kg], [N s/m] and likewise for
     rotations, bearing after bearing, each in the first d of `SEAT_DIRECTIONS`, d = 2, 3 or 5; in the others a seat
-    stands still. Condensed from a finite-element mesh of the housing (Guyan 1965), or one bearing by `isotropic_support`.
+    stands still. Condensed from a finite-element mesh of the housing (Guyan 1965), or one bearing by
+    `isotropic_support`.
 
     Raises DrivetrainError for a wrong shape, or a stiffness or mass that is not symmetric and positive definite.
     """

@@ -90,7 +90,8 @@ class Housing(Part):
     """Joint between foot and field; perfect contact when left out, which the report lists as an assumption."""
     bearing_seats: Literal["rigid", "elastic"] = "rigid"
     """elastic: the seats yield under shafts that bend, across the axis and along it, with stiffness and mass condensed
-    from the mesh of the housing, bolted down at its foot; rigid: they yield only where a bearing states its ``support_stiffness``."""
+    from the mesh of the housing, bolted down at its foot; rigid: they yield only where a bearing states its
+    ``support_stiffness``."""
     mesh: HousingMesh = HousingMesh()
     """Element sizes by zone where the usual ones do not do."""
     mesh_file: Text | None = None

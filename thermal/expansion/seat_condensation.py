@@ -2,8 +2,8 @@
 
 A seat moves by the area mean of its bore's displacement, across the axis and along it; a force on it is spread evenly
 over the bore, which is the same condition read as a load, so that the compliance is symmetric. So does the thrust of a
-bearing that locates its shaft press on the whole bore, not on the ring of its shoulder. The housing stands bolted: every node
-of its foot is held. The mass is that of the static shapes (R. J. Guyan, AIAA J. 3 (1965) 380).
+bearing that locates its shaft press on the whole bore, not on the ring of its shoulder. The housing stands bolted:
+every node of its foot is held. The mass is that of the static shapes (R. J. Guyan, AIAA J. 3 (1965) 380).
 """
 
 from collections.abc import Mapping
