@@ -1,13 +1,13 @@
 """Ramps that pass the speed band of a resonance before its bearings have moved the gears: what the time run says there.
 
 From one band of speed to the next the time run brings in over `FADE` what other bearings change in the mean place of
-the gears, hence in the approach of their flanks (`dynamics.response.band_change`). A band that is passed in less is left
-before that has come.
+the gears, hence in the approach of their flanks (`dynamics.response.band_change`). A band that is passed in less is
+left before that has come.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import accumulate
+from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +72,7 @@ def passed_bands(time: Array, speed: Array, limits: Sequence[float]) -> Iterator
     """
     band = np.searchsorted(limits, speed)
     first = np.flatnonzero(np.diff(band, prepend=-1))
-    for here, after in zip(first[1:], first[2:]):
+    for here, after in pairwise(first[1:]):
         number = int(band[here])
         if 0 < number < len(limits) and (band[here - 1] - number) * (band[after] - number) < 0:
             yield PassedBand(
