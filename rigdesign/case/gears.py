@@ -269,7 +269,11 @@ class GearMesh(Part):
     tip_cut: Literal["pinion", "wheel", "both"] | None = None
     """Gear whose tip is shortened until ``contact_ratio`` is met."""
     double_helical: bool = False
-    """Two opposite helices; face widths are those of the modelled half that carries the torque."""
+    """Two opposite helices; face widths and ``damping`` are those of one half."""
+    carrying_halves: Literal[1, 2] = 2
+    """Halves of a double-helical mesh that carry. 2: they share the torque, as a gear that floats lets them, and the
+    loop has the springs, dampers and mass of both. 1: the loop has one of them, which carries the whole torque; unless
+    the inertia of its gears is stated it is that of one half."""
     damping: LinearDamping | None = None
     """Damping along the line of action at the mean mesh stiffness; or ``damping_ratio``."""
     damping_ratio: float | None = Field(default=None, gt=0.0, le=0.5)
@@ -295,6 +299,11 @@ class GearMesh(Part):
     in the housing."""
     low_load_factor: bool = True
     """Reduce the tooth stiffness below 100 N/mm line load (ISO 6336-1)."""
+
+    @property
+    def sharing(self) -> int:
+        """Halves that share its torque: 1 but for double-helical gears of which both carry."""
+        return self.carrying_halves if self.double_helical else 1
 
     @model_validator(mode="after")
     def _tips(self) -> "GearMesh":

@@ -153,6 +153,10 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__gears="geometry of the gear pair",
         coupling__mesh_models="mesh law: stiffness over the path of contact",
     ),
+    "gearboxes.*.meshes.*.carrying_halves": stations_at(
+        coupling__mesh_models="springs and dampers of the mesh in the loop, and the torque on each of its halves",
+        rig__drivetrain="mass of the gear bodies, where no inertia is stated",
+    ),
     "gearboxes.*.meshes.*.damping": stations_at(coupling__mesh_damping="damper of the mesh in the response"),
     "gearboxes.*.meshes.*.damping_ratio": stations_at(
         coupling__mesh_damping="damper of the mesh in the response"

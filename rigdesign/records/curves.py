@@ -213,7 +213,10 @@ def rating_options(rig: Rig, name: str) -> RatingOptions:
 
 def iso_factor(rig: Rig, name: str, torque: float, speed: float) -> DynamicFactor:
     """K_V of one mesh by ISO 6336-1 method B; torque [N m] and speed [rad/s] of its pinion, gears as drawn."""
-    return dynamic_factor(rig.pairs[name], abs(torque), speed, rating_options(rig, name))
+    box, own = rig.mesh(name)
+    return dynamic_factor(
+        rig.pairs[name], abs(torque) / box.meshes[own].sharing, speed, rating_options(rig, name)
+    )
 
 
 def own_ratio(rig: Rig, mesh: int) -> float:

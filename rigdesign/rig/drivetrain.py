@@ -121,7 +121,7 @@ def _gear_bodies(
                     offset=gear.seat_offset,
                     inertia=gear_inertia(case, box_name, name, pairs, materials),
                     mass=gear_mass(case, box_name, name, pairs, materials),
-                    width=box.body_width(name),
+                    width=box.carrying_halves(name) * gear.face_width,
                     stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
                     damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
                     loss_factor=0.0 if gear.spline is None else gear.spline.loss_factor,
@@ -151,13 +151,14 @@ def gear_inertia(
     inertia = part.inertia
     if inertia is None:
         toothing, density = _toothing(gear, box, case, pairs), materials[part.material].density
-        outer, width = 2.0 * toothing.reference_radius, gearbox.body_width(gear)
+        halves = gearbox.carrying_halves(gear)
+        outer, width = 2.0 * toothing.reference_radius, halves * part.face_width
         inner = part.bore_diameter
         if part.rim_thickness is not None and part.web_thickness is not None:
             inner = max(2.0 * (toothing.root_radius - part.rim_thickness), inner)
         inertia = disc_inertia(outer, inner, width, density)
         if inner > part.bore_diameter:
-            web = (part.web_thickness or 0.0) * gearbox.halves(gear)
+            web = (part.web_thickness or 0.0) * halves
             inertia += disc_inertia(inner, part.bore_diameter, web, density)
     return part.inertia_factor * inertia
 

@@ -79,7 +79,7 @@ def _gears(solved: SolvedRig) -> Iterator[str]:
         if point.last.response is not None:
             wave = point.last.response.wave
             for model, approach, torque in zip(point.last.models, wave.approach, wave.torque):
-                by_body = model.law.body_compliance / model.law.base_radius_1 * torque
+                by_body = model.whole.body_compliance / model.law.base_radius_1 * torque
                 if text := reach_beyond(model.law, approach - by_body):
                     yield f"{model.name}, stage {point.point.stage}: {text}"
 
@@ -308,9 +308,13 @@ def not_modelled(solved: SolvedRig) -> list[str]:
             "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part depends on it"
         )
     for name, box in solved.case.gearboxes.items():
-        if any(mesh.double_helical for mesh in box.meshes.values()):
+        if any(mesh.double_helical and mesh.sharing == 1 for mesh in box.meshes.values()):
             items.append(
                 f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
+            )
+        elif any(mesh.double_helical for mesh in box.meshes.values()):
+            items.append(
+                f"{name}: unequal shares of the halves of the double-helical gears: each carries half"
             )
         single = [name for name, mesh in box.meshes.items() if mesh.helix_angle and not mesh.double_helical]
         if single:

@@ -27,10 +27,10 @@ from rigdesign.validation.speed_sweeps import (
     closing,
     corner_gaps,
     damped,
+    laws_of_both_halves,
     loop_modes_at,
     simulation_models,
     speed_sweep,
-    two_halves,
 )
 
 FIGURE_7, FIGURE_8 = "P2, Figure 7", "P2, Figure 8"
@@ -115,7 +115,7 @@ def part_sweeps(prototype: Prototype) -> dict[str, SpeedSweep]:
         "corner-2-damping-300": (damped(twice, 300.0), loop),
         "corner-2-closing-rate": (closing(twice), loop),
         "corner-3-closing-rate": (closing(thrice), loop),
-        "both-halves": (two_halves(laws), bending_loop(prototype.both_halves)),
+        "both-halves": (laws_of_both_halves(prototype), bending_loop(prototype.both_halves)),
     }
     return {
         part.name: speed_sweep(prototype, runs[part.name][0], FINE, drivetrain=runs[part.name][1])
