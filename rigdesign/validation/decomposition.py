@@ -9,7 +9,8 @@ Found by these rows:
    alone. The reference gear, whose face comes into mesh gradually, stays at 1.00 at 12,000 rpm.
  - Modes in which the shafts of the test gears bend lie on the third and fourth mesh order between 750 and 1219 rpm, as
    P2 says, but raise K_V there by little: Table 1's 4e4 N s/m damp them.
- - Both halves of the double-helical gears in place of the one that P2 models change the test gear by 0.02.
+ - Both halves of the double-helical gears, each under half of the torque, in place of the one that P2 models raise the
+   largest K_V of the reference gear from 1.07 to 1.18 and change the test gear by 0.03.
 """
 
 from collections.abc import Iterator
