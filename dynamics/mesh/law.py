@@ -120,6 +120,19 @@ def back_deviations(law: MeshLaw) -> tuple[Array, Array]:
     )
 
 
+def in_parallel(law: MeshLaw, count: int) -> MeshLaw:
+    """The law of ``count`` equal meshes side by side on one pair of axes, their flanks in line: the halves of a
+    double-helical gear where both carry, whose axial forces cancel."""
+    if count == 1:
+        return law
+    return law._replace(
+        stiffness=count * law.stiffness,
+        mean_stiffness=count * law.mean_stiffness,
+        damping=count * law.damping,
+        body_compliance=law.body_compliance / count,
+    )
+
+
 def check_mesh_law(law: MeshLaw) -> None:
     """Raise ``ValueError`` naming value, limit and remedy if the tables do not describe a possible mesh."""
     n_slices, n_path = law.stiffness.shape

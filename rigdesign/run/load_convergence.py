@@ -18,7 +18,7 @@ from functools import partial
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks.dynamics import loaded_stages
 from rigdesign.coupling.bearing_films import solve_bearings

@@ -22,7 +22,8 @@ from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import pair_stiffness
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.mesh import chain
 from tests.builders.p2_gears import ALLOWANCES, spur_pair
 
