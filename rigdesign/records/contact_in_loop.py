@@ -22,7 +22,8 @@ from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.contact_loop import MeshInLoop
 from dynamics.response.looped_response import LoopedProblem, LoopedResponse, looped_response
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
