@@ -81,7 +81,7 @@ def shipped_run(name: str) -> RunResult:
 
 
 def shipped(name: str) -> ShippedRun:
-    """The same with the contact in the loop, empty where the teeth are analytic."""
+    """The same with the contact in the loop, empty at fidelity quick."""
     return shared(f"{name}-shipped", lambda: _shipped(name))
 
 
@@ -90,8 +90,8 @@ def _shipped(name: str) -> ShippedRun:
     looped: list[LoopedContact] = []
 
     def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
-        assert solved.run is not None
-        looped.extend(contact_in_loop(replace(solved.rig, fidelity="reference"), solved.run))
+        if solved.run is not None and solved.rig.fidelity == "standard":
+            looped.extend(contact_in_loop(replace(solved.rig, fidelity="reference"), solved.run))
         return result
 
     follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}

