@@ -29,6 +29,8 @@ from dynamics.kernels.hold_phase import Place, hold_phase, place_of
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
+    APART,
+    APART_RATE,
     APPROACH,
     AT_RATE,
     AT_REACH,
@@ -50,6 +52,11 @@ from dynamics.kernels.mesh_workspace import (
     OFF,
     OFFSET,
     OFFSET_RATE,
+    OTHER_BACK,
+    OTHER_FRONT,
+    OTHER_PRESSED,
+    OTHER_RUBBED,
+    PATH_TORQUE,
     PER_SPEED,
     PORT,
     PRESSED,
@@ -69,7 +76,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 1e4f1075
+# compiled from sources 6bb321f5
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -124,10 +131,22 @@ def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressi
     sign = 1.0 - 2.0 * side
     beside = sign * values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
     advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
-    reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH]
-    return Pressing(
-        sign, reach, sign * space[at + RATE], beside, advance, space[at + SPEED], space[at + PORT + SPEED]
-    )
+    other = space[at + OTHER_FRONT + side]
+    reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH] + other * space[at + APART]
+    rate = sign * space[at + RATE] + other * space[at + APART_RATE]
+    return Pressing(sign, reach, rate, beside, advance, space[at + SPEED], space[at + PORT + SPEED])
+
+
+@inlined
+def _front_begins(space: Array, at: int, values: Array, m: int) -> float:
+    """Return the approach of the teeth above which flanks in front may touch."""
+    return float(values[m, V_LEAST_GAP] - space[at + OTHER_FRONT] * space[at + APART])
+
+
+@inlined
+def _back_begins(space: Array, at: int, values: Array, m: int) -> float:
+    """Return the approach of the teeth below which flanks on the back may touch."""
+    return float(space[at + OTHER_BACK] * space[at + APART] - values[m, V_BACKLASH] - values[m, V_LEAST_GAP])
 
 
 @inlined
@@ -136,8 +155,8 @@ def find_place(
 ) -> None:
     """Find the flank of a mesh that touches at an angle of the pinion and an approach of the teeth, and its place."""
     values = tables.values
-    front = teeth > values[m, V_LEAST_GAP]
-    back = teeth < -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
+    front = teeth > _front_begins(space, at, values, m)
+    back = teeth < _back_begins(space, at, values, m)
     side = 0 if front else 1
     space[at + HELD_ANGLE], space[at + TEETH] = angle, teeth
     held.sides[m] = side if front or back else 2
@@ -149,14 +168,16 @@ def find_place(
 def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
     """Hold the flanks of a mesh that touch at the place that was found."""
     values = tables.values
-    least, turning = values[m, V_LEAST_GAP], -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
+    least, turning = _front_begins(space, at, values, m), _back_begins(space, at, values, m)
+    closer = space[at + OTHER_FRONT] * space[at + APART]
+    back = space[at + OTHER_BACK] * space[at + APART] - values[m, V_BACKLASH]
     side, teeth = held.sides[m], space[at + TEETH]
     held.counts[m, 0], held.counts[m, 1] = 0, 0
     low, high = turning, least
     if side < 2:
         sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
         first = held.first[m, side] & POSITIVE
-        reach = teeth if side == 0 else -teeth - values[m, V_BACKLASH]
+        reach = teeth + closer if side == 0 else back - teeth
         if tables.counts[m, C_GENERAL] == 0:
             place = Place(held.knots[m], space[at + FRACTION])
             rows = hold_phase(tables, m, side, place, sliding, reach, held.cells, held.rows, first)
@@ -165,9 +186,10 @@ def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
             rows = hold_path(tables, m, state, sliding, reach, held.rows, first)
         held.counts[m, side] = rows.n
         if side == 0:
-            low, high = rows.low if teeth < turning or rows.low > turning else turning, rows.high
+            low, high = rows.low - closer, rows.high - closer
+            low = low if teeth < turning or low > turning else turning
         else:
-            low, high = -values[m, V_BACKLASH] - rows.high, -values[m, V_BACKLASH] - rows.low
+            low, high = back - rows.high, back - rows.low
             high = high if high < least else least
     space[at + LOW], space[at + HIGH] = low, high
     if side == 0 and teeth < turning:
@@ -177,16 +199,16 @@ def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _hold_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, teeth: float) -> None:
     """Hold the back flank of a mesh whose front flank is held."""
-    backlash = tables.values[m, V_BACKLASH]
+    back = space[at + OTHER_BACK] * space[at + APART] - tables.values[m, V_BACKLASH]
     sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
     state = FlankState(1, space[at + HELD_ANGLE], 0.0)
-    rows = hold_path(tables, m, state, sliding, -teeth - backlash, held.rows, held.first[m, 1] & POSITIVE)
+    rows = hold_path(tables, m, state, sliding, back - teeth, held.rows, held.first[m, 1] & POSITIVE)
     held.counts[m, 1] = rows.n
     # no longer from where the back flank begins to touch on
     space[at + LOW] = max(
-        space[at + LOW] if space[at + LOW] > teeth - 1.0 else -np.inf, -backlash - rows.high
+        space[at + LOW] if space[at + LOW] > teeth - 1.0 else -np.inf, back - rows.high
     )
-    space[at + HIGH] = min(space[at + HIGH], -backlash - rows.low)
+    space[at + HIGH] = min(space[at + HIGH], back - rows.low)
 
 
 @inlined
@@ -211,6 +233,10 @@ def _set_flank(space: Array, at: int, values: Array, m: int, sign: float, sums: 
     space[at + FILTERED] = sign * sums.force
     space[at + BENT], space[at + BENT_V] = r_1 * abs(sums.curvature), r_1 * abs(sums.force_xv)
     space[at + OFF], space[at + SHARE] = -sign * sums.elastic, sums.stiffness
+    space[at + PATH_TORQUE] = -sign * r_1 * (sums.a_1 - sums.force - sums.friction_1)
+    other = space[at + OTHER_FRONT] if sign > 0.0 else space[at + OTHER_BACK]
+    space[at + OTHER_PRESSED] = other * sums.force
+    space[at + OTHER_RUBBED] = -other * sign * (r_1 * sums.friction_1 + r_2 * (sums.a_2 - sums.force))
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
@@ -239,6 +265,10 @@ def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
     space[at + BENT_V] += r_1 * abs(sums.force_xv)
     space[at + OFF] += sums.elastic
     space[at + SHARE] += sums.stiffness
+    space[at + PATH_TORQUE] += r_1 * (sums.a_1 - sums.force - sums.friction_1)
+    other = space[at + OTHER_BACK]
+    space[at + OTHER_PRESSED] += other * sums.force
+    space[at + OTHER_RUBBED] += other * (r_1 * sums.friction_1 + r_2 * (sums.a_2 - sums.force))
 
 
 @inlined
@@ -249,7 +279,8 @@ def _no_contact(space: Array, at: int) -> None:
         space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
     space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
     space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
-    space[at + FILTERED] = 0.0
+    space[at + FILTERED], space[at + PATH_TORQUE] = 0.0, 0.0
+    space[at + OTHER_PRESSED], space[at + OTHER_RUBBED] = 0.0, 0.0
     space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
 
 
