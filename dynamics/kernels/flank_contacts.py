@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 6bb321f5
+# compiled from sources 5d0164b4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

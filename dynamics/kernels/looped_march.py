@@ -23,7 +23,7 @@ from dynamics.kernels.looped_contact import (
     press_phase,
 )
 
-# compiled from sources 6bb321f5
+# compiled from sources 5d0164b4
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]

@@ -80,7 +80,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 6bb321f5
+# compiled from sources 5d0164b4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

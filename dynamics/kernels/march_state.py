@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import HeldRows
 
-# compiled from sources 6bb321f5
+# compiled from sources 5d0164b4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 6bb321f5
+# compiled from sources 5d0164b4
 Array = NDArray[np.float64]
 
 

@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined
-from dynamics.kernels.contact_table import V_BACKLASH, V_R1, V_R2
+from dynamics.kernels.contact_table import V_BACKLASH, V_FRICTION, V_R1, V_R2
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, STATE_AT
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
@@ -37,7 +37,7 @@ from dynamics.kernels.mesh_workspace import (
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import push_modes
 
-# compiled from sources 6bb321f5
+# compiled from sources 5d0164b4
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -210,6 +210,8 @@ def rubbed_beside(
 ) -> float:
     """Return what friction of a mesh takes on its rows beside the ports [W]."""
     n_meshes = wrench.numbers.shape[0]
+    if values[m, V_FRICTION] == 0.0:
+        return 0.0
     at = (m * N_SPACE) & POSITIVE
     torque_1 = space[at + TAU] + values[m, V_R1] * space[at + FILTERED] - space[at + PATH_TORQUE]
     torque_2 = space[at + PORT + TAU] - values[m, V_R2] * space[at + FILTERED]

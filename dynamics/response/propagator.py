@@ -16,7 +16,7 @@ from dynamics.errors import DynamicsInputError
 from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes, WrenchModes
 from dynamics.response.modal_layout import ModalLayout, StepResponse, branch_layout, port_blocks
 from dynamics.response.modal_model import ModalModel
-from dynamics.response.step_hold import numerov, phi, straight_line
+from dynamics.response.step_hold import FASTEST, numerov, phi, straight_line
 from dynamics.response.wrench_modes import wrench_columns, wrench_hold, wrench_modes
 
 Array = NDArray[np.float64]
@@ -83,6 +83,10 @@ def discretise(
     dropped, dropped_rate = 0.5 * step * model.through[angle], model.through_rate[angle]
     through_old[angle] = (seen[angle] @ integral).real + dropped - dropped_rate
     through_new[angle] = (seen[angle] @ turned).real + dropped + dropped_rate
+    # of torques linear in the step the speeds are the trapezoid, less step^2 / 12 of the jerk (Euler and Maclaurin)
+    jerked = _jerks(model, step, seen)
+    through_old[:, :n_fast] += jerked / 12.0
+    through_new[:, :n_fast] -= jerked / 12.0
     layout = branch_layout(model.branches)
     of_ports = StepResponse(
         decay=decay,
@@ -133,6 +137,17 @@ def discretise(
     )
     wrench = wrench_modes(model, layout, hold, step, beside_every)
     return Propagator(step=step, modes=discrete, wrench=wrench, hold=hold, layout=layout)
+
+
+def _jerks(model: ModalModel, step: float, seen: ComplexArray) -> Array:
+    """Return (n_rows, 2 n_meshes) what a mesh torque adds to each speed in a step, by the modes that follow it by
+    Numerov's method; nothing for angles and displacements."""
+    slow = np.abs(model.eigenvalues * step) <= FASTEST
+    jerks = step * (seen[:, slow] @ model.inputs[slow, : 2 * model.n_meshes]).real
+    jerks[1 : 4 * model.n_meshes : 2] = 0.0
+    n_displaced = len(seen) - (len(model.outputs) - model.n_circulating)
+    jerks[len(seen) - max(n_displaced, 0) :][1::2] = 0.0
+    return np.asarray(jerks)
 
 
 def _slow_responses(response: StepResponse, n_ports: int, substeps: int) -> tuple[Array, ComplexArray]:

@@ -340,7 +340,18 @@ class TimeMarch:
         scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
         n = len(self.model.inertia)
         stored = 0.5 * float(scaled[:n] @ scaled[:n] + self.model.springs @ scaled[n:] ** 2)
-        return stored + sum(float(self._reaction_now(mesh).energy[0]) for mesh in range(len(self.laws)))
+        return stored + sum(self._contact_energy(mesh) for mesh in range(len(self.laws)))
+
+    def _contact_energy(self, mesh: int) -> float:
+        """Energy in the teeth of a mesh [J]: of the flanks that carry, else of the others, which see an approach of
+        their own."""
+        approach, angle = self._carried.ports[mesh, 6:8]
+        reach, sides = approach + self._carried.offset[mesh], self.model.wrench_numbers[:, 0]
+        here = self._reaction(mesh, angle, reach)
+        if len(sides) == 0 or (here.force_front if sides[mesh] > 0.0 else here.force_back)[0] > 0.0:
+            return float(here.energy[0])
+        moved = reach - sides[mesh] * self._carried.apart[0, mesh]
+        return float(self._reaction(mesh, angle, moved).energy[0])
 
     def state(self) -> DriveState:
         """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""

@@ -78,7 +78,7 @@ def wrench_modes(
         pieces=pieces,
         push=flat,
         slide_push=push[n:],
-        held=np.ascontiguousarray(np.concatenate(outputs).reshape(every, n + n_meshes, -1).swapaxes(0, 1).reshape(n + n_meshes, -1)),
+        held=np.hstack(outputs),
         rows=layout.lay(seen.conj()),
         by_torque=np.ascontiguousarray(np.stack((-rate[:, :n_fast].T, new[:, :n_fast].T))),
         by_force=np.ascontiguousarray(wrench_columns(model, new - rate).T.real),
