@@ -22,11 +22,13 @@ class MeshWrench:
 
     turns : (n_meshes, 2, n) turns of pinion and wheel from their centre line less those of their ports [rad]
     slide : (n_meshes, n) slide of the pinion flank over the wheel's as both move along their centre line [m]
+    tangents : (n_meshes,) of the working transverse pressure angles
     sides : (n_meshes,) flank on whose normal the ports see the gears: 1 in front, -1 on the back
     """
 
     turns: Array
     slide: Array
+    tangents: Array
     sides: Array
 
     def friction_rows(self, laws: Sequence[MeshLaw]) -> Array:
@@ -38,16 +40,30 @@ class MeshWrench:
             found += [turns[0] + across, turns[1] - across]
         return np.array(found)
 
+    def loads(self, laws: Sequence[MeshLaw]) -> Array:
+        """Columns (n, 3 n_meshes): both friction rows of every mesh, then slides."""
+        return np.vstack((self.friction_rows(laws), self.slide)).T
+
+    @property
+    def displaced(self) -> Array:
+        """Rows (2 n_meshes, n) of slides, then of turns of the pinions beyond those of their ports."""
+        return np.vstack((self.slide, self.turns[:, 0]))
+
     def numbers(self, laws: Sequence[MeshLaw]) -> Array:
         """(n_meshes, 5) plain numbers for the march: side, torques on both friction rows per path torque on the
         pinion less that torque, twice the tangent of the pressure angle, force across per difference of torques."""
         found = []
-        for side, law in zip(self.sides, laws, strict=True):
-            length, radii = line_length(law), law.base_radius_1 + law.base_radius_2
-            tangent = length / radii
+        for side, tangent, law in zip(self.sides, self.tangents, laws, strict=True):
+            length = line_length(law)
             part = tangent / (1.0 + tangent**2) / length
             found.append(
-                [side, -part * law.base_radius_1, part * law.base_radius_2, 2.0 * tangent, -2.0 * side / length]
+                [
+                    side,
+                    -part * law.base_radius_1,
+                    part * law.base_radius_2,
+                    2.0 * tangent,
+                    -2.0 * side / length,
+                ]
             )
         return np.array(found)
 

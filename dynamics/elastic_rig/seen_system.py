@@ -6,6 +6,7 @@ none of them moves. With S the rows of what is seen, on the coordinates eta of t
 basis of what S does not see, the freedoms are z = (S eta, N' eta), hence eta = (S^+, N) z.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,6 +21,7 @@ from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, rotating_
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.cross_joints import WAVES, CrossJointLoad, cross_joint_loads
 from dynamics.elastic_rig.joints import ElasticJoint
+from dynamics.elastic_rig.mesh_rows import mesh_directions
 from dynamics.elastic_rig.reduction import ReducedElasticRig
 from dynamics.elastic_rig.rotating_loads import line_loads
 from dynamics.elastic_rig.running_state import RunningState
@@ -83,7 +85,7 @@ class SeenRig:
     @cached_property
     def _mesh_wrench(self) -> MeshWrench:
         model = self.reduced.model
-        turns, slides, sides = [], [], []
+        turns, slides, tangents, sides = [], [], [], []
         for mesh, ports in self.ports.items():
             rows = dict(zip(ROWS, wrench_rows(model, mesh), strict=True))
             first, second = model.rig.mesh(mesh).base_radii
@@ -93,8 +95,11 @@ class SeenRig:
             turns.append(
                 self.on_freedoms(np.array([rows["pinion turn"] - ports[0], rows["wheel turn"] - ports[1]]))
             )
+            tangents.append(math.tan(mesh_directions(model.rig, mesh).pressure_angle))
             slides.append(self.on_freedoms(rows["slide"][None])[0])
-        return MeshWrench(turns=np.array(turns), slide=np.array(slides), sides=np.array(sides))
+        return MeshWrench(
+            turns=np.array(turns), slide=np.array(slides), tangents=np.array(tangents), sides=np.array(sides)
+        )
 
     @cached_property
     def _rows(self) -> dict[str, Array]:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.aligned import aligned, aligned_zeros
 from dynamics.kernels.contact import LOOSE, inlined
-from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_FLOOR, V_R1, V_R2, ContactTables
+from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_R1, V_R2, ContactTables
 from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
+from dynamics.kernels.held_flanks import HeldRows, find_place, hold_mesh
 from dynamics.kernels.linear_step import (
     AT_END,
     DiscreteModes,
@@ -29,18 +30,13 @@ from dynamics.kernels.linear_step import (
 )
 from dynamics.kernels.march_accounts import account
 from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, Workspace
+from dynamics.kernels.meet_meshes import meet_others
 from dynamics.kernels.mesh_solve import (
-    HeldRows,
     choose_friction,
-    correct,
     correct_alone,
-    find_place,
-    hold_mesh,
     invert,
-    left_open,
     look,
     look_ahead,
-    move_others,
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
@@ -51,6 +47,8 @@ from dynamics.kernels.mesh_workspace import (
     FILTERED,
     GIVEN,
     GIVEN_OLD,
+    LEAN,
+    LEAN_RATE,
     MISSING,
     N_SPACE,
     NET,
@@ -74,20 +72,18 @@ from dynamics.kernels.wrench import (
     forces_on_ports,
     gather_forces,
     give_to_ports,
+    lean_pinions,
     part_flanks,
     push_forces,
     set_forces,
     set_sides,
 )
 
-# compiled from sources 5d0164b4
+# compiled from sources aff6da86
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MOST_ITERATIONS = 12
-TOLERANCE = 1e-6
-"""Share of a mesh torque that the iteration may leave open."""
-MOST_SWEEPS = 50
 
 
 def march(
@@ -179,7 +175,8 @@ def _guess(tables: ContactTables, space: Array, held: HeldRows, by_slow: Array, 
         space[at + TAU] = 3.0 * (space[at + OLD] - space[at + OLDER]) + space[at + OLDEST]
         space[wheel + TAU] = 3.0 * (space[wheel + OLD] - space[wheel + OLDER]) + space[wheel + OLDEST]
         turned = space[at + TURN]
-        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD]
+        space[at + LEAN] += space[at + LEAN_RATE]
+        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD] + space[at + LEAN]
         teeth = 2.0 * space[at + TEETH] - space[at + TEETH_OLD]
         space[at + TURN_OLD], space[at + TEETH_OLD] = turned, space[at + TEETH]
         find_place(tables, space, at, m, held, angle, teeth)
@@ -220,47 +217,6 @@ def _keep_forces(forces: Array, torques: Array) -> None:
         torques[first + d] = forces[d]
 
 
-@inlined
-def _meet_others(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
-    """Let the meshes move each other; return whether all torques are on their tangents."""
-    together = True
-    for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        if move_others(space, at, give, n_meshes, m) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
-            together = False
-    converged = together or _sweep_meshes(space, values, give, n_meshes)
-    for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
-            converged = False
-    return converged
-
-
-@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _sweep_meshes(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
-    """Bring all torques to the tangents of the meshes, one mesh after the other; return whether that was reached.
-
-    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and moves the
-    others by less still.
-    """
-    correction, agreed, m = 0, -1, 0
-    for n in range(n_meshes):
-        at = n * N_SPACE
-        space[at + MISSING] -= space[at + TAU]
-        space[at + PORT + MISSING] -= space[at + PORT + TAU]
-    while agreed < n_meshes - 1 and correction < MOST_SWEEPS * n_meshes:
-        at = (m * N_SPACE) & POSITIVE
-        error = correct(space, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
-        agreed = agreed + 1 if error <= TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR] else 0
-        m = m + 1 if m + 1 < n_meshes else 0
-        correction += 1
-    for n in range(n_meshes):
-        at = n * N_SPACE
-        space[at + MISSING] += space[at + TAU]
-        space[at + PORT + MISSING] += space[at + PORT + TAU]
-    return agreed >= n_meshes - 1
-
-
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _march(
     tables: ContactTables,
@@ -290,7 +246,9 @@ def _march(
     if presses_beside:
         set_sides(wrench, space)
     for m in range(n_meshes):
-        space[m * N_SPACE + APART], space[m * N_SPACE + APART_RATE] = carried.apart[0, m], carried.apart[1, m]
+        at = m * N_SPACE
+        space[at + APART], space[at + APART_RATE] = carried.apart[0, m], carried.apart[1, m]
+        space[at + LEAN], space[at + LEAN_RATE] = carried.apart[2, m], carried.apart[3, m]
     mean_torque = carried.controller[2]
     torque_share = values[0, V_R1] / substeps
     unconverged = 0
@@ -338,7 +296,7 @@ def _march(
                     at = (m * N_SPACE) & POSITIVE
                     invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
                     correct_alone(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                converged = _meet_others(space, values, give, n_meshes)
+                converged = meet_others(space, values, give, n_meshes)
                 add_torques(links, 0, through, AT_END, space, MISSING)
                 attempt += 1
             if n_drags:
@@ -364,7 +322,10 @@ def _march(
             if keeps_accounts:  # while the angles are those of the start of the step
                 account(tables, modes, wrench, carried, work, step, (sub + 1.0) / substeps)
             if interval_ends:
-                part_flanks(wrench, values, blocks, bank, space, forces, step, sub == substeps - 1)
+                last = sub == substeps - 1
+                part_flanks(wrench, values, blocks, bank, space, forces, step, last)
+                if last or wrench.every == 1:
+                    lean_pinions(wrench, blocks, bank, space, forces, 1 if wrench.every == 1 else substeps)
             for m in range(n_meshes):
                 at = (m * N_SPACE) & POSITIVE
                 space[at + OFFSET] += step * space[at + OFFSET_RATE]
@@ -401,6 +362,8 @@ def _march(
         for m in range(n_meshes):
             carried.offset[m] = commands.offsets[sample, m]
     for m in range(n_meshes):
-        carried.apart[0, m], carried.apart[1, m] = space[m * N_SPACE + APART], space[m * N_SPACE + APART_RATE]
+        at = m * N_SPACE
+        carried.apart[0, m], carried.apart[1, m] = space[at + APART], space[at + APART_RATE]
+        carried.apart[2, m], carried.apart[3, m] = space[at + LEAN], space[at + LEAN_RATE]
     _end(space, carried.ports)
     return unconverged

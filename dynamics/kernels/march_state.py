@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.kernels.drag import DragLaws, DragWork
-from dynamics.kernels.mesh_solve import HeldRows
+from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 5d0164b4
+# compiled from sources aff6da86
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -57,7 +57,8 @@ class Carried(NamedTuple):
     wrench: Array
     """Forces beside the ports, see ``kernels.wrench``; none where gears only rotate."""
     apart: Array
-    """(2, n_meshes) how much closer the gears stand on the other flanks, and its rate."""
+    """(4, n_meshes) how much closer the gears stand on the other flanks, and its rate; turn of the pinion from the
+    centre line beyond that of its port, and what it gains in a step."""
 
 
 class Steps(NamedTuple):

@@ -21,6 +21,8 @@ from dynamics.kernels.mesh_workspace import (
     APART,
     APART_RATE,
     FILTERED,
+    LEAN,
+    LEAN_RATE,
     N_SPACE,
     OLD,
     OTHER_BACK,
@@ -35,9 +37,9 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
-from dynamics.kernels.mode_pass import push_modes
+from dynamics.kernels.mode_pass import dot_modes, push_modes
 
-# compiled from sources 5d0164b4
+# compiled from sources aff6da86
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -48,7 +50,7 @@ SIDE, PATH_1, PATH_2, SPREAD, ACROSS = range(5)
 
 
 class WrenchModes(NamedTuple):
-    """How tooth forces beside the ports act in an interval of some steps, in the layout of ``linear_step.DiscreteModes``.
+    """How tooth forces beside the ports act in an interval of steps, in the layout of ``linear_step.DiscreteModes``.
 
     The n friction rows, two a mesh, are filled up with zeros to groups of FOUR. Forces stand in one flat array: on the
     friction rows (n,), then on the slide of every mesh. No rows where gears only rotate.
@@ -56,7 +58,7 @@ class WrenchModes(NamedTuple):
 
     pieces: Integers
     """(n_pieces, 5) four of the rows, row of ``DiscreteModes.blocks``, first group of modes that it moves, groups,
-    first entry in ``push``."""
+    place in ``push``."""
     push: Array
     """Flat, per piece and group (FOUR, 2 WIDTH): state after the interval per force on a friction row at its start."""
     slide_push: Array
@@ -64,12 +66,12 @@ class WrenchModes(NamedTuple):
     held: Array
     """(n + n_meshes, every 2 n_ports) outputs of the ports in each step of an interval per force that stays."""
     rows: Array
-    """(4 n_meshes, n_states) over the states at the end of the step: speeds on the friction rows, two a mesh, on the
-    slides, and the slides themselves."""
+    """Flat (5 n_meshes, n_states) over the states at the end of the step: speeds on the friction rows, two a mesh, on
+    the slides; the slides themselves, and turns of the pinions from the centre line beyond those of their ports."""
     by_torque: Array
-    """(2, n_ports, 4 n_meshes) the same per mesh torque at the start and at the end of the step."""
+    """(2, n_ports, 5 n_meshes) the same per mesh torque at the start and at the end of the step."""
     by_force: Array
-    """(n + n_meshes, 4 n_meshes) per force that stays over the step."""
+    """(n + n_meshes, 5 n_meshes) per force that stays over the step."""
     numbers: Array
     """(n_meshes, 5) ``MeshWrench.numbers``."""
     n_rows: int
@@ -80,8 +82,8 @@ class WrenchModes(NamedTuple):
 
 @inlined
 def give_to_ports(wrench: WrenchModes, forces: Array, outputs: Array) -> None:
-    """Fill what the forces give to the ports in each step of the interval that begins, ``outputs`` (every 2 n_ports,)."""
-    held, n, size = wrench.held, wrench.n_rows, outputs.shape[0]
+    """Fill ``outputs`` (every 2 n_ports,): what the forces give to the ports in each step of the interval."""
+    held, size = wrench.held, outputs.shape[0]
     f_0, f_1, f_2, f_3 = forces[0], forces[1], forces[2], forces[3]
     for k in range(size):
         outputs[k] = held[0, k] * f_0 + held[1, k] * f_1 + held[2, k] * f_2 + held[3, k] * f_3
@@ -111,7 +113,9 @@ def push_forces(wrench: WrenchModes, blocks: Integers, forces: Array, bank: Arra
         block, d = pieces[piece, PIECE_BLOCK], (FOUR * pieces[piece, PIECE_FOUR]) & POSITIVE
         f_0, f_1, f_2, f_3 = forces[d], forces[d + 1], forces[d + 2], forces[d + 3]
         b = (blocks[block, BANK_AT] + N_BANK * WIDTH * pieces[piece, PIECE_FIRST]) & POSITIVE
-        push_modes(bank, b, wrench.push, pieces[piece, PIECE_AT], pieces[piece, PIECE_GROUPS], f_0, f_1, f_2, f_3)
+        push_modes(
+            bank, b, wrench.push, pieces[piece, PIECE_AT], pieces[piece, PIECE_GROUPS], f_0, f_1, f_2, f_3
+        )
     n = wrench.n_rows
     for m in range(wrench.numbers.shape[0]):
         if forces[n + m] != 0.0:
@@ -136,12 +140,11 @@ def wrench_motion(
     """Return what a row of ``WrenchModes.rows`` sees at the end of the step, without what slow inputs gave since the
     start of the sample."""
     total = 0.0
+    n_states = wrench.slide_push.shape[1]
     for block in range(blocks.shape[0]):
-        for group in range(blocks[block, GROUPS]):
-            s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
-            b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
-            for i in range(2 * WIDTH):
-                total += wrench.rows[row, s + i] * bank[b + i]
+        first = blocks[block, BANK_AT] & POSITIVE
+        at = (row * n_states + blocks[block, STATE_AT]) & POSITIVE
+        total += dot_modes(bank, first, wrench.rows, at, blocks[block, GROUPS])
     for port in range(wrench.by_torque.shape[1]):
         at = (port // 2 * N_SPACE + port % 2 * PORT) & POSITIVE
         total += wrench.by_torque[0, port, row] * space[at + OLD]
@@ -202,6 +205,21 @@ def part_flanks(
             if touches:
                 rate = per_slide * wrench_motion(wrench, blocks, bank, space, forces, 2 * n_meshes + m)
             space[at + APART], space[at + APART_RATE] = place + step * rate, rate
+
+
+@inlined
+def lean_pinions(
+    wrench: WrenchModes, blocks: Integers, bank: Array, space: Array, forces: Array, steps: int
+) -> None:
+    """Set by how much the pinions turn from the centre line beyond their ports, and how it goes on as in the last
+    ``steps``; where on its path a flank stands is told by these turns."""
+    n_meshes = wrench.numbers.shape[0]
+    for m in range(n_meshes):
+        at = (m * N_SPACE) & POSITIVE
+        now = wrench_motion(wrench, blocks, bank, space, forces, 4 * n_meshes + m)
+        # the rate that was taken led from the last turn to that which stands
+        before = space[at + LEAN] - steps * space[at + LEAN_RATE]
+        space[at + LEAN], space[at + LEAN_RATE] = now, (now - before) / steps
 
 
 @inlined

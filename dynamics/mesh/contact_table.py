@@ -2,7 +2,8 @@
 
 A mesh whose teeth are all alike has one potential over its phase, shared bodies included; with single teeth every pair
 has one over its path, and the deviations of its two teeth move it: by a constant exactly, by what varies over the path
-in the mean of the slices that carry, by a run-out as that stands at the rotation of the gear. Layout and use: ``dynamics.kernels.contact_table``.
+in the mean of the slices that carry, by a run-out as that stands at the rotation of its gear. Layout and use:
+``dynamics.kernels.contact_table``.
 
 The tables take the law as it is: cubics of Fritsch and Carlson over the path, slices that touch one by one. For a march
 whose steps do not resolve all of the path they are filtered (``dynamics.mesh.path_filter``).

@@ -331,10 +331,7 @@ def _turning_deviation(flanks: Sequence[FlankField], path: Array) -> Array | Non
     return np.array(
         [
             np.concatenate(
-                [
-                    one.turning_deviation(one.roll(path), np.arange(one.teeth)[:, None], side)
-                    for one in flanks
-                ]
+                [one.turning_deviation(one.roll(path), np.arange(one.teeth)[:, None], side) for one in flanks]
             )
             for side in sides
         ]

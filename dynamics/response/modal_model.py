@@ -60,9 +60,9 @@ class ModalModel:
     n_circulating : number of the last outputs, in fours: speeds and displacements a', b, b', a whose a' b - b' a is
         what skew stiffness takes [W]
     drag_branches : (n_drags / 4,) branch of each four of drag torques
-    wrench_outputs : (4 n_meshes, n_modes) speeds on the rows of ``wrench_loads``, then displacement on the last third;
-        no rows without them
-    wrench_through, wrench_through_rate : (4 n_meshes, n_inputs) as ``through`` and ``through_rate``
+    wrench_outputs : (5 n_meshes, n_modes) speeds on the rows of ``MeshWrench.loads``, then slides and turns of pinions
+        beyond those of their ports; no rows without them
+    wrench_through, wrench_through_rate : (5 n_meshes, n_inputs) as ``through`` and ``through_rate``
     wrench_numbers : (n_meshes, 5) see ``MeshWrench.numbers``
     dropped : number of eigenvalues left out
     """
@@ -126,7 +126,8 @@ def modal_model(
     n = len(system.inertia)
     drags = np.zeros((n, 0)) if drags is None else drags
     slow_and_drags = np.column_stack((loads, drags))
-    wrench = wrench_loads(system, laws)
+    beside = system.mesh_wrench
+    wrench = np.zeros((n, 0)) if beside is None else beside.loads(laws)
     _check(system, laws, slow_and_drags)
     inner = system.coordinates
     own, squared, frequencies, n_lines = _branch_shapes(system)
@@ -159,7 +160,7 @@ def modal_model(
     modal_forcing = inverse @ forcing
     pressed = _without_rounding(modal_forcing[:, forcing.shape[1] - wrench.shape[1] :])
     skew_rows = _skew_rows(system)
-    displaced = wrench.T[2 * len(laws) :]
+    displaced = np.zeros((0, n)) if beside is None else beside.displaced
     velocity = np.vstack((wrench.T, displaced, _velocity_rows(system, slow_and_drags), skew_rows)) @ shapes
     seen = (velocity @ vectors[:n]) * weights
     n_wrench = wrench.shape[1] + len(displaced)
@@ -218,7 +219,7 @@ def modal_model(
         wrench_outputs=of_wrench[:, keep],
         wrench_through=(of_wrench @ static).real,
         wrench_through_rate=(of_wrench @ delayed).real,
-        wrench_numbers=np.zeros((0, 5)) if system.mesh_wrench is None else system.mesh_wrench.numbers(laws),
+        wrench_numbers=np.zeros((0, 5)) if beside is None else beside.numbers(laws),
         dropped=int(np.count_nonzero(~keep)),
     )
 
@@ -333,15 +334,6 @@ def _branch_modes(
     right[members] = vectors[:, half]
     left[:, members] = inverse[half]
     return values[half], right, left
-
-
-def wrench_loads(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
-    """Columns (n, 3 n_meshes) of tooth forces beside the ports: both friction rows of every mesh, then slides; none
-    where the gears only rotate."""
-    wrench = system.mesh_wrench
-    if wrench is None:
-        return np.zeros((len(system.inertia), 0))
-    return np.vstack((wrench.friction_rows(laws), wrench.slide)).T
 
 
 def _without_rounding(forcing: ComplexArray) -> ComplexArray:

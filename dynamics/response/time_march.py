@@ -229,9 +229,7 @@ class TimeMarch:
             histories.append(np.empty((n_meshes, 7 if self._record_all else 2, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
             seen = 0 if self._reader is None else count
-            states = np.empty(
-                (seen, len(self._carried.state) + 2 * n_meshes + len(self._carried.wrench))
-            )
+            states = np.empty((seen, len(self._carried.state) + 2 * n_meshes + len(self._carried.wrench)))
             self.tables = self._tables.at(self._pinion_speeds())
             self.unconverged += kernels.march(
                 self.tables,

@@ -34,16 +34,17 @@ def wrench_inputs(model: ModalModel, forces: Array) -> Array:
 
 
 def parted_flanks(model: ModalModel, wrench: MeshWrench | None, angles: Array) -> Array:
-    """By how much gears at ``angles`` (n,) stand closer on the other flanks than on those that carry, and the rate
-    (2, n_meshes) [m], [m/s]: no motion."""
-    parted = np.zeros((2, model.n_meshes))
+    """By how much gears at ``angles`` (n,) stand closer on the other flanks than on those that carry [m], and by how
+    much pinions turn from the centre line beyond their ports [rad], each with its rate, none: (4, n_meshes)."""
+    parted = np.zeros((4, model.n_meshes))
     if wrench is not None:
+        parted[2] = wrench.turns[:, 0] @ angles
         parted[0] = -model.wrench_numbers[:, 3] * (wrench.slide @ angles)
     return parted
 
 
 def wrench_hold(model: ModalModel, interval: float) -> ComplexArray:
-    """Part (n_modes, 3 n_meshes) of the modal state that follows at once forces that are linear over an interval [s]."""
+    """Part (n_modes, 3 n_meshes) of the modal state that follows at once what is linear over an interval [s]."""
     own = model.inputs[:, model.inputs.shape[1] - 3 * len(model.wrench_numbers) :]
     return np.asarray(interval * straight_line(model.eigenvalues * interval).state[:, None] * own)
 
@@ -56,7 +57,7 @@ def wrench_modes(
     hold : (n_modes, n_inputs) part of the modal state that follows the inputs at once
     """
     n_meshes, n, n_ports = len(model.wrench_numbers), n_friction_rows(model), 4 * model.n_meshes
-    x, interval = model.eigenvalues * step, every * step
+    x = model.eigenvalues * step
     forcing = wrench_columns(model, model.inputs)
     held = wrench_columns(model, hold)
     through = wrench_columns(model, model.through[:n_ports]).real
@@ -79,7 +80,7 @@ def wrench_modes(
         push=flat,
         slide_push=push[n:],
         held=np.hstack(outputs),
-        rows=layout.lay(seen.conj()),
+        rows=layout.lay(seen.conj()).ravel(),
         by_torque=np.ascontiguousarray(np.stack((-rate[:, :n_fast].T, new[:, :n_fast].T))),
         by_force=np.ascontiguousarray(wrench_columns(model, new - rate).T.real),
         numbers=model.wrench_numbers,

@@ -142,9 +142,13 @@ def test_an_eccentric_helical_gear_stands_at_one_rotation_over_its_face() -> Non
     teeth = true.teeth_1
     theta = np.arange(teeth * 64) * 2.0 * np.pi / (teeth * 64)
     x = TORQUE / true.base_radius_1 / true.mean_stiffness
-    moved = evaluate_table(contact_tables([true]), theta, x + ECCENTRICITY * np.cos(theta - PHASE)).force_front
+    moved = evaluate_table(
+        contact_tables([true]), theta, x + ECCENTRICITY * np.cos(theta - PHASE)
+    ).force_front
     found = evaluate_table(contact_tables([eccentric]), theta, x).force_front
-    bands = [2.0 * np.abs(np.fft.rfft(force))[[1, teeth - 1, teeth + 1]] / theta.size for force in (found, moved)]
+    bands = [
+        2.0 * np.abs(np.fft.rfft(force))[[1, teeth - 1, teeth + 1]] / theta.size for force in (found, moved)
+    ]
     print(*bands)
     assert bands[0][0] == pytest.approx(bands[1][0], rel=2e-3)
     assert bands[0][1:] == pytest.approx(bands[1][1:], rel=0.02)

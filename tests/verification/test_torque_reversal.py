@@ -26,7 +26,7 @@ SAMPLES = 1600
 
 @cache
 def bearing_forces(face: Face) -> tuple[dict[str, Array], Array]:
-    """Mean force (y, z) of each bearing on its shaft, as films and their supports pass it, and of the meshes [N]."""
+    """Mean force of the shaft on each bearing, (y, z) first, and of the meshes [N]; ``face`` of the test mesh."""
     front = seen()
     model = front.reduced.model
     faces = dict(zip(front.ports, (face, "front" if face == "back" else "back"), strict=True))
@@ -46,9 +46,7 @@ def bearing_forces(face: Face) -> tuple[dict[str, Array], Array]:
         forces.append(march.advance(np.repeat(given, 2, axis=0)).force.mean(axis=1))
         angles.append(march.state().angles)
     moved = whole @ np.mean(angles, axis=0)
-    found = {
-        name: -(film.padded()[0] @ (model.ports[name] @ moved)) for name, film in state.bearings.items()
-    }
+    found = {name: film.padded()[0] @ (model.ports[name] @ moved) for name, film in state.bearings.items()}
     return found, np.mean(forces, axis=0)
 
 
@@ -60,7 +58,7 @@ def test_back_flanks_press_along_their_own_normal() -> None:
     assert same == pytest.approx(mesh, rel=6e-3)
     for name, force in own.items():
         print(name, force / mesh[1], other[name] / same[1])
-        assert other[name] / same[1] == pytest.approx(force / mesh[1], abs=2e-3), name
+        assert other[name] / same[1] == pytest.approx(force / mesh[1], abs=3e-4), name
 
 
 def test_the_force_on_the_pinion_shaft_has_the_direction_of_the_back_normal() -> None:
@@ -68,11 +66,13 @@ def test_the_force_on_the_pinion_shaft_has_the_direction_of_the_back_normal() ->
     found, mesh = bearing_forces("front")
     model = seen().reduced.model
     directions = mesh_directions(model.rig, next(iter(seen().ports)))
-    held = sum(found[f"test_pinion {end}"] for end in ("front", "rear"))
-    held = held[-2:] if len(held) == 2 else held[1:3]
+    held = (found["test_pinion front"] + found["test_pinion rear"])[:2]
     along = {name: normal[1:] / np.linalg.norm(normal[1:]) for name, normal in
              (("front", directions.front), ("back", directions.back))}  # fmt: skip
-    turned = {name: float(np.degrees(np.arccos(held @ line / np.linalg.norm(held)))) for name, line in along.items()}
+    turned = {
+        name: float(np.degrees(np.arccos(held @ line / np.linalg.norm(held)))) for name, line in along.items()
+    }
     print(held, mesh, turned)
-    assert min(turned["back"], 180.0 - turned["back"]) < 8.0
-    assert min(turned["front"], 180.0 - turned["front"]) > 25.0
+    # the pinion is pushed against the normal with which it presses the wheel; friction is in
+    assert turned["back"] > 180.0 - 4.0
+    assert 30.0 < turned["front"] < 150.0
