@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources aff6da86
+# compiled from sources a7182a7d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

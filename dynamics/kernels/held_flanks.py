@@ -34,7 +34,7 @@ from dynamics.kernels.mesh_workspace import (
     UPPER,
 )
 
-# compiled from sources aff6da86
+# compiled from sources a7182a7d
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
