@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources a7182a7d
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -39,7 +39,7 @@ from dynamics.kernels.mesh_workspace import (
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import dot_modes, push_modes
 
-# compiled from sources a7182a7d
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
