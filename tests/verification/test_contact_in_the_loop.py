@@ -23,7 +23,6 @@ from dynamics.response.contact_loop import ContactLoop, MeshInLoop
 from dynamics.response.held_modes import ModesOverStep
 from dynamics.response.initial_state import wound_state
 from dynamics.response.looped_response import LoopedProblem, LoopedResponse, looped_response
-from dynamics.response.step_hold import straight_line
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.loaded_mesh import fzg_c, influence_of
 from tests.builders.p2_gears import helical_pair, spur_pair
@@ -161,7 +160,7 @@ def test_one_step_of_the_linear_part_is_exact() -> None:
     whole[n : 2 * n, 2 * n + 1] = inverse @ (rows.T @ (new - old)) / step
     whole[2 * n + 1, 2 * n] = 1.0
     at_end = scipy.linalg.expm(whole * step)[: 2 * n, 2 * n]
-    held = ModesOverStep(system.form, rows, step, np.inf, straight_line).held(load)
+    held = ModesOverStep(system.form, rows, step, np.inf).held(load)
     given = held.given @ np.concatenate([old, new]) + held.given_constant
     expected = np.concatenate([rows @ at_end[:n], rows @ at_end[n:]])
     assert given == pytest.approx(expected, rel=1e-6, abs=1e-8 * np.abs(expected).max())
