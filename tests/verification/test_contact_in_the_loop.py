@@ -171,11 +171,11 @@ def test_no_energy_comes_or_goes() -> None:
     lost = []
     for step in (4e-6, 2e-6):
         loop = looped(step, lossless=True)
-        loop.advance(round(4e-3 / step))
+        first = loop.advance(round(4e-3 / step)).energy.sum(axis=0)[-1]
         before = loop.work[0]
         stored = loop.advance(round(4e-3 / step)).energy.sum(axis=0)
         assert loop.unconverged == 0
-        lost.append(abs(loop.work[0] - before + stored[-1] - stored[0]) / stored.max())
+        lost.append(abs(loop.work[0] - before + stored[-1] - first) / stored.max())
     assert lost[1] < 1e-3
     assert lost[0] > 3.0 * lost[1]
 
