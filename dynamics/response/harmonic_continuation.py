@@ -171,7 +171,11 @@ class BranchTrace:
             error = equations.error(residual)
             if best is None or error < best[0].residual:
                 best = equations.solution(state, error, iteration), iteration
-            if error < SETTLED or (error > 0.5 * best[0].residual and iteration >= best[1] + 2) or error > 1e3:
+            if (
+                error < SETTLED
+                or (error > 0.5 * best[0].residual and iteration >= best[1] + 2)
+                or error > 1e3
+            ):
                 break
             move = self._move(equations, residual, reactions, state, tangent, (ahead, speed_ahead, speed))
             if move is None:
