@@ -15,6 +15,16 @@ LONGEST = (
     "regression/test_cases.py",
     "verification/test_rolling_bearing_rig.py",
     "regression/test_frozen_sets.py",
+    "unit/rigdesign_package/studies/test_cluster.py",
+    "regression/test_readme_recipe.py",
+    "regression/test_readme.py",
+    "unit/rigdesign_package/uncertainty/test_ranges_solve.py",
+    "regression/test_tutorial.py",
+    "unit/rigdesign_package/run/test_transient_run.py",
+    "unit/rigdesign_package/validation/test_validation.py",
+    "unit/rigdesign_package/studies/test_interrupts.py",
+    "unit/rigdesign_package/prediction/test_predictor.py",
+    "unit/rigdesign_package/run/test_step_case.py",
 )
 """Files of the tests folder, those that take longest first."""
 
