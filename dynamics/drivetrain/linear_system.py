@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
+from dynamics.drivetrain.mesh_wrench import MeshWrench
 from dynamics.drivetrain.modal_form import ModalForm, modal_form
 from dynamics.drivetrain.periodic_load import PeriodicLoad
 
@@ -58,6 +59,7 @@ class LinearSystem:
         rotation); one entry per loss place that brakes (bearing, windage, seal)
     periodic_loads : loads that alternate with the rotation of a shaft
     own_coordinates : in which the matrices fall into more blocks than in the freedoms, where there are such
+    mesh_wrench : directions of tooth forces beside those of the ports; None where gears only rotate
     """
 
     inertia: Array
@@ -71,6 +73,7 @@ class LinearSystem:
     drag_loads: dict[str, Array]
     periodic_loads: tuple[PeriodicLoad, ...] = ()
     own_coordinates: Coordinates | None = None
+    mesh_wrench: MeshWrench | None = None
 
     def at(self, speed: float) -> "LinearSystem":
         """Itself: these matrices hold at every speed [rad/s]."""

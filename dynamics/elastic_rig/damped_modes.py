@@ -71,6 +71,15 @@ class ModeCharacter:
     whirl: Array
     names: tuple[str, ...]
 
+    def lateral_whirl(self, least_share: float) -> tuple[float | None, ...]:
+        """Whirl of the shaft that moves most sideways; None where lateral motion of shafts has less than a share."""
+        lateral = self.share[:, :-1, FAMILIES.index("lateral")]
+        leading = np.argmax(lateral, axis=1)
+        return tuple(
+            float(self.whirl[k, shaft]) if lateral[k].sum() >= least_share else None
+            for k, shaft in enumerate(leading)
+        )
+
 
 def damped_modes(rig: ReducedElasticRig, state: RunningState, highest: float | None = None) -> DampedModes:
     """Modes of a rig at a state, up to a frequency [Hz] if given; raises DrivetrainError as `RunningState.check`."""
@@ -114,15 +123,15 @@ def _free_first(stiffness: Array, n_rigid: int) -> tuple[Array, Array, int]:
     return turned, stiffness, count
 
 
-def mode_character(rig: ReducedElasticRig, modes: DampedModes) -> ModeCharacter:
-    """Energy shares, whirl and names of modes."""
+def mode_character(rig: ReducedElasticRig, modes: Complex) -> ModeCharacter:
+    """Energy shares, whirl and names of mode shapes (n, m) in the coordinates of the rig."""
     model = rig.model
-    shapes = rig.basis @ modes.shapes
+    shapes = rig.basis @ modes
     energy = np.maximum(np.real(np.conj(shapes) * (model.mass @ shapes)), 0.0)
     shafts = [shaft.name for shaft in model.rig.drivetrain.shafts]
     owner = np.array(model.freedoms.shaft_of)
     family = np.array(model.freedoms.family)
-    share = np.zeros((modes.poles.size, len(shafts) + 1, len(FAMILIES)))
+    share = np.zeros((shapes.shape[1], len(shafts) + 1, len(FAMILIES)))
     for i in range(-1, len(shafts)):
         for j in range(len(FAMILIES)):
             share[:, i, j] = energy[(owner == i) & (family == j)].sum(axis=0)
@@ -131,7 +140,7 @@ def mode_character(rig: ReducedElasticRig, modes: DampedModes) -> ModeCharacter:
     return ModeCharacter(
         share=share,
         whirl=whirl,
-        names=tuple(_name([*shafts, "housing"], share[k], whirl[k]) for k in range(modes.poles.size)),
+        names=tuple(_name([*shafts, "housing"], share[k], whirl[k]) for k in range(shapes.shape[1])),
     )
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
-from dynamics.elastic_rig.forced import Orbit, orbit
 from dynamics.elastic_rig.freedoms import FAMILIES
+from dynamics.elastic_rig.orbits import Orbit, orbit
 from dynamics.elastic_rig.reduction import ReducedElasticRig
 from dynamics.elastic_rig.rotating_loads import line_loads
 from dynamics.elastic_rig.rotating_parts import SpeedPower
@@ -56,7 +56,7 @@ def rig_modes(rig: ReducedElasticRig, state: RunningState, highest: float) -> tu
     Springs of the state stand for the meshes. Raises DrivetrainError as `RunningState.check`.
     """
     modes = damped_modes(rig, state, highest)
-    character = mode_character(rig, modes)
+    character = mode_character(rig, modes.shapes)
     shafts = [shaft.name for shaft in rig.model.rig.drivetrain.shafts]
     slowest = AT_REST * abs(state.speed) / (2.0 * math.pi)
     found = []

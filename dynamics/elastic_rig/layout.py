@@ -51,8 +51,9 @@ class HousingSupport:
     """Seats of bearings that the housing holds: their motion against the foundation.
 
     bearings : names of k of them. stiffness, mass, damping : (d k, d k) symmetric [N/m], [kg], [N s/m] and likewise for
-    rotations, bearing after bearing, each in the first d of `SEAT_DIRECTIONS`, d = 2 or 5; in the others a seat stands
-    still. Condensed from a finite-element mesh of the housing (Guyan 1965), or one bearing by `isotropic_support`.
+    rotations, bearing after bearing, each in the first d of `SEAT_DIRECTIONS`, d = 2, 3 or 5; in the others a seat
+    stands still. Condensed from a finite-element mesh of the housing (Guyan 1965), or one bearing by
+    `isotropic_support`.
 
     Raises DrivetrainError for a wrong shape, or a stiffness or mass that is not symmetric and positive definite.
     """
@@ -64,14 +65,15 @@ class HousingSupport:
     damping: Array | None = None
 
     def __post_init__(self) -> None:
-        sizes = tuple((d * len(self.bearings),) * 2 for d in (2, 5))
+        sizes = tuple((d * len(self.bearings),) * 2 for d in (2, 3, 5))
         for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass), ("damping", self.damping)):
             if matrix is None:
                 continue
             if matrix.shape not in sizes or matrix.shape != self.stiffness.shape:
                 raise DrivetrainError(
                     f"housing support {self.name!r}: {name} has shape {matrix.shape}: must be "
-                    f"{sizes[0]} or {sizes[1]}, the same for all; give two or five directions for each bearing"
+                    f"{sizes[0]}, {sizes[1]} or {sizes[2]}, the same for all; give two, three or five directions for "
+                    "each bearing"
                 )
             if not np.allclose(matrix, matrix.T, rtol=1e-6, atol=1e-9 * float(np.abs(matrix).max())):
                 raise DrivetrainError(
@@ -87,7 +89,7 @@ class HousingSupport:
 
     @property
     def directions(self) -> int:
-        """Motions of a seat: 2 or 5."""
+        """Motions of a seat: 2, 3 or 5."""
         return int(self.stiffness.shape[0]) // len(self.bearings)
 
 

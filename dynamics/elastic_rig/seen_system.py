@@ -6,6 +6,7 @@ none of them moves. With S the rows of what is seen, on the coordinates eta of t
 basis of what S does not see, the freedoms are z = (S eta, N' eta), hence eta = (S^+, N) z.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,13 +16,16 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import Coordinates, LinearSystem
+from dynamics.drivetrain.mesh_wrench import MeshWrench
 from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, rotating_load
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.cross_joints import WAVES, CrossJointLoad, cross_joint_loads
 from dynamics.elastic_rig.joints import ElasticJoint
+from dynamics.elastic_rig.mesh_rows import mesh_directions
 from dynamics.elastic_rig.reduction import ReducedElasticRig
 from dynamics.elastic_rig.rotating_loads import line_loads
 from dynamics.elastic_rig.running_state import RunningState
+from dynamics.elastic_rig.wrench_rows import ROWS, wrench_rows
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -71,11 +75,31 @@ class SeenRig:
                 stiffness=_without_rounding(at.stiffness),
                 rigid=self.reduced.rigid,
             ),
+            mesh_wrench=self._mesh_wrench,
         )
 
     def on_freedoms(self, rows: Array) -> Array:
         """Rows (m, n) on the freedoms of the system of rows (m, n_full) on those of the whole rig."""
         return np.asarray(self.reduced.rows(rows) @ self._back)
+
+    @cached_property
+    def _mesh_wrench(self) -> MeshWrench:
+        model = self.reduced.model
+        turns, slides, tangents, sides = [], [], [], []
+        for mesh, ports in self.ports.items():
+            rows = dict(zip(ROWS, wrench_rows(model, mesh), strict=True))
+            first, second = model.rig.mesh(mesh).base_radii
+            approach = first * ports[0] - second * ports[1]
+            apart = approach - rows["front approach"], approach + rows["back approach"]
+            sides.append(1.0 if np.linalg.norm(apart[0]) < np.linalg.norm(apart[1]) else -1.0)
+            turns.append(
+                self.on_freedoms(np.array([rows["pinion turn"] - ports[0], rows["wheel turn"] - ports[1]]))
+            )
+            tangents.append(math.tan(mesh_directions(model.rig, mesh).pressure_angle))
+            slides.append(self.on_freedoms(rows["slide"][None])[0])
+        return MeshWrench(
+            turns=np.array(turns), slide=np.array(slides), tangents=np.array(tangents), sides=np.array(sides)
+        )
 
     @cached_property
     def _rows(self) -> dict[str, Array]:

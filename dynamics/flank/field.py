@@ -136,14 +136,20 @@ class FlankField:
         place = np.array(micro.pitch_deviations or (0.0,))[own if micro.pitch_deviations else 0]
         slopes = np.array(micro.profile_slopes or (0.0,))[own if micro.profile_slopes else 0]
         tilt = 0.5 * slopes * self._along_profile(roll)
-        standing = place + micro.run_out * np.cos(self._rotation(roll, number, flank) - micro.run_out_phase)
-        removed = (standing if flank == "back" else -standing) - tilt
+        removed = (place if flank == "back" else -place) - tilt + self.turning_deviation(roll, number, flank)
         measured = self._topography(flank)
         if measured is not None and measured.teeth > 1:
             root, tip = self.profile
             angle, face = np.clip(roll, root, tip) / self._cold_scale, np.asarray(face, dtype=np.float64)
             removed = removed + measured.at(angle, face, own) - measured.mean.at(angle, face, 0)
         return np.asarray(removed)
+
+    def turning_deviation(self, roll: ArrayLike, tooth: ArrayLike, flank: Flank = "front") -> Array:
+        """What an eccentricity, which turns with the gear, has of `deviation` [m]; arguments as there."""
+        number = np.asarray(tooth, dtype=np.int64)
+        rotation = self._rotation(np.asarray(roll, dtype=np.float64), number, flank)
+        standing = self.micro.run_out * np.cos(rotation - self.micro.run_out_phase)
+        return np.asarray(standing if flank == "back" else -standing)
 
     @property
     def natural_twist(self) -> float:

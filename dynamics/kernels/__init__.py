@@ -7,8 +7,9 @@ contacts of a flank, ``contact`` sums them, ``shared_body`` finds what the teeth
 The same law from contact tables, for the march: ``contact_nodes`` sums the slices at the nodes of ``contact_table``,
 ``hold_path`` and ``hold_phase`` contract a flank at its place on the path (``knots``), ``press_rows`` sums what is
 held, ``table_reactions`` evaluates at given states. ``linear_step`` takes the modes over one step (``mode_pass``),
-``mesh_solve`` the meshes, ``drag`` the drag torques, ``march`` joins them; ``mesh_workspace`` is the state of the
-meshes that the last four share.
+``held_flanks``, ``mesh_solve`` and ``meet_meshes`` the meshes, ``drag`` the drag torques, ``wrench`` tooth forces
+beside the ports, ``march`` joins them and ``march_accounts`` adds up their work; ``mesh_workspace`` is the state of the
+meshes that they share.
 
 The disk cache of a compiled function is keyed by the content of its own file: a hash of all sources in each file that
 takes from another goes with it (``tests/unit/dynamics_package/kernels/test_kernel_cache.py`` says what to write).
@@ -24,6 +25,7 @@ from dynamics.kernels.mesh_tables import N_COUNTS, N_PHASE, N_VALUES, VECTOR, Pa
 from dynamics.kernels.mesh_workspace import port_place
 from dynamics.kernels.mode_layout import WIDTH
 from dynamics.kernels.reactions import MeshStates, mesh_reactions, tooth_pair_forces
+from dynamics.kernels.wrench import WrenchModes
 from thermal.fe.kernel_cache import remove_outdated
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "MeshStates",
     "PackedMeshes",
     "Steps",
+    "WrenchModes",
     "march",
     "mesh_reactions",
     "port_place",

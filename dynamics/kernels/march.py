@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.aligned import aligned, aligned_zeros
 from dynamics.kernels.contact import LOOSE, inlined
-from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_FLOOR, V_R1, V_R2, ContactTables
+from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_R1, V_R2, ContactTables
 from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
+from dynamics.kernels.held_flanks import HeldRows, find_place, hold_mesh
 from dynamics.kernels.linear_step import (
     AT_END,
     DiscreteModes,
@@ -27,28 +28,27 @@ from dynamics.kernels.linear_step import (
     step_modes,
     take_state,
 )
+from dynamics.kernels.march_accounts import account
 from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, Workspace
+from dynamics.kernels.meet_meshes import meet_others
 from dynamics.kernels.mesh_solve import (
-    HeldRows,
     choose_friction,
-    correct,
     correct_alone,
-    find_place,
-    flank_powers,
-    hold_mesh,
     invert,
-    left_open,
     look,
     look_ahead,
-    move_others,
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
+    APART,
+    APART_RATE,
     APPROACH,
     FILTERED,
     GIVEN,
     GIVEN_OLD,
+    LEAN,
+    LEAN_RATE,
     MISSING,
     N_SPACE,
     NET,
@@ -67,67 +67,28 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
     TURN_OLD,
 )
+from dynamics.kernels.wrench import (
+    WrenchModes,
+    forces_on_ports,
+    gather_forces,
+    give_to_ports,
+    lean_pinions,
+    part_flanks,
+    push_forces,
+    set_forces,
+    set_sides,
+)
 
-# compiled from sources 1e4f1075
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MOST_ITERATIONS = 12
-TOLERANCE = 1e-6
-"""Share of a mesh torque that the iteration may leave open."""
-MOST_SWEEPS = 50
-
-
-@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _account(
-    tables: ContactTables, circulating: int, carried: Carried, work: Workspace, step: float, share: float
-) -> None:
-    """Add the work of one step, which ends at ``share`` of the sample, to the accounts.
-
-    Powers are integrated by the cubic through their last four values. A drag torque, which
-    varies linearly over the step, works by its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
-    smooth curve).
-    """
-    total, powers, slow = carried.work, carried.powers, carried.slow
-    drags, speeds = carried.drags, carried.speeds
-    space, ends, fresh = work.space, work.ends, work.fresh
-    n_meshes, n_slow = tables.values.shape[0], slow.shape[0]
-    for m in range(n_meshes):
-        lost, damped = 0.0, 0.0
-        for side in range(2):
-            if work.held.counts[m, side] > 0:
-                sliding, damping = flank_powers(tables, space, m * N_SPACE, m, side, work.held)
-                lost += sliding
-                damped += damping
-        fresh[2 * m], fresh[2 * m + 1] = lost, damped
-    for k in range(n_slow):
-        fresh[2 * n_meshes + k] = (slow[k] + share * (work.target[k] - slow[k])) * ends[k]
-    n_inputs = n_slow + drags.shape[0]
-    joints, taken, first = 0.0, 0.0, ends.shape[0] - circulating
-    for r in range(n_inputs, first):
-        joints += ends[r] * ends[r]
-    for r in range(first, ends.shape[0], 4):
-        taken += ends[r] * ends[r + 1] - ends[r + 2] * ends[r + 3]
-    fresh[2 * n_meshes + n_inputs], fresh[2 * n_meshes + n_inputs + 1] = joints, taken
-    for d in range(drags.shape[0]):
-        k = 2 * n_meshes + n_slow + d
-        fresh[k] = drags[d] * ends[n_slow + d]
-        change = work.drags.change[d] * (ends[n_slow + d] - speeds[n_slow + d])
-        total[k] += step * (0.5 * (powers[0, k] + fresh[k]) - change / 12.0)
-        speeds[n_slow + d] = ends[n_slow + d]
-        powers[0, k] = fresh[k]
-    for k in range(fresh.shape[0]):
-        if 2 * n_meshes + n_slow <= k < 2 * n_meshes + n_inputs:
-            continue
-        done = (9.0 * fresh[k] + 19.0 * powers[0, k] - 5.0 * powers[1, k] + powers[2, k]) / 24.0
-        # the first two steps know no more than two powers
-        total[k] += step * (done if powers[2, k] == powers[2, k] else 0.5 * (fresh[k] + powers[0, k]))
-        powers[2, k], powers[1, k], powers[0, k] = powers[1, k], powers[0, k], fresh[k]
 
 
 def march(
-    tables: ContactTables, modes: DiscreteModes, commands: Commands, carried: Carried, steps: Steps,
-    record: MarchRecord,
+    tables: ContactTables, modes: DiscreteModes, wrench: WrenchModes, commands: Commands, carried: Carried,
+    steps: Steps, record: MarchRecord,
 ) -> int:  # fmt: skip
     """March over the samples of ``commands``; return the number of unconverged steps.
 
@@ -150,14 +111,16 @@ def march(
         bank=aligned(modes.bank),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
-        torques=np.zeros((2, 2 * n_meshes + n_drags)),
+        torques=np.zeros((2, 2 * n_meshes + n_drags + len(carried.wrench))),
         give=np.zeros(4 * n_meshes**2),
         space=np.zeros((n_meshes + 1) * N_SPACE),
         target=np.zeros(len(carried.slow)),
         fresh=np.zeros(len(carried.work)),
+        beside=np.zeros(4 * n_meshes * wrench.every),
+        mean_forces=np.zeros(len(carried.wrench)),
         drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
-    return int(_march(tables, modes, commands, carried, work, steps))
+    return int(_march(tables, modes, wrench, commands, carried, work, steps))
 
 
 @inlined
@@ -212,7 +175,8 @@ def _guess(tables: ContactTables, space: Array, held: HeldRows, by_slow: Array, 
         space[at + TAU] = 3.0 * (space[at + OLD] - space[at + OLDER]) + space[at + OLDEST]
         space[wheel + TAU] = 3.0 * (space[wheel + OLD] - space[wheel + OLDER]) + space[wheel + OLDEST]
         turned = space[at + TURN]
-        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD]
+        space[at + LEAN] += space[at + LEAN_RATE]
+        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD] + space[at + LEAN]
         teeth = 2.0 * space[at + TEETH] - space[at + TEETH_OLD]
         space[at + TURN_OLD], space[at + TEETH_OLD] = turned, space[at + TEETH]
         find_place(tables, space, at, m, held, angle, teeth)
@@ -246,50 +210,18 @@ def _keep_torques(space: Array, n_meshes: int, drags: Array, change: Array, torq
 
 
 @inlined
-def _meet_others(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
-    """Let the meshes move each other; return whether all torques are on their tangents."""
-    together = True
-    for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        if move_others(space, at, give, n_meshes, m) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
-            together = False
-    converged = together or _sweep_meshes(space, values, give, n_meshes)
-    for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR]:
-            converged = False
-    return converged
-
-
-@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _sweep_meshes(space: Array, values: Array, give: Array, n_meshes: int) -> bool:
-    """Bring all torques to the tangents of the meshes, one mesh after the other; return whether that was reached.
-
-    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and moves the
-    others by less still.
-    """
-    correction, agreed, m = 0, -1, 0
-    for n in range(n_meshes):
-        at = n * N_SPACE
-        space[at + MISSING] -= space[at + TAU]
-        space[at + PORT + MISSING] -= space[at + PORT + TAU]
-    while agreed < n_meshes - 1 and correction < MOST_SWEEPS * n_meshes:
-        at = (m * N_SPACE) & POSITIVE
-        error = correct(space, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
-        agreed = agreed + 1 if error <= TOLERANCE * abs(space[at + TAU]) + values[m, V_FLOOR] else 0
-        m = m + 1 if m + 1 < n_meshes else 0
-        correction += 1
-    for n in range(n_meshes):
-        at = n * N_SPACE
-        space[at + MISSING] += space[at + TAU]
-        space[at + PORT + MISSING] += space[at + PORT + TAU]
-    return agreed >= n_meshes - 1
+def _keep_forces(forces: Array, torques: Array) -> None:
+    """Fill the forces beside the ports into the end of the torques of ``end_rows``."""
+    first = torques.shape[0] - forces.shape[0]
+    for d in range(forces.shape[0]):
+        torques[first + d] = forces[d]
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 def _march(
     tables: ContactTables,
     modes: DiscreteModes,
+    wrench: WrenchModes,
     commands: Commands,
     carried: Carried,
     work: Workspace,
@@ -309,6 +241,14 @@ def _march(
 
     _begin(space, values, carried, modes.port_new, give, step)
     put_state(blocks, state, bank)
+    forces = carried.wrench
+    presses_beside = forces.shape[0] > 0
+    if presses_beside:
+        set_sides(wrench, space)
+    for m in range(n_meshes):
+        at = m * N_SPACE
+        space[at + APART], space[at + APART_RATE] = carried.apart[0, m], carried.apart[1, m]
+        space[at + LEAN], space[at + LEAN_RATE] = carried.apart[2, m], carried.apart[3, m]
     mean_torque = carried.controller[2]
     torque_share = values[0, V_R1] / substeps
     unconverged = 0
@@ -334,9 +274,17 @@ def _march(
             _guess(tables, space, work.held, by_slow, slow_at)
             if n_drags:
                 drags_on_ports(modes.drags, drags, work.drags.outputs, space)
+            if presses_beside:
+                part = sub % wrench.every
+                if part == 0:
+                    give_to_ports(wrench, forces, work.beside)
+                forces_on_ports(work.beside, part, n_meshes, space)
             step_modes(blocks, further, links, bank, through, space)
             if n_drags:
                 push_drags(modes.drags, blocks, drags, bank)
+            interval_ends = presses_beside and (sub + 1) % wrench.every == 0
+            if interval_ends:
+                push_forces(wrench, blocks, forces, bank)
             converged = False
             attempt = 0
             while attempt < MOST_ITERATIONS and not converged:
@@ -348,7 +296,7 @@ def _march(
                     at = (m * N_SPACE) & POSITIVE
                     invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
                     correct_alone(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                converged = _meet_others(space, values, give, n_meshes)
+                converged = meet_others(space, values, give, n_meshes)
                 add_torques(links, 0, through, AT_END, space, MISSING)
                 attempt += 1
             if n_drags:
@@ -359,12 +307,25 @@ def _march(
                 converged = converged and braked
             if not converged:
                 unconverged += 1
-            if keeps_accounts or sub == substeps - 1:
+            kept = keeps_accounts or sub == substeps - 1
+            if kept:
+                _keep_forces(forces, torques[0])
+            if presses_beside:
+                gather_forces(wrench, values, space, work.mean_forces)
+            if interval_ends:
+                set_forces(wrench, forces, work.mean_forces)
+            if kept:
+                _keep_forces(forces, torques[1])
                 _keep_torques(space, n_meshes, drags, work.drags.change, torques)
                 take_state(blocks, bank, state)
                 end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
             if keeps_accounts:  # while the angles are those of the start of the step
-                _account(tables, modes.circulating, carried, work, step, (sub + 1.0) / substeps)
+                account(tables, modes, wrench, carried, work, step, (sub + 1.0) / substeps)
+            if interval_ends:
+                last = sub == substeps - 1
+                part_flanks(wrench, values, blocks, bank, space, forces, step, last)
+                if last or wrench.every == 1:
+                    lean_pinions(wrench, blocks, bank, space, forces, 1 if wrench.every == 1 else substeps)
             for m in range(n_meshes):
                 at = (m * N_SPACE) & POSITIVE
                 space[at + OFFSET] += step * space[at + OFFSET_RATE]
@@ -396,7 +357,13 @@ def _march(
                 states[sample, i] = state[i]
             for port in range(2 * n_meshes):
                 states[sample, state.shape[0] + port] = space[port // 2 * N_SPACE + port % 2 * PORT + OLD]
+            for d in range(forces.shape[0]):
+                states[sample, state.shape[0] + 2 * n_meshes + d] = forces[d]
         for m in range(n_meshes):
             carried.offset[m] = commands.offsets[sample, m]
+    for m in range(n_meshes):
+        at = m * N_SPACE
+        carried.apart[0, m], carried.apart[1, m] = space[at + APART], space[at + APART_RATE]
+        carried.apart[2, m], carried.apart[3, m] = space[at + LEAN], space[at + LEAN_RATE]
     _end(space, carried.ports)
     return unconverged

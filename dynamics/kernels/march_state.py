@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.kernels.drag import DragLaws, DragWork
-from dynamics.kernels.mesh_solve import HeldRows
+from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 1e4f1075
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -54,6 +54,11 @@ class Carried(NamedTuple):
     input, every drag, joints, skew stiffness; NaN where there was no step; n = 0 without accounts."""
     work: Array
     """(n,) their integrals."""
+    wrench: Array
+    """Forces beside the ports, see ``kernels.wrench``; none where gears only rotate."""
+    apart: Array
+    """(4, n_meshes) how much closer the gears stand on the other flanks, and its rate; turn of the pinion from the
+    centre line beyond that of its port, and what it gains in a step."""
 
 
 class Steps(NamedTuple):
@@ -74,8 +79,8 @@ class MarchRecord(NamedTuple):
     samples: Array
     """(n_samples, 2 n_slow + n_drags + 1): slow inputs, their speeds, drag torques, angle of the first pinion."""
     states: Array
-    """(n_samples, n_states + 2 n_meshes): modal state and mesh torques at the end of each sample; no rows where nobody
-    reads them."""
+    """(n_samples, n_states + 2 n_meshes + n): modal state, mesh torques and forces beside the ports at the end of each
+    sample; no rows where nobody reads them."""
 
 
 class Workspace(NamedTuple):
@@ -100,4 +105,8 @@ class Workspace(NamedTuple):
     """(n_slow,) slow inputs at the end of the sample."""
     fresh: Array
     """Powers at the end of the step."""
+    beside: Array
+    """(every 2 n_ports,) what forces beside the ports give to them in the steps of the interval."""
+    mean_forces: Array
+    """Sum of these forces over the steps of their interval."""
     drags: DragWork

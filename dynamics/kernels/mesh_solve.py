@@ -7,39 +7,36 @@ Meshes that share a shaft move each other; their tangents are swept until all to
 the mesh workspace ``space`` (``kernels.mesh_workspace``) from ``at`` on.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.contact_table import (
-    C_GENERAL,
     V_BACKLASH,
     V_BODY,
-    V_LEAST_GAP,
-    V_PER_KNOT,
     V_R1,
     V_R2,
     ContactTables,
 )
-from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
-from dynamics.kernels.hold_phase import Place, hold_phase, place_of
+from dynamics.kernels.held_flanks import HeldRows, find_place, hold_mesh, is_held
+from dynamics.kernels.hold_path import sliding_at
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
+    APART,
+    APART_RATE,
     APPROACH,
     AT_RATE,
     AT_REACH,
     BENT,
     BENT_V,
     FILTERED,
-    FRACTION,
     GIVEN,
     HELD_ANGLE,
     HIGH,
     INVERSE,
+    LEAN,
     LOW,
     LOWER,
     MISSING,
@@ -50,6 +47,11 @@ from dynamics.kernels.mesh_workspace import (
     OFF,
     OFFSET,
     OFFSET_RATE,
+    OTHER_BACK,
+    OTHER_FRONT,
+    OTHER_PRESSED,
+    OTHER_RUBBED,
+    PATH_TORQUE,
     PER_SPEED,
     PORT,
     PRESSED,
@@ -69,32 +71,9 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 1e4f1075
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-
-NEAR = 0.2
-"""Share of a cell by which the path may be off the place at which rows are held."""
-
-
-class HeldRows(NamedTuple):
-    """Rows of the flanks that are held on their path."""
-
-    rows: Array
-    """Flat, per mesh and flank room for all of its pairs, then room that tilt needs."""
-    counts: Integers
-    """(n_meshes, 2) rows that are in use."""
-    first: Integers
-    """(n_meshes, 2) first entry."""
-    levels: Integers
-    """(n_meshes,) level of friction in this sample, see ``hold_path.Sliding``."""
-    cells: Integers
-    """(n_meshes, 2) cells of the last rows."""
-    sides: Integers
-    """(n_meshes,) flank that is held first: 0 in front, 1 on the back, 2 none."""
-    knots: Integers
-    """(n_meshes,) knot of its place on the path."""
 
 
 @inlined
@@ -122,79 +101,16 @@ def look_ahead(space: Array, at: int, values: Array, m: int, step: float) -> Non
 def _pressing(space: Array, at: int, values: Array, m: int, side: int) -> Pressing:
     """Return how the gears press a flank at the approach of the teeth and the rate at the end of the step."""
     sign = 1.0 - 2.0 * side
-    beside = sign * values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
+    beside = (
+        sign
+        * values[m, V_R1]
+        * (space[at + ANGLE] + space[at + TURN] + space[at + LEAN] - space[at + HELD_ANGLE])
+    )
     advance = advance_of(values, m, space[at + SPEED], space[at + PORT + SPEED], space[at + PER_SPEED])
-    reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH]
-    return Pressing(
-        sign, reach, sign * space[at + RATE], beside, advance, space[at + SPEED], space[at + PORT + SPEED]
-    )
-
-
-@inlined
-def find_place(
-    tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, angle: float, teeth: float
-) -> None:
-    """Find the flank of a mesh that touches at an angle of the pinion and an approach of the teeth, and its place."""
-    values = tables.values
-    front = teeth > values[m, V_LEAST_GAP]
-    back = teeth < -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
-    side = 0 if front else 1
-    space[at + HELD_ANGLE], space[at + TEETH] = angle, teeth
-    held.sides[m] = side if front or back else 2
-    place = place_of(tables, m, side, angle)
-    held.knots[m], space[at + FRACTION] = place.knot, place.fraction
-
-
-@inlined
-def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
-    """Hold the flanks of a mesh that touch at the place that was found."""
-    values = tables.values
-    least, turning = values[m, V_LEAST_GAP], -values[m, V_BACKLASH] - values[m, V_LEAST_GAP]
-    side, teeth = held.sides[m], space[at + TEETH]
-    held.counts[m, 0], held.counts[m, 1] = 0, 0
-    low, high = turning, least
-    if side < 2:
-        sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
-        first = held.first[m, side] & POSITIVE
-        reach = teeth if side == 0 else -teeth - values[m, V_BACKLASH]
-        if tables.counts[m, C_GENERAL] == 0:
-            place = Place(held.knots[m], space[at + FRACTION])
-            rows = hold_phase(tables, m, side, place, sliding, reach, held.cells, held.rows, first)
-        else:
-            state = FlankState(side, space[at + HELD_ANGLE], 0.0)
-            rows = hold_path(tables, m, state, sliding, reach, held.rows, first)
-        held.counts[m, side] = rows.n
-        if side == 0:
-            low, high = rows.low if teeth < turning or rows.low > turning else turning, rows.high
-        else:
-            low, high = -values[m, V_BACKLASH] - rows.high, -values[m, V_BACKLASH] - rows.low
-            high = high if high < least else least
-    space[at + LOW], space[at + HIGH] = low, high
-    if side == 0 and teeth < turning:
-        _hold_back(tables, space, at, m, held, teeth)
-
-
-@njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _hold_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, teeth: float) -> None:
-    """Hold the back flank of a mesh whose front flank is held."""
-    backlash = tables.values[m, V_BACKLASH]
-    sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
-    state = FlankState(1, space[at + HELD_ANGLE], 0.0)
-    rows = hold_path(tables, m, state, sliding, -teeth - backlash, held.rows, held.first[m, 1] & POSITIVE)
-    held.counts[m, 1] = rows.n
-    # no longer from where the back flank begins to touch on
-    space[at + LOW] = max(
-        space[at + LOW] if space[at + LOW] > teeth - 1.0 else -np.inf, -backlash - rows.high
-    )
-    space[at + HIGH] = min(space[at + HIGH], -backlash - rows.low)
-
-
-@inlined
-def is_held(space: Array, at: int, values: Array, m: int) -> bool:
-    """Return whether the held rows of a mesh are good at the approach and the angle that it reaches."""
-    beside = values[m, V_R1] * (space[at + ANGLE] + space[at + TURN] - space[at + HELD_ANGLE])
-    near = abs(beside) * values[m, V_PER_KNOT] < NEAR
-    return bool(near and space[at + LOW] <= space[at + TEETH] <= space[at + HIGH])
+    other = space[at + OTHER_FRONT + side]
+    reach = sign * space[at + TEETH] - side * values[m, V_BACKLASH] + other * space[at + APART]
+    rate = sign * space[at + RATE] + other * space[at + APART_RATE]
+    return Pressing(sign, reach, rate, beside, advance, space[at + SPEED], space[at + PORT + SPEED])
 
 
 @inlined
@@ -211,6 +127,10 @@ def _set_flank(space: Array, at: int, values: Array, m: int, sign: float, sums: 
     space[at + FILTERED] = sign * sums.force
     space[at + BENT], space[at + BENT_V] = r_1 * abs(sums.curvature), r_1 * abs(sums.force_xv)
     space[at + OFF], space[at + SHARE] = -sign * sums.elastic, sums.stiffness
+    space[at + PATH_TORQUE] = -sign * r_1 * (sums.a_1 - sums.force - sums.friction_1)
+    other = space[at + OTHER_FRONT] if sign > 0.0 else space[at + OTHER_BACK]
+    space[at + OTHER_PRESSED] = other * sums.force
+    space[at + OTHER_RUBBED] = -other * sign * (r_1 * sums.friction_1 + r_2 * (sums.a_2 - sums.force))
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
@@ -239,6 +159,10 @@ def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
     space[at + BENT_V] += r_1 * abs(sums.force_xv)
     space[at + OFF] += sums.elastic
     space[at + SHARE] += sums.stiffness
+    space[at + PATH_TORQUE] += r_1 * (sums.a_1 - sums.force - sums.friction_1)
+    other = space[at + OTHER_BACK]
+    space[at + OTHER_PRESSED] += other * sums.force
+    space[at + OTHER_RUBBED] += other * (r_1 * sums.friction_1 + r_2 * (sums.a_2 - sums.force))
 
 
 @inlined
@@ -249,7 +173,8 @@ def _no_contact(space: Array, at: int) -> None:
         space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
     space[at + PRESSED], space[at + PRESSED_X], space[at + PRESSED_V] = 0.0, 0.0, 0.0
     space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
-    space[at + FILTERED] = 0.0
+    space[at + FILTERED], space[at + PATH_TORQUE] = 0.0, 0.0
+    space[at + OTHER_PRESSED], space[at + OTHER_RUBBED] = 0.0, 0.0
     space[at + BENT], space[at + BENT_V], space[at + OFF], space[at + SHARE] = 0.0, 0.0, 0.0, 0.0
 
 
@@ -260,7 +185,15 @@ def look(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, a
     wheel = at + PORT
     space[at + TEETH] = space[at + AT_REACH] - space[at + GIVEN]
     if again or not is_held(space, at, values, m):
-        find_place(tables, space, at, m, held, space[at + ANGLE] + space[at + TURN], space[at + TEETH])
+        find_place(
+            tables,
+            space,
+            at,
+            m,
+            held,
+            space[at + ANGLE] + space[at + TURN] + space[at + LEAN],
+            space[at + TEETH],
+        )
         hold_mesh(tables, space, at, m, held)
     front, back = held.counts[m, 0] > 0, held.counts[m, 1] > 0
     if front or back:

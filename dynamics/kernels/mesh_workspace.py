@@ -4,7 +4,7 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources 1e4f1075
+# compiled from sources a7182a7d
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -37,8 +37,17 @@ that were just written in registers. A last row belongs to the place holder for 
     LOWER,  # shares of two levels of friction, and how far sliding reverses per sliding speed, of the sample
     UPPER,
     PER_SPEED,
+    PATH_TORQUE,  # on the pinion by the change of the path and by dampers on it [N m]
+    OTHER_FRONT,  # 1 where the flank in front, and on the back, is not on the normal of the ports, else 0
+    OTHER_BACK,
+    APART,  # by how much the gears stand closer on that flank, at the end of the step [m]
+    APART_RATE,
+    LEAN,  # turn of the pinion from the centre line beyond that of its port, at the end of the step [rad]
+    LEAN_RATE,  # per step [rad]
+    OTHER_PRESSED,  # its normal force [N], and friction torque on the pinion less that on the wheel [N m]
+    OTHER_RUBBED,
     INVERSE,  # of the Newton matrix, four numbers
-) = range(31)
+) = range(40)
 # of both ports, the pinion's first and the wheel's PORT further
 PORT = 11
 (

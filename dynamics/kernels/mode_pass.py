@@ -12,9 +12,9 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 1e4f1075
+# compiled from sources 65b043e7
 FAST = ("contract", "reassoc", "nsz", "arcp")
-LANES = 4
+LANES = 8
 """Numbers in a vector."""
 
 
@@ -66,13 +66,95 @@ def _pass_modes(typing: Any, bank: Any, first: Any, groups: Any, torque_a: Any, 
         for total in sums:
             whole = builder.load(total)
             lanes = [builder.extract_element(whole, ir.Constant(ir.IntType(32), i)) for i in range(LANES)]
-            found.append(plus(plus(lanes[0], lanes[1]), plus(lanes[2], lanes[3])))
+            while len(lanes) > 1:
+                lanes = [plus(one, other) for one, other in zip(lanes[::2], lanes[1::2])]
+            found.append(lanes[0])
         return cgutils.pack_array(builder, found)  # type: ignore[no-untyped-call]
 
     four = types.UniTuple(types.float64, 4)  # type: ignore[no-untyped-call]
     return four(bank, first, groups, torque_a, torque_b), codegen
 
 
+def _push_modes(
+    typing: Any,
+    bank: Any,
+    first: Any,
+    table: Any,
+    at: Any,
+    groups: Any,
+    f_0: Any,
+    f_1: Any,
+    f_2: Any,
+    f_3: Any,
+) -> Any:
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array, start, tabulated, begin, count, *forces = args
+        data = context.make_array(signature.args[0])(context, builder, array).data
+        pushes = context.make_array(signature.args[2])(context, builder, tabulated).data
+        vector, number = ir.VectorType(ir.DoubleType(), LANES), start.type
+        zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+        nothing = ir.Constant(vector, ir.Undefined)
+        spread = []
+        for force in forces:
+            one = builder.insert_element(nothing, force, ir.Constant(ir.IntType(32), 0))
+            spread.append(builder.shuffle_vector(one, nothing, zeros))
+        with cgutils.for_range(builder, count, intp=number) as loop:
+            group = builder.add(start, builder.mul(loop.index, ir.Constant(number, N_BANK * WIDTH)))
+            own = builder.add(begin, builder.mul(loop.index, ir.Constant(number, len(forces) * 2 * WIDTH)))
+            for lane in range(0, 2 * WIDTH, LANES):
+                place = builder.bitcast(
+                    builder.gep(data, [builder.add(group, ir.Constant(number, lane))]), vector.as_pointer()
+                )
+                total = builder.load(place, align=8)
+                for k, force in enumerate(spread):
+                    row = builder.gep(pushes, [builder.add(own, ir.Constant(number, 2 * WIDTH * k + lane))])
+                    push = builder.load(builder.bitcast(row, vector.as_pointer()), align=8)
+                    total = builder.fadd(total, builder.fmul(push, force, flags=FAST), flags=FAST)
+                builder.store(total, place, align=8)
+        return context.get_dummy_value()
+
+    return types.void(bank, first, table, at, groups, f_0, f_1, f_2, f_3), codegen
+
+
+def _dot_modes(typing: Any, bank: Any, first: Any, table: Any, at: Any, groups: Any) -> Any:
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array, start, tabulated, begin, count = args
+        data = context.make_array(signature.args[0])(context, builder, array).data
+        rows = context.make_array(signature.args[2])(context, builder, tabulated).data
+        vector, number = ir.VectorType(ir.DoubleType(), LANES), start.type
+        total = cgutils.alloca_once_value(builder, ir.Constant(vector, [0.0] * LANES))  # type: ignore[no-untyped-call]
+        with cgutils.for_range(builder, count, intp=number) as loop:
+            group = builder.add(start, builder.mul(loop.index, ir.Constant(number, N_BANK * WIDTH)))
+            own = builder.add(begin, builder.mul(loop.index, ir.Constant(number, 2 * WIDTH)))
+            for lane in range(0, 2 * WIDTH, LANES):
+                state, row = (
+                    builder.load(
+                        builder.bitcast(
+                            builder.gep(one, [builder.add(place, ir.Constant(number, lane))]),
+                            vector.as_pointer(),
+                        ),
+                        align=8,
+                    )
+                    for one, place in ((data, group), (rows, own))
+                )
+                more = builder.fmul(state, row, flags=FAST)
+                builder.store(builder.fadd(builder.load(total), more, flags=FAST), total)
+        whole = builder.load(total)
+        found = builder.extract_element(whole, ir.Constant(ir.IntType(32), 0))
+        for i in range(1, LANES):
+            found = builder.fadd(
+                found, builder.extract_element(whole, ir.Constant(ir.IntType(32), i)), flags=FAST
+            )
+        return found
+
+    return types.float64(bank, first, table, at, groups), codegen
+
+
+dot_modes: Any = intrinsic(_dot_modes)
+"""dot_modes(bank, first, table, at, groups): sum of the state of some groups of the bank times a row of a table."""
+push_modes: Any = intrinsic(_push_modes)
+"""push_modes(bank, first, table, at, groups, f_0, f_1, f_2, f_3): add to the state of some groups of the bank what four
+forces push, by ``table`` from ``at`` on: per group the state of all its modes per force."""
 pass_modes: Any = intrinsic(_pass_modes)
 """pass_modes(bank, first, groups, torque_a, torque_b): take a block of the bank over a step with the torques of its two
 ports at the start of it; return speed and turn of port a, speed and turn of port b that its modes give."""

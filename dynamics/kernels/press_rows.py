@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 1e4f1075
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 
 

@@ -2,7 +2,8 @@
 
 A mesh whose teeth are all alike has one potential over its phase, shared bodies included; with single teeth every pair
 has one over its path, and the deviations of its two teeth move it: by a constant exactly, by what varies over the path
-in the mean of the slices that carry. Layout and use: ``dynamics.kernels.contact_table``.
+in the mean of the slices that carry, by a run-out as that stands at the rotation of its gear. Layout and use:
+``dynamics.kernels.contact_table``.
 
 The tables take the law as it is: cubics of Fritsch and Carlson over the path, slices that touch one by one. For a march
 whose steps do not resolve all of the path they are filtered (``dynamics.mesh.path_filter``).
@@ -14,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels import contact_table as layout
@@ -307,11 +308,17 @@ def _deviations(law: MeshLaw, flanks: list[FlankTable]) -> Array:
     if all(np.ptp(table, axis=1).max() == 0.0 for table in every):
         return np.array(every)[..., :1]
     grid = law.path_start + law.path_step * np.arange(law.stiffness.shape[1])
+    turning = np.zeros((2, *every[0].shape)) if law.turning_deviation is None else law.turning_deviation
     found = []
-    for table, flank in zip(every, (flanks[0], flanks[-1])):
+    for table, turned, flank, sign in zip(every, turning, (flanks[0], flanks[-1]), (1.0, -1.0)):
         at = np.clip(flank.path, grid[0], grid[-1])
-        of_slices = PchipInterpolator(grid, table, axis=1)(at)
-        found.append(splines(np.einsum("tki,ki->kt", of_slices, flank.share), pairs=True).T)
+        of_slices = PchipInterpolator(grid, table - turned, axis=1)(at)
+        own = np.einsum("tki,ki->kt", of_slices, flank.share)
+        if np.any(turned):
+            # every slice stands at the rotation of the gear, that of the middle of the face
+            middle = flank.path[:, 0] + sign * law.slice_shift[0]
+            own += CubicSpline(grid, turned, axis=1)(middle).T
+        found.append(splines(own, pairs=True).T)
     return np.array(found)
 
 

@@ -1,5 +1,6 @@
 """Mesh law of a gear pair from its geometry, the micro-geometry of its flanks and its stiffness."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, tan
 from typing import Literal
@@ -227,6 +228,7 @@ def law_of_springs(
         back_deviation_2=deviations[1][1],
         body_compliance=springs.body_compliance,
         slice_face=face,
+        turning_deviation=_turning_deviation(flanks.flanks, path),
     )
 
 
@@ -239,10 +241,21 @@ def alike_teeth(law: MeshLaw, pinion: bool = True, wheel: bool = True) -> MeshLa
     if pinion:
         law = _with_means(law, law.deviation_1, law.back_deviation_1, law.scale_1)
         law = law._replace(deviation_1=none, back_deviation_1=None, scale_1=one)
+        law = _without_turning(law, slice(law.teeth_1))
     if wheel:
         law = _with_means(law, law.deviation_2, law.back_deviation_2, law.scale_2)
         law = law._replace(deviation_2=none, back_deviation_2=None, scale_2=one)
+        law = _without_turning(law, slice(law.teeth_1, None))
     return law
+
+
+def _without_turning(law: MeshLaw, teeth: slice) -> MeshLaw:
+    """The law with no deviations that turn with the gear of these teeth."""
+    if law.turning_deviation is None:
+        return law
+    left = law.turning_deviation.copy()
+    left[:, teeth] = 0.0
+    return law._replace(turning_deviation=left if np.any(left) else None)
 
 
 def _with_means(law: MeshLaw, front: Array, back: Array | None, scale: Array) -> MeshLaw:
@@ -308,6 +321,21 @@ def _deviations(flank: FlankField, path: Array, face: Array) -> tuple[Array, Arr
         return front, back
     front = flank.deviation(roll, 0.0, tooth)
     return front, flank.deviation(roll, 0.0, tooth, "back") if moved else None
+
+
+def _turning_deviation(flanks: Sequence[FlankField], path: Array) -> Array | None:
+    """What run-outs of both gears have of the deviations (2, teeth_1 + teeth_2, n_path) [m]; None without them."""
+    if not any(flank.micro.run_out for flank in flanks):
+        return None
+    sides: tuple[Literal["front", "back"], ...] = ("front", "back")
+    return np.array(
+        [
+            np.concatenate(
+                [one.turning_deviation(one.roll(path), np.arange(one.teeth)[:, None], side) for one in flanks]
+            )
+            for side in sides
+        ]
+    )
 
 
 def default_slices(

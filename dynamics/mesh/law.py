@@ -110,6 +110,9 @@ class MeshLaw(NamedTuple):
     """Compliance of both gear bodies that all tooth pairs share [m/N]; 0: every pair deflects alone."""
     slice_face: Array | None = None
     """Face position of each slice from mid-face, shape (n_slices,) [m]; None where tilt does not matter."""
+    turning_deviation: Array | None = None
+    """Part of the deviations that turns with its gear, an eccentricity, so that all slices of a tooth see it at one
+    rotation: shape (2, teeth_1 + teeth_2, n_path), in front and on the back [m]; None: none."""
 
 
 def back_deviations(law: MeshLaw) -> tuple[Array, Array]:
@@ -117,6 +120,19 @@ def back_deviations(law: MeshLaw) -> tuple[Array, Array]:
     return (
         law.deviation_1 if law.back_deviation_1 is None else law.back_deviation_1,
         law.deviation_2 if law.back_deviation_2 is None else law.back_deviation_2,
+    )
+
+
+def in_parallel(law: MeshLaw, count: int) -> MeshLaw:
+    """The law of ``count`` equal meshes side by side on one pair of axes, their flanks in line: the halves of a
+    double-helical gear where both carry, whose axial forces cancel."""
+    if count == 1:
+        return law
+    return law._replace(
+        stiffness=count * law.stiffness,
+        mean_stiffness=count * law.mean_stiffness,
+        damping=count * law.damping,
+        body_compliance=law.body_compliance / count,
     )
 
 
@@ -170,6 +186,10 @@ def check_mesh_law(law: MeshLaw) -> None:
         "deviation_2": (law.deviation_2.shape, ((law.teeth_2, n_path), (1, n_path))),
         "back_deviation_1": (back_1.shape, (law.deviation_1.shape,)),
         "back_deviation_2": (back_2.shape, (law.deviation_2.shape,)),
+        "turning_deviation": (
+            (0,) if law.turning_deviation is None else law.turning_deviation.shape,
+            ((0,), (2, law.teeth_1 + law.teeth_2, n_path)),
+        ),
         "scale_1": (law.scale_1.shape, ((law.teeth_1,), (1,))),
         "scale_2": (law.scale_2.shape, ((law.teeth_2,), (1,))),
     }

@@ -25,7 +25,7 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.orders.hill_system import SAME_CLASS, HillSystem, MeshPeriodic
 from dynamics.orders.tooth_cycle import CycleForces, cycle_forces
 from dynamics.orders.tooth_forcing import ToothForcing
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -20,7 +20,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.orders.tooth_excitation import Motion
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

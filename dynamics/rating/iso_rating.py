@@ -4,16 +4,14 @@ from dataclasses import dataclass
 from math import cos, degrees, inf, pi
 
 from dynamics.gear.pair import GearPair
-from dynamics.standards import iso1328_1_2013, iso6336_1_2006, iso6336_3_2006
-from dynamics.standards.iso6336_1_2006 import (
-    DynamicFactor,
-    GearLoad,
-    MeshData,
-    RunIn,
-    RunningIn,
-    StiffnessChoices,
-    ToothDeviations,
+from dynamics.standards import (
+    iso1328_1_2013,
+    iso6336_1_2006,
+    iso6336_1_2006_stiffness,
+    iso6336_3_2006,
 )
+from dynamics.standards.iso6336_1_2006 import DynamicFactor, GearLoad, RunIn, RunningIn, ToothDeviations
+from dynamics.standards.iso6336_1_2006_stiffness import MeshData, StiffnessChoices
 from dynamics.standards.iso6336_3_2006 import NOMINAL_LOAD, LoadFactors, RootStress, ToothLoad, ToothRoot
 
 MM = 1e3
@@ -113,7 +111,7 @@ def mesh_stiffness(pair: GearPair, torque: float, options: RatingOptions | None 
     """ISO 6336-1 mesh stiffness c_gamma_alpha [N/m per m of face width = N/m2] at the pinion torque [N m]."""
     options = options or RatingOptions()
     load = tangential_force(pair, torque) * options.application_factor / (pair.face_width * MM)
-    tooth = iso6336_1_2006.stiffness(mesh_data(pair), load, _stiffness_choices(options))
+    tooth = iso6336_1_2006_stiffness.stiffness(mesh_data(pair), load, _stiffness_choices(options))
     return tooth.c_gamma_alpha * 1e9
 
 

@@ -1,7 +1,8 @@
 """Modes of a drivetrain over one step, under forces on some of its rows that are linear in it.
 
 The modes of the linear part are taken over the step exactly; those above a cutoff follow their forces at once and with
-their delay (`dynamics.kernels.looped_march`).
+their delay (`dynamics.kernels.looped_march`). The straight line is the hold here: the speeds at the ends of a step are
+then exactly those of its forces, so that their power closes the books of the contact.
 """
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import ModalForm
 from dynamics.kernels.looped_march import HeldModes
-from dynamics.response.phi_functions import phi_functions
+from dynamics.response.step_hold import phi, straight_line
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -33,12 +34,13 @@ class ModesOverStep:
         seen = (rows @ form.velocity_shapes[:, upper]) * np.where(poles.imag > 0.0, 2.0, 1.0)
         self._loads, self._poles, self._seen, self._step = form.loads[upper], poles, seen, step
         self._kept = kept = np.abs(poles) <= 2.0 * np.pi * cutoff
-        self._phi = phi_functions(poles[kept] * step)
-        self._decay = np.exp(poles[kept] * step)
+        scaled = poles[kept] * step
+        self._phi_1, self._phi_2, self._hold = phi(1, scaled), phi(2, scaled), straight_line(scaled)
+        self._decay = np.exp(scaled)
         pushed = self._loads @ rows.T
         old, new = self._pushes(pushed[kept])
         self._pushed = _stacked(np.hstack([old, new]))
-        moving, steady = seen[:, kept] * (step * self._phi[0]), seen[:, kept] * self._decay
+        moving, steady = seen[:, kept] * (step * self._phi_1), seen[:, kept] * self._decay
         self._rows = np.vstack([_seen(moving), _seen(steady)])
         self._given = np.block(
             [
@@ -71,19 +73,22 @@ class ModesOverStep:
         found = moving - np.where(fast, held / np.where(fast, self._poles, 1.0), 0.0)
         return _stacked(found[self._kept, None])[:, 0].copy()
 
+    def kicked(self, system: LinearSystem, speeds: Array) -> Array:
+        """What a sudden change of all speeds (n,) adds to the modes (2 n_kept,)."""
+        return _stacked((self._loads @ (system.inertia @ speeds))[self._kept, None])[:, 0].copy()
+
     def _pushes(self, pushed: Complex) -> tuple[Complex, Complex]:
         """Modes at the end per force at the start and at the end, from their forcing (n_kept, n)."""
-        phi_1, phi_2, _ = self._phi
-        return pushed * (self._step * (phi_1 - phi_2))[:, None], pushed * (self._step * phi_2)[:, None]
+        late = self._hold.state
+        return pushed * (self._step * (self._phi_1 - late))[:, None], pushed * (self._step * late)[:, None]
 
     def _by_kept(
         self, pushed: Complex, old: Complex, new: Complex
     ) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Motion in the step and speed at its end per force at its start and its end, (n_rows, n) each."""
-        _, phi_2, phi_3 = self._phi
-        seen, square = self._seen[:, self._kept], self._step**2
+        seen, square, late = self._seen[:, self._kept], self._step**2, self._hold.turn
         return (
-            ((seen * (square * (phi_2 - phi_3)) @ pushed).real, (seen * (square * phi_3) @ pushed).real),
+            ((seen * (square * (self._phi_2 - late)) @ pushed).real, (seen * (square * late) @ pushed).real),
             ((seen @ old).real, (seen @ new).real),
         )
 

@@ -60,6 +60,10 @@ class ModalModel:
     n_circulating : number of the last outputs, in fours: speeds and displacements a', b, b', a whose a' b - b' a is
         what skew stiffness takes [W]
     drag_branches : (n_drags / 4,) branch of each four of drag torques
+    wrench_outputs : (5 n_meshes, n_modes) speeds on the rows of ``MeshWrench.loads``, then slides and turns of pinions
+        beyond those of their ports; no rows without them
+    wrench_through, wrench_through_rate : (5 n_meshes, n_inputs) as ``through`` and ``through_rate``
+    wrench_numbers : (n_meshes, 5) see ``MeshWrench.numbers``
     dropped : number of eigenvalues left out
     """
 
@@ -84,6 +88,10 @@ class ModalModel:
     n_drags: int
     n_circulating: int
     drag_branches: NDArray[np.int64]
+    wrench_outputs: ComplexArray
+    wrench_through: Array
+    wrench_through_rate: Array
+    wrench_numbers: Array
     dropped: int
 
 
@@ -118,6 +126,8 @@ def modal_model(
     n = len(system.inertia)
     drags = np.zeros((n, 0)) if drags is None else drags
     slow_and_drags = np.column_stack((loads, drags))
+    beside = system.mesh_wrench
+    wrench = np.zeros((n, 0)) if beside is None else beside.loads(laws)
     _check(system, laws, slow_and_drags)
     inner = system.coordinates
     own, squared, frequencies, n_lines = _branch_shapes(system)
@@ -145,28 +155,35 @@ def modal_model(
     branch_of = groups[branch_of]
     weights = np.where(values.imag > 0.0, 2.0, 1.0)
 
-    forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
-    forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), slow_and_drags))
+    forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1] + wrench.shape[1]))
+    forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), slow_and_drags, wrench))
     modal_forcing = inverse @ forcing
+    pressed = _without_rounding(modal_forcing[:, forcing.shape[1] - wrench.shape[1] :])
     skew_rows = _skew_rows(system)
-    velocity = np.vstack((_velocity_rows(system, slow_and_drags), skew_rows)) @ shapes
+    displaced = np.zeros((0, n)) if beside is None else beside.displaced
+    velocity = np.vstack((wrench.T, displaced, _velocity_rows(system, slow_and_drags), skew_rows)) @ shapes
     seen = (velocity @ vectors[:n]) * weights
-    moved = np.arange(len(seen) - len(skew_rows) + 1, len(seen), 2)
+    n_wrench = wrench.shape[1] + len(displaced)
+    moved = np.r_[wrench.shape[1] : n_wrench, len(seen) - len(skew_rows) + 1 : len(seen) : 2]
     seen[moved] /= np.where(values == 0.0, np.inf, values)
+    modal_forcing[:, forcing.shape[1] - wrench.shape[1] :] = pressed
     in_motion = np.ones(modal_forcing.shape, bool)
+    free = np.zeros(len(values), bool)
     if drag_damping is not None and drags.shape[1]:
         first = 2 * len(laws) + loads.shape[1]
         of_drags = slice(first, first + drags.shape[1])
-        rows = slice(first + 2 * len(laws), first + 2 * len(laws) + drags.shape[1])
+        rows = slice(n_wrench + first + 2 * len(laws), n_wrench + first + 2 * len(laws) + drags.shape[1])
         added = drag_damping @ np.abs(seen[rows] * modal_forcing[:, of_drags].T) / weights
         free = added < UNBRAKED * np.abs(values.real)
         in_motion[free, of_drags] = False
         seen[rows, free] = 0.0
-        # those that drags brake stand first in their branch: the march passes over the others
-        order = np.lexsort((np.arange(len(values)), free, branches))
+    if free.any() or pressed.size:
+        # those that drags brake stand first in their branch, those that only tooth forces beside the ports move last
+        order = np.lexsort((np.arange(len(values)), pressed.any(axis=1), free, branches))
         values, branches, weights = values[order], branches[order], weights[order]
         vectors, inverse = vectors[:, order], inverse[order]
         modal_forcing, in_motion, seen = modal_forcing[order], in_motion[order], seen[:, order]
+    of_wrench, seen = seen[:n_wrench], seen[n_wrench:]
     # branches that no load moves at all stand still
     pushed = np.bincount(branches, weights=np.abs(modal_forcing).max(axis=1))[branches] > 0.0
     keep = (np.abs(values) <= 2.0 * np.pi * cutoff) & pushed
@@ -199,6 +216,10 @@ def modal_model(
         n_drags=drags.shape[1],
         n_circulating=len(skew_rows),
         drag_branches=np.searchsorted(left, _drag_branches(shapes, branch_of, drags)),
+        wrench_outputs=of_wrench[:, keep],
+        wrench_through=(of_wrench @ static).real,
+        wrench_through_rate=(of_wrench @ delayed).real,
+        wrench_numbers=np.zeros((0, 5)) if beside is None else beside.numbers(laws),
         dropped=int(np.count_nonzero(~keep)),
     )
 
@@ -313,6 +334,12 @@ def _branch_modes(
     right[members] = vectors[:, half]
     left[:, members] = inverse[half]
     return values[half], right, left
+
+
+def _without_rounding(forcing: ComplexArray) -> ComplexArray:
+    """Forcing without what rounding leaves of modes that do not move with an input."""
+    largest = np.abs(forcing).max(axis=0, initial=1e-300, keepdims=True)
+    return np.where(np.abs(forcing) < 1e-10 * largest, 0.0, forcing)
 
 
 def _port_columns(system: LinearSystem) -> Array:

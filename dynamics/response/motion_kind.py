@@ -2,8 +2,9 @@
 
 A motion that repeats after n periods of its excitation is subharmonic of order n. One that never repeats is chaotic if
 two marches from nearly the same state part exponentially (largest Lyapunov exponent by neighbouring trajectories:
-Benettin et al., Meccanica 15 (1980) 9), else it has a second frequency of its own and is quasi-periodic. Both are known
-of gear pairs with backlash: Kahraman & Blankenship, J. Appl. Mech. 64 (1997) 217.
+Benettin et al., Meccanica 15 (1980) 9), else it has a second frequency of its own and is quasi-periodic. One that
+swings so slowly that neighbouring periods look alike shows in the extremes of a longer time. Both are known of gear
+pairs with backlash: Kahraman & Blankenship, J. Appl. Mech. 64 (1997) 217.
 """
 
 import math
@@ -18,6 +19,8 @@ Kind = Literal["periodic", "subharmonic", "quasi-periodic", "chaotic"]
 
 REPEATS = 0.02
 """Difference of a period from an earlier one, over the peak-to-peak value, up to which it repeats [-]."""
+WATCHED = 0.2
+"""Time over which a motion that repeats is watched for a slow swing of its extremes [s]."""
 LONGEST = 12
 """Periods after which a motion is sought to repeat at most."""
 CHAOTIC = 0.02
@@ -61,10 +64,21 @@ def repeats_after(force: Array, steps: int, longest: int = LONGEST) -> int:
     waves = force.reshape(len(force), -1, steps)
     scale = np.maximum(np.ptp(force, axis=1), 1e-3 * np.abs(force).max(axis=1)) + 1e-300
     for periods in range(1, min(longest, waves.shape[1] // 2) + 1):
-        apart = np.abs(waves[:, periods:] - waves[:, :-periods]).max(axis=(1, 2))
-        if np.all(apart <= REPEATS * scale):
+        # what creeps from one to the next shows between the first and the last of them
+        apart = [np.ptp(waves[:, first::periods], axis=1).max(axis=1) for first in range(periods)]
+        if np.all(np.max(apart, axis=0) <= REPEATS * scale):
             return periods
     return 0
+
+
+def swings(extremes: Array, periods: int, size: Array) -> bool:
+    """Whether a motion that seemed to repeat after ``periods`` swings over a longer time.
+
+    extremes : (n_meshes, n, 2) least and greatest force of n periods; size : (n_meshes,) peak-to-peak value
+    """
+    apart = [np.ptp(extremes[:, first::periods], axis=1).max(axis=1) for first in range(periods)]
+    scale = np.maximum(size, 1e-3 * np.abs(extremes).max(axis=(1, 2))) + 1e-300
+    return bool(np.any(np.max(apart, axis=0) > REPEATS * scale))
 
 
 def growth_per_period(distance: Array) -> float:

@@ -25,7 +25,16 @@ from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF, ModalModel
-from dynamics.response.motion_kind import LONGEST, Motion, growth_per_period, kind_of, repeats_after
+from dynamics.response.motion_kind import (
+    LONGEST,
+    REPEATS,
+    WATCHED,
+    Motion,
+    growth_per_period,
+    kind_of,
+    repeats_after,
+    swings,
+)
 from dynamics.response.steady_search import PeriodGrid, SteadySearch
 from dynamics.response.time_march import TimeMarch
 
@@ -36,6 +45,8 @@ INTERNAL_RATE = 320e3
 """Internal steps per second: eight per sample at 40 kHz."""
 SHOWN_PERIODS = 120
 """Periods of a motion that is searched for one and has none."""
+LEAST_WATCHED = 4
+"""Times that a motion repeats at least while it is watched for a slow swing; longer periods are not."""
 LEAST_STEPS = 64
 """Internal steps per period at least."""
 
@@ -290,6 +301,14 @@ class TimeIntegration:
         else:
             work = march.accounts().since(before)
         assert block is not None
+        watched = ceil(WATCHED / period.length)
+        swinging = False
+        if motion.periods and search.steady and watched >= LEAST_WATCHED * motion.periods:
+            size = np.ptp(block.force, axis=1)
+            swinging = swings(search.extremes(watched, tables), motion.periods, size)
+        if swinging:
+            motion = kind_of(0, growth_per_period(search.parting(shown, tables)))
+        steady = search.steady and not swinging
         span = shown * period.length
         speed, steps = period.speed, period.steps
         steps *= (motion.periods or shown) if self.settings.period == "mesh" else 1
@@ -302,6 +321,11 @@ class TimeIntegration:
             warnings.append(
                 f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} "
                 f"periods, limit {self.settings.tolerance:.0e}; the motion is {motion}"
+            )
+        if swinging:
+            warnings.append(
+                f"periodic response at {speed * 30 / pi:.1f} rpm: peaks swing by more than {REPEATS:.0%} of the "
+                f"peak-to-peak force within {WATCHED} s; the motion is {motion}"
             )
         if march.unconverged:
             warnings.append(
@@ -331,7 +355,7 @@ class TimeIntegration:
             drive_power=search.balanced_drive * speed * float(self._ratios[self.system.drive_dof]),
             bracing_power=float(work.slow_work[1]) / span,
             motion=motion,
-            steady=search.steady,
+            steady=steady,
             residual=search.residual,
             periods=done,
             unconverged_steps=march.unconverged,

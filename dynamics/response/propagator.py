@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes
+from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes, WrenchModes
 from dynamics.response.modal_layout import ModalLayout, StepResponse, branch_layout, port_blocks
 from dynamics.response.modal_model import ModalModel
-from dynamics.response.step_hold import numerov, phi, straight_line
+from dynamics.response.step_hold import FASTEST, numerov, phi, straight_line
+from dynamics.response.wrench_modes import wrench_columns, wrench_hold, wrench_modes
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -32,11 +33,14 @@ class Propagator:
 
     step: float
     modes: DiscreteModes
+    wrench: WrenchModes
     hold: ComplexArray
     layout: ModalLayout
 
 
-def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses: bool = True) -> Propagator:
+def discretise(
+    model: ModalModel, step: float, *, substeps: int = 1, with_losses: bool = True, beside_every: int = 1
+) -> Propagator:
     """Return the propagator for one step length.
 
     Parameters
@@ -44,6 +48,7 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
     step : internal step, above 0 [s]
     substeps : steps over which the slow inputs are linear
     with_losses : False leaves out the rows of the joint losses
+    beside_every : steps in which tooth forces beside the ports are linear; ``substeps`` is a multiple of it
 
     Raises DynamicsInputError for a step that is not above 0.
     """
@@ -56,11 +61,13 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
     of_mesh, of_line = numerov(scaled), straight_line(scaled)
     is_mesh = np.arange(model.inputs.shape[1]) < n_fast
     hold = step * np.where(is_mesh, of_mesh.state[:, None], of_line.state[:, None]) * model.inputs
+    hold[:, hold.shape[1] - 3 * len(model.wrench_numbers) :] = wrench_hold(model, beside_every * step)
     turned = step**2 * np.where(is_mesh, of_mesh.turn[:, None], of_line.turn[:, None]) * model.inputs
     driven = decay[:, None] * hold + step * phi_1 * model.inputs - hold
 
     n_ports = 2 * n_fast
     n_driven = n_fast + model.n_slow
+    of_drags = slice(n_driven, n_driven + model.n_drags)
     n_rows = model.outputs.shape[0] if with_losses else n_ports + model.n_slow + model.n_drags
     seen = model.outputs[:n_rows]
     through, through_rate = model.through[:n_rows], model.through_rate[:n_rows] / step
@@ -76,6 +83,10 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
     dropped, dropped_rate = 0.5 * step * model.through[angle], model.through_rate[angle]
     through_old[angle] = (seen[angle] @ integral).real + dropped - dropped_rate
     through_new[angle] = (seen[angle] @ turned).real + dropped + dropped_rate
+    # of torques linear in the step the speeds are the trapezoid, less step^2 / 12 of the jerk (Euler and Maclaurin)
+    jerked = _jerks(model, step, seen)
+    through_old[:, :n_fast] += jerked / 12.0
+    through_new[:, :n_fast] -= jerked / 12.0
     layout = branch_layout(model.branches)
     of_ports = StepResponse(
         decay=decay,
@@ -91,36 +102,52 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
     )
     slow_outputs, slow_states = _slow_responses(of_slow, n_ports, substeps)
     fast = np.r_[:n_fast, n_driven : n_driven + model.n_drags]
+    end_old, end_new = (
+        np.hstack((table[n_ports:, fast], wrench_columns(model, table[n_ports:])))
+        for table in (through_old, through_new)
+    )
     braked = slice(n_ports + model.n_slow, n_ports + model.n_slow + model.n_drags)
     discrete = DiscreteModes(
         **tables._asdict(),
         port_new=np.ascontiguousarray(through_new[:n_ports, :n_fast].T),
         rows=layout.lay(rows[n_ports:].conj()),
         circulating=model.n_circulating if with_losses else 0,
-        through_old=np.ascontiguousarray(through_old[n_ports:, fast].T),
-        through_new=np.ascontiguousarray(through_new[n_ports:, fast].T),
+        through_old=np.ascontiguousarray(end_old.T),
+        through_new=np.ascontiguousarray(end_new.T),
         slow_outputs=slow_outputs,
         slow_states=layout.lay(slow_states),
         drags=DragModes(
             branches=model.drag_branches,
-            groups=_braked_groups(model, layout, driven[:, n_driven:]),
-            push=layout.lay(driven[:, n_driven:].T),
+            groups=_braked_groups(model, layout, driven[:, of_drags]),
+            push=layout.lay(driven[:, of_drags].T),
             rows=layout.lay(rows[braked].conj()),
             inputs=np.ascontiguousarray(
                 np.hstack(
                     (
                         through_old[braked, :n_fast],
                         through_new[braked, :n_fast],
-                        (through_old + through_new)[braked, n_driven:],
+                        (through_old + through_new)[braked, of_drags],
                     )
                 ).T
             ),
-            each_other=np.ascontiguousarray(through_new[braked, n_driven:].T),
-            ports_held=np.ascontiguousarray((through_old + through_new)[:n_ports, n_driven:].T),
-            ports_new=np.ascontiguousarray(through_new[:n_ports, n_driven:].T),
+            each_other=np.ascontiguousarray(through_new[braked, of_drags].T),
+            ports_held=np.ascontiguousarray((through_old + through_new)[:n_ports, of_drags].T),
+            ports_new=np.ascontiguousarray(through_new[:n_ports, of_drags].T),
         ),
     )
-    return Propagator(step=step, modes=discrete, hold=hold, layout=layout)
+    wrench = wrench_modes(model, layout, hold, step, beside_every)
+    return Propagator(step=step, modes=discrete, wrench=wrench, hold=hold, layout=layout)
+
+
+def _jerks(model: ModalModel, step: float, seen: ComplexArray) -> Array:
+    """Return (n_rows, 2 n_meshes) what a mesh torque adds to each speed in a step, by the modes that follow it by
+    Numerov's method; nothing for angles and displacements."""
+    slow = np.abs(model.eigenvalues * step) <= FASTEST
+    jerks = step * (seen[:, slow] @ model.inputs[slow, : 2 * model.n_meshes]).real
+    jerks[1 : 4 * model.n_meshes : 2] = 0.0
+    n_displaced = len(seen) - (len(model.outputs) - model.n_circulating)
+    jerks[len(seen) - max(n_displaced, 0) :][1::2] = 0.0
+    return np.asarray(jerks)
 
 
 def _slow_responses(response: StepResponse, n_ports: int, substeps: int) -> tuple[Array, ComplexArray]:

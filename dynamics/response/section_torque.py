@@ -16,7 +16,7 @@ from dynamics.drivetrain.static_loop import line_ratios
 from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from dynamics.response.waveform import Waveform
 
 Array = NDArray[np.float64]

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 SMALL = 1e-9
 """Difference in speed from which two marches part, over the speed [-]."""
+AT_ONCE = 50
+"""Periods that are marched at once where their extremes alone are kept."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,9 +89,20 @@ class SteadySearch:
         apart = (np.abs(first - second) / np.abs(first).max(axis=1, keepdims=True)).max(axis=0)
         return np.asarray(apart.reshape(periods, -1).max(axis=1))
 
-    def _given(self, periods: int) -> Array:
+    def extremes(self, periods: int, tables: Array) -> Array:
+        """Least and greatest force (n_meshes, periods, 2) in each of so many periods further on [N]; the march itself
+        stays where it is."""
+        march, drags = self.march.continued(self.march.system, self.march.model), DragTables(torque=tables)
+        found = []
+        for first in range(0, periods, AT_ONCE):
+            given = self._given(min(AT_ONCE, periods - first), march)
+            waves = march.advance(given, drags=drags).force.reshape(len(march.laws), -1, self._period.steps)
+            found.append(np.stack((waves.min(axis=2), waves.max(axis=2)), axis=2))
+        return np.concatenate(found, axis=1)
+
+    def _given(self, periods: int, marched: TimeMarch | None = None) -> Array:
         """Commands over some periods: drive torque and twist as they are."""
-        march = self.march
+        march = marched or self.march
         samples = periods * self._period.steps // march.substeps
         given = np.zeros((samples, 4 + len(self._loads)))
         given[:, 0], given[:, 1] = self.drive, self.twist

@@ -5,6 +5,7 @@ each slow input and the losses of meshes and joints, so that drive torque and lo
 """
 
 from collections.abc import Sequence
+from math import gcd
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,7 @@ from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import discretise, modal_state, scaled_state
 from dynamics.response.state_reader import StateReader
 from dynamics.response.turning_loads import FollowingLoads
+from dynamics.response.wrench_modes import parted_flanks, wrench_inputs
 
 Array = NDArray[np.float64]
 
@@ -39,6 +41,8 @@ CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
 SEGMENT = 1000
 """Samples after which the contact tables are those of the speed that has come."""
+BESIDE_EVERY = 4
+"""Steps in which tooth forces beside the line of action are linear at most; accounts see them in every step."""
 NO_LOADS = DriveLoads()
 
 
@@ -87,7 +91,13 @@ class TimeMarch:
         self.substeps = settings.substeps
         self.drags = drags
         self.model = model or march_model(system, laws, drags, settings.cutoff)
-        self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
+        self.propagator = discretise(
+            self.model,
+            self.step,
+            substeps=self.substeps,
+            with_losses=accounts,
+            beside_every=1 if accounts else gcd(self.substeps, BESIDE_EVERY),
+        )
         self.unconverged = 0
         self._settings = settings
         self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
@@ -137,6 +147,8 @@ class TimeMarch:
             skew = 0.5 * (system.stiffness - system.stiffness.T)
             powers[0, -1] = start.speeds @ skew @ start.angles
         self._carried = kernels.Carried(
+            wrench=np.zeros(len(self.propagator.wrench.by_force)),
+            apart=parted_flanks(self.model, system.mesh_wrench, start.angles),
             state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
             slow=slow,
@@ -217,11 +229,12 @@ class TimeMarch:
             histories.append(np.empty((n_meshes, 7 if self._record_all else 2, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
             seen = 0 if self._reader is None else count
-            states = np.empty((seen, len(self._carried.state) + 2 * n_meshes))
+            states = np.empty((seen, len(self._carried.state) + 2 * n_meshes + len(self._carried.wrench)))
             self.tables = self._tables.at(self._pinion_speeds())
             self.unconverged += kernels.march(
                 self.tables,
                 self.propagator.modes,
+                self.propagator.wrench,
                 commands,
                 self._carried,
                 kernels.Steps(self.step, self.substeps),
@@ -248,11 +261,13 @@ class TimeMarch:
 
     def _read(self, reader: StateReader, states: Array, samples: Array) -> Array:
         """Torques (r, n) [N m] at the ends of n samples, see ``kernels.MarchRecord``."""
-        marched, ports = np.split(states, (len(self._carried.state),), axis=1)
+        n_states = len(self._carried.state)
+        marched, ports, beside = np.split(states, (n_states, n_states + 2 * len(self.laws)), axis=1)
         slow, _, braking, _ = np.split(
             samples, np.cumsum((self._n_slow, self._n_slow, len(self._carried.drags))), axis=1
         )
-        return reader.read(marched, np.hstack((ports, slow, braking)), slow[:, 1])
+        beside = wrench_inputs(self.model, beside)
+        return reader.read(marched, np.hstack((ports, slow, braking, beside)), slow[:, 1])
 
     def _diverged(self, force: Array, samples: Array) -> str:
         """What is known of a march that left the finite numbers in its last block.
@@ -323,7 +338,18 @@ class TimeMarch:
         scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
         n = len(self.model.inertia)
         stored = 0.5 * float(scaled[:n] @ scaled[:n] + self.model.springs @ scaled[n:] ** 2)
-        return stored + sum(float(self._reaction_now(mesh).energy[0]) for mesh in range(len(self.laws)))
+        return stored + sum(self._contact_energy(mesh) for mesh in range(len(self.laws)))
+
+    def _contact_energy(self, mesh: int) -> float:
+        """Energy in the teeth of a mesh [J]: of the flanks that carry, else of the others, which see an approach of
+        their own."""
+        approach, angle = self._carried.ports[mesh, 6:8]
+        reach, sides = approach + self._carried.offset[mesh], self.model.wrench_numbers[:, 0]
+        here = self._reaction(mesh, angle, reach)
+        if len(sides) == 0 or (here.force_front if sides[mesh] > 0.0 else here.force_back)[0] > 0.0:
+            return float(here.energy[0])
+        moved = reach - sides[mesh] * self._carried.apart[0, mesh]
+        return float(self._reaction(mesh, angle, moved).energy[0])
 
     def state(self) -> DriveState:
         """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""
@@ -365,6 +391,7 @@ class TimeMarch:
         march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried
         after.ports[:], after.slow[:], after.offset[:] = before.ports, before.slow, before.offset
+        after.wrench[:], after.apart[:] = before.wrench, before.apart
         after.controller[:], after.work[:], after.powers[:] = before.controller, before.work, before.powers
         angles = state.angles
         if mean_force is not None:
@@ -440,4 +467,5 @@ class TimeMarch:
     def _inputs(self) -> Array:
         """Inputs (n_inputs,) that act at this instant: mesh torques, slow inputs and drag torques."""
         carried = self._carried
-        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
+        beside = wrench_inputs(self.model, carried.wrench)
+        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags, beside))

@@ -135,6 +135,10 @@ class Gearbox(Part):
         """2 for a double-helical gear, whose face width is that of one half; else 1."""
         return 2 if self.meshes[self.first_meshes()[gear][0]].double_helical else 1
 
+    def carrying_halves(self, gear: str) -> int:
+        """Halves of a gear that the loop has the springs and the mass of."""
+        return self.meshes[self.first_meshes()[gear][0]].sharing
+
     def body_width(self, gear: str) -> float:
         """Face width of a gear with both its halves [m]."""
         return self.halves(gear) * self.gears[gear].face_width

@@ -21,22 +21,16 @@ from rigdesign.case.fields import (
     Play,
     Positive,
     PressureAngle,
-    Quantity,
     Share,
     Size,
     Small,
-    Stress,
     Text,
-    TorsionalDamping,
-    TorsionalStiffness,
     fault,
 )
+from rigdesign.case.gear_seats import Spline
 from rigdesign.case.strain_gauges import StrainGaugeInput
 
 ReliefExponent = Annotated[float, Field(ge=0.5, le=6.0)]
-SplineAngle = Annotated[float, Quantity("angle", at_least="15 deg", at_most="50 deg")]
-WORKING_DEPTH = 0.9
-"""Of a spline to DIN 5480, in modules: half of tip diameter of the shaft less tip diameter of the hub."""
 
 
 class RackInput(Part):
@@ -77,92 +71,6 @@ class TipEdgeInput(Part):
             raise fault(
                 f"rounding = {show(self.rounding, 'length')} and chamfer = {show(self.chamfer, 'length')} exclude "
                 "each other",
-                "write one of the two",
-            )
-        return self
-
-
-class SplineToothing(Part):
-    """Teeth of a spline-hub connection and what they may carry; each stress is held where its allowable is stated."""
-
-    teeth: Count = Field(ge=4, le=500)
-    """Number of teeth."""
-    module: Length | None = None
-    """Module; or ``pitch_diameter``."""
-    pitch_diameter: Length | None = None
-    """Pitch diameter, teeth times module."""
-    pressure_angle: SplineAngle = radians(30.0)
-    """Pressure angle of the flanks; 30 deg by DIN 5480."""
-    length: Length
-    """Axial length over which the teeth carry."""
-    working_depth: Length | None = None
-    """Radial height over which the flanks touch; 0.9 modules when left out, as of a spline to DIN 5480."""
-    load_distribution_factor: float = Field(default=1.0, ge=1.0, le=5.0)
-    """K_m of Dudley: uneven load over length and teeth by tilted axes, 1 to 3."""
-    shaft_root_diameter: Length | None = None
-    """Root circle of the teeth of the shaft; without it the shear of the shaft under them is not held."""
-    hub_root_diameter: Length | None = None
-    """Root circle of the teeth of the hub, its largest bore; without it the tension of the hub is not held."""
-    hub_diameter: Length | None = None
-    """Outside of the hub; the root circle of the gear when left out."""
-    allowable_pressure: Stress | None = None
-    """Pressure that the flanks may have under the dynamic torque, life included. Dudley: 35 MPa for straight teeth of
-    case-hardened steel that slide, nine times as much where they are fixed."""
-    allowable_shear: Stress | None = None
-    """Shear stress that teeth and shaft may have under it. Dudley: 345 MPa for case-hardened steel, times its life
-    factor, 0.5 to 0.2 for 1e5 to 1e7 cycles of the torque."""
-    allowable_tension: Stress | None = None
-    """Tension that the hub may have under it, at speed."""
-
-    @model_validator(mode="after")
-    def _geometry(self) -> "SplineToothing":
-        if (self.module is None) == (self.pitch_diameter is None):
-            given = "neither" if self.module is None else "both"
-            raise fault(
-                f"{given} of module and pitch_diameter is given",
-                'write one of the two, e.g. module = "2 mm"',
-            )
-        inner, outer = self.hub_root_diameter, self.hub_diameter
-        if outer is not None and (inner is None or inner >= outer):
-            raise fault(
-                f"hub_diameter = {show(outer, 'length')} needs a hub_root_diameter inside of it",
-                "write the root circle of the teeth of the hub, or leave hub_diameter out",
-            )
-        return self
-
-    @property
-    def reference_diameter(self) -> float:
-        """Pitch diameter [m]."""
-        return self.teeth * (self.module or 0.0) if self.pitch_diameter is None else self.pitch_diameter
-
-    @property
-    def contact_height(self) -> float:
-        """Radial height over which the flanks touch [m]."""
-        if self.working_depth is not None:
-            return self.working_depth
-        return WORKING_DEPTH * self.reference_diameter / self.teeth
-
-
-class Spline(Part):
-    """Spline-hub connection of a gear with its shaft."""
-
-    torsional_stiffness: TorsionalStiffness
-    """Torque per angle of twist between gear and shaft."""
-    torsional_damping: TorsionalDamping = 0.0
-    """Torque per speed of twist between gear and shaft."""
-    loss_factor: Share = 0.0
-    """Friction between the teeth, instead of ``torsional_damping``: a cycle of twist loses pi times this factor times
-    ``torsional_stiffness`` times the square of its amplitude, at any rate. The loop has a damper that loses as much at
-    the mesh frequency of the gear at every speed; other frequencies lose in proportion to theirs."""
-    toothing: SplineToothing | None = None
-    """Teeth of the connection: what its capacity is held with."""
-
-    @model_validator(mode="after")
-    def _one_damper(self) -> "Spline":
-        if self.torsional_damping and self.loss_factor:
-            raise fault(
-                f"torsional_damping = {show(self.torsional_damping, 'torsional_damping')} and loss_factor = "
-                f"{self.loss_factor:g} exclude each other",
                 "write one of the two",
             )
         return self
@@ -285,6 +193,9 @@ class Gear(Part):
     press fit is computed with; the same when left out."""
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
+    seat_offset: Deviation = 0.0
+    """How far the middle of the face stands from the middle of its seat on the shaft, positive towards the end of the
+    shaft; the shaft is twisted and bent at the seat, shafts that bend feel the lever."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
     """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh. For both gears they
     have to agree with the centre distance."""
@@ -308,6 +219,11 @@ class Gear(Part):
     """Connection with the shaft; a gear without one is rigid with its shaft."""
     strain_gauges: Mapping[Name, StrainGaugeInput] = {}
     """Strain gauges in the root of its teeth, by name."""
+
+    @property
+    def seat_position(self) -> float | None:
+        """Distance of the middle of its seat from the start of its shaft [m]."""
+        return None if self.position is None else self.position - self.seat_offset
 
     @model_validator(mode="after")
     def _seat(self) -> "Gear":
@@ -353,7 +269,11 @@ class GearMesh(Part):
     tip_cut: Literal["pinion", "wheel", "both"] | None = None
     """Gear whose tip is shortened until ``contact_ratio`` is met."""
     double_helical: bool = False
-    """Two opposite helices; face widths are those of the modelled half that carries the torque."""
+    """Two opposite helices; face widths and ``damping`` are those of one half."""
+    carrying_halves: Literal[1, 2] = 2
+    """Halves of a double-helical mesh that carry. 2: they share the torque, as a gear that floats lets them, and the
+    loop has the springs, dampers and mass of both. 1: the loop has one of them, which carries the whole torque; unless
+    the inertia of its gears is stated it is that of one half."""
     damping: LinearDamping | None = None
     """Damping along the line of action at the mean mesh stiffness; or ``damping_ratio``."""
     damping_ratio: float | None = Field(default=None, gt=0.0, le=0.5)
@@ -379,6 +299,11 @@ class GearMesh(Part):
     in the housing."""
     low_load_factor: bool = True
     """Reduce the tooth stiffness below 100 N/mm line load (ISO 6336-1)."""
+
+    @property
+    def sharing(self) -> int:
+        """Halves that share its torque: 1 but for double-helical gears of which both carry."""
+        return self.carrying_halves if self.double_helical else 1
 
     @model_validator(mode="after")
     def _tips(self) -> "GearMesh":

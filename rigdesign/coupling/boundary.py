@@ -1,33 +1,27 @@
 """Boundary conditions of a housing: the case's laws with this iteration's fluids, films, speeds and losses."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from dynamics.bearing.protocol import BearingState
 from rigdesign.case import surface_conditions as laws
-from rigdesign.case.films import SurfaceCondition, SurfaceFilm
-from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.geometry import bearing_on, conditions_of
 from rigdesign.case.given_film import ConstantFilm, TakenFrom
-from rigdesign.case.housing import Housing
-from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
 from rigdesign.coupling.enclosures import enclosure_conditions
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
-from rigdesign.coupling.housing_fluids import LinkEnd, WettedSurface, fluid_networks
+from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, HousingContext
+from rigdesign.coupling.housing_fluids import WettedSurface, fluid_networks
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
-from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import (
     ChamberOil,
     bearing_feed,
     bearing_oil,
-    conducting_share,
-    gear_feed,
     gear_oil,
-    wetted_width,
 )
 from thermal.conditions.boundary import (
     Adiabatic,
@@ -43,122 +37,10 @@ from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
-from thermal.housing.geometry import HousingGeometry
 from thermal.housing.measures import SIDES
-from thermal.housing.shaft_geometry import ShaftGeometry
-
-GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
-"""Kinds of films: what takes the heat up, as the heat balance names it."""
 
 STORED = "stored"
 """Kind of the rows of the bodies that are warming up."""
-
-
-@dataclass(frozen=True)
-class _Context:
-    """One housing at one iteration."""
-
-    rig: Rig
-    name: str
-    point: OperatingPoint
-    coupling_state: CouplingState
-    bearings: Mapping[str, BearingState]
-
-    @property
-    def box(self) -> Gearbox:
-        return self.rig.case.gearboxes[self.name]
-
-    @property
-    def housing(self) -> Housing:
-        housing = self.box.housing
-        assert housing is not None
-        return housing
-
-    def source(self, condition: SurfaceCondition) -> str:
-        """Where the case has the coefficient of a given film from."""
-        entry = next(name for name, own in self.housing.boundary.items() if own is condition)
-        path = f"gearboxes.{self.name}.housing.boundary.{entry}.heat_transfer_coefficient"
-        return self.rig.case.provenance(path)
-
-    @property
-    def geometry(self) -> HousingGeometry:
-        return self.rig.geometries[self.name]
-
-    def fluid(self, name: str) -> tuple[str, float]:
-        """Kind and temperature [K] of room air or an oil."""
-        if name == "ambient":
-            return AIR, self.rig.case.ambient.temperature
-        kind, _, which = name.rpartition("_")
-        chamber = self.coupling_state.oil_outlet[f"{self.name}.{GEAR_OIL}"]
-        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(
-            self.rig, self.name, chamber, self.coupling_state.oil_supply
-        )
-        outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
-        return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
-
-    def finds_own_temperature(self, fluid: str | None) -> bool:
-        """Whether a fluid is a volume or stream of the housing."""
-        return fluid in self.housing.volumes or fluid in self.housing.streams
-
-    def link_ends(self, *, sump_given: bool) -> dict[str, LinkEnd]:
-        """Room air and the oils as they leave the chamber; a sump that finds its own temperature is left out."""
-        ends = {"ambient": LinkEnd(temperature=self.rig.case.ambient.temperature, kind=AIR)}
-        for kind in (GEAR_OIL, BEARING_OIL):
-            if kind == BEARING_OIL or self.box.gear_oil_temperature is not None or sump_given:
-                outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
-                ends[kind] = LinkEnd(temperature=outlet, kind=kind)
-        return ends
-
-    def wetting(self, fluid: str, surface: str) -> float:
-        """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
-        if self.finds_own_temperature(fluid):
-            return 1.0
-        kind, _ = self.fluid(fluid)
-        if kind == AIR:
-            return 1.0
-        share = conducting_share(self.rig, self.name, kind)
-        on_flanks = kind == GEAR_OIL and surface in rim_surfaces(self.box).values()
-        return share * wetted_width(self.box) if on_flanks else share
-
-    def place(self, condition: SurfaceCondition, surface: str) -> SurfacePlace:
-        """Numbers of a surface for the law of its condition."""
-        shaft = None
-        if self._shafts_of(surface):
-            gap = self.shaft(surface).seal_gap
-            shaft = ShaftPlace(speed=self.speed(surface), diameter=self.diameter(surface), seal_gap=gap)
-        fluid = condition.wetted_by
-        return SurfacePlace(
-            height=self.housing.height,
-            wall_conductivity=self.rig.materials[self.housing.material].conductivity,
-            shaft=shaft,
-            mist_density=self.rig.case.losses.chamber_density,
-            wetted_share=1.0 if fluid is None else self.wetting(fluid, surface),
-            source=self.source(condition),
-        )
-
-    def shaft(self, surface: str) -> ShaftGeometry:
-        """The shaft a surface belongs to, from its name."""
-        return max(self._shafts_of(surface), key=lambda shaft: len(shaft.name))
-
-    def _shafts_of(self, surface: str) -> list[ShaftGeometry]:
-        return [shaft for shaft in self.geometry.shafts if f"_{shaft.name}_" in f"{surface}_"]
-
-    def speed(self, surface: str) -> float:
-        """Speed of the shaft of a surface [rad/s]."""
-        return self.rig.shaft_speed(self.shaft(surface).name, self.point.speed)
-
-    def diameter(self, surface: str) -> float:
-        """Diameter of a shaft or gear surface [m]."""
-        shaft = self.shaft(surface)
-        if surface.startswith("gear_") and shaft.gear is not None:
-            return shaft.gear.outer_diameter
-        if "_cold_" in surface or ("_seal_" in surface and not surface.endswith("_end")):
-            return shaft.seal_diameter
-        if surface.endswith("_warm"):
-            return shaft.seat_diameter
-        if "_journal_" in surface:
-            return shaft.bearing("front" if surface.endswith("_front") else "rear").journal_diameter
-        return shaft.overhang_diameter
 
 
 def boundary_conditions(
@@ -174,7 +56,7 @@ def boundary_conditions(
     radiation_included : leave out explicit radiation where the film to room air contains it already
     sump_given : a sump has the temperature of the coupling state also where it finds its own
     """
-    context = _Context(rig, name, losses.point, losses.coupling_state, losses.bearings)
+    context = HousingContext(rig, name, losses.point, losses.coupling_state, losses.bearings)
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, rig.surface_names(name))
@@ -203,7 +85,7 @@ def boundary_conditions(
 
 
 def _with_free_sump(
-    context: _Context, conditions: Sequence[Condition], losses: Sequence[PlacedLoss]
+    context: HousingContext, conditions: Sequence[Condition], losses: Sequence[PlacedLoss]
 ) -> list[Condition]:
     """The conditions with the sump as an unknown: films to its oil feel a volume that the losses in it heat."""
     chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
@@ -228,7 +110,7 @@ def _with_free_sump(
     return [*rest, sump]
 
 
-def _radiation_in_film(context: _Context, entry: str, surface: str) -> bool:
+def _radiation_in_film(context: HousingContext, entry: str, surface: str) -> bool:
     """Whether the film to room air of a surface is of the size of convection and radiation together."""
     condition = context.housing.boundary[entry]
     return (
@@ -257,7 +139,7 @@ def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:
 
 
 def _condition(
-    context: _Context, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
+    context: HousingContext, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
 ) -> BoundaryCondition:
     if isinstance(condition, laws.ThermalRadiation):
         return _radiation(context, condition, surface, condition.emissivity + condition.emissivity_excess)
@@ -283,7 +165,7 @@ def _condition(
     return _film(context, condition, surface)
 
 
-def _film(context: _Context, condition: SurfaceFilm, surface: str) -> Film:
+def _film(context: HousingContext, condition: SurfaceFilm, surface: str) -> Film:
     """Film to a fluid of the case; those to room air times the factor of them all."""
     assert condition.wetted_by is not None
     kind, usual = context.fluid(condition.wetted_by)
@@ -294,7 +176,7 @@ def _film(context: _Context, condition: SurfaceFilm, surface: str) -> Film:
     return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
 
 
-def _wetted(context: _Context, condition: SurfaceFilm, surface: str) -> WettedSurface:
+def _wetted(context: HousingContext, condition: SurfaceFilm, surface: str) -> WettedSurface:
     """Film to a volume or stream of the housing."""
     assert condition.wetted_by is not None
     law = condition.film_law(context.place(condition, surface))
@@ -306,7 +188,7 @@ def _wetted(context: _Context, condition: SurfaceFilm, surface: str) -> WettedSu
 
 
 def _radiation(
-    context: _Context, condition: laws.ThermalRadiation, surface: str, emissivity: float
+    context: HousingContext, condition: laws.ThermalRadiation, surface: str, emissivity: float
 ) -> Radiation:
     ambient = context.rig.case.ambient
     walls = condition.surroundings_temperature or ambient.surroundings_temperature or ambient.temperature
@@ -314,7 +196,7 @@ def _radiation(
 
 
 def _excess_radiation(
-    context: _Context, condition: laws.ThermalRadiation, surface: str
+    context: HousingContext, condition: laws.ThermalRadiation, surface: str
 ) -> list[BoundaryCondition]:
     """What a surface radiates beyond the radiation that its film to room air holds already."""
     if condition.emissivity_excess == 0.0:
@@ -322,7 +204,7 @@ def _excess_radiation(
     return [_radiation(context, condition, surface, condition.emissivity_excess)]
 
 
-def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:
+def _bearing_film(context: HousingContext, condition: laws.BearingFilm, surface: str) -> Film:
     """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition."""
     part, state = _bearing_of(context, surface)
     oil = bearing_oil(context.rig, context.name)
@@ -337,7 +219,7 @@ def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) 
     )
 
 
-def _bearing_of(context: _Context, surface: str) -> tuple[str, BearingState]:
+def _bearing_of(context: HousingContext, surface: str) -> tuple[str, BearingState]:
     """Name and state of the bearing whose journal or bore a surface is."""
     shaft = context.shaft(surface).name
     side = "front" if surface.endswith("front") else "rear"
@@ -346,7 +228,7 @@ def _bearing_of(context: _Context, surface: str) -> tuple[str, BearingState]:
     return part, context.bearings[f"{context.name}.{part}"]
 
 
-def _joined_bearings(context: _Context) -> Iterator[BoundaryCondition]:
+def _joined_bearings(context: HousingContext) -> Iterator[BoundaryCondition]:
     """Conduction through the bearings that are joined to their seats, into shaft, housing and oil."""
     chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
     inlet = bearing_feed(context.rig, context.name, chamber).inlet
@@ -357,7 +239,7 @@ def _joined_bearings(context: _Context) -> Iterator[BoundaryCondition]:
             yield from seat_conditions(context.rig, full, star, inlet, f"{BEARING_FILM}:{part}")
 
 
-def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
+def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
     """Losses that enter solids: meshes into the rims, windage into the gears, seals into shaft and bore."""
     sources: list[BoundaryCondition] = [*_mesh_sources(context, losses)]
     for placed in losses:
@@ -375,7 +257,7 @@ def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCo
     return sources
 
 
-def _mesh_sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
+def _mesh_sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
     """Into the rim of every gear its share of the heat of all meshes it is in."""
     into_rim: dict[str, float] = {}
     for placed in losses:
@@ -389,7 +271,7 @@ def _mesh_sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[Bound
     ]
 
 
-def _seal_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryCondition]:
+def _seal_sources(context: HousingContext, placed: PlacedLoss) -> list[BoundaryCondition]:
     """Shaft and bore of every seal: evenly on the two in the partitions, evenly on those where the shaft leaves."""
     name = context.box.seals[placed.part].shaft
     shaft = next(shaft for shaft in context.geometry.shafts if shaft.name == name)

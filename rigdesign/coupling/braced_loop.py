@@ -9,7 +9,8 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws

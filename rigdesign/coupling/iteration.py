@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.finite import finite
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial, respond

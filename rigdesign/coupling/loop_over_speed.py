@@ -31,11 +31,8 @@ def loop_over_speed(
     """
     if rig.shaft_model == "torsional" and not rig.twisting.follows_speed:
         return rig.twisting.at(warm.point.speed)
-    high = max(speeds)
-    low = max(min(speeds), SLOWEST * high)
-    count = max(1, math.ceil(math.log(high / low) / math.log(WIDTH)))
-    edges = [low * (high / low) ** (i / count) for i in range(count + 1)]
-    edges.insert(-1, TOP * high)  # the speed that is held in the end has a band of its own
+    edges = _edges(speeds)
+    high = edges[-1]
     systems = []
     for first, last in pairwise(edges):
         point = replace(warm.point, speed=high if last == high else math.sqrt(first * last))
@@ -44,5 +41,22 @@ def loop_over_speed(
         torque = {name: share * value for name, value in warm.coupling_state.mesh_torque.items()}
         state = replace(warm.coupling_state, mesh_torque=torque)
         systems.append(loop_system(rig, point, state, solve_bearings(rig, point, state)))
-    limits = tuple(rig.pinion_speed(edge) for edge in edges[1:-1])
-    return SpeedBands(limits=limits, systems=tuple(systems))
+    return SpeedBands(limits=band_limits(rig, speeds), systems=tuple(systems))
+
+
+def band_limits(rig: Rig, speeds: tuple[float, float]) -> tuple[float, ...]:
+    """Speeds of the first pinion at which the bands between two stated speeds meet, rising [rad/s]; none where the
+    matrices are the same at all of them."""
+    if rig.shaft_model == "torsional" and not rig.twisting.follows_speed:
+        return ()
+    return tuple(rig.pinion_speed(edge) for edge in _edges(speeds)[1:-1])
+
+
+def _edges(speeds: tuple[float, float]) -> list[float]:
+    """Stated speeds at which bands begin and end, rising [rad/s]."""
+    high = max(speeds)
+    low = max(min(speeds), SLOWEST * high)
+    count = max(1, math.ceil(math.log(high / low) / math.log(WIDTH)))
+    edges = [low * (high / low) ** (i / count) for i in range(count + 1)]
+    edges.insert(-1, TOP * high)  # the speed that is held in the end has a band of its own
+    return edges

@@ -11,7 +11,7 @@ from dynamics.losses.mesh_loss import Loss, ToothPath, mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, Seals
 from rigdesign.case.heat_split import HeatSplit

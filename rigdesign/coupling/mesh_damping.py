@@ -8,7 +8,7 @@ from rigdesign.rig.model import Rig
 
 
 def mesh_damping(rig: Rig, name: str, law: MeshLaw) -> float:
-    """Damping along the line of action [N s/m].
+    """Damping along the line of action, of one half of a double-helical mesh [N s/m].
 
     c = 2 zeta sqrt(k m_red), k the mean stiffness of the mesh and m_red = 1 / (r_b1^2/J_1 + r_b2^2/J_2) the gear
     bodies reduced to the line of action: the ratio that the damping audit of `dynamics.drivetrain.modes` reports.
@@ -24,5 +24,5 @@ def mesh_damping(rig: Rig, name: str, law: MeshLaw) -> float:
     first, second = (
         gear_inertia(rig.case, box_name, gear, rig.pairs, rig.materials) for gear in (mesh.pinion, mesh.wheel)
     )
-    mobility = law.base_radius_1**2 / first + law.base_radius_2**2 / second
+    mobility = mesh.sharing * (law.base_radius_1**2 / first + law.base_radius_2**2 / second)
     return 2.0 * mesh.damping_ratio * math.sqrt(law.mean_stiffness / mobility)

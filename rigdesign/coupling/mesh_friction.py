@@ -31,7 +31,7 @@ def mesh_friction(
     feed = gear_feed(rig, box_name, chamber, coupling_state.oil_supply)
     temperature = feed.mean(chamber)
     contact = ToothPath.of_pair(pair).contact(
-        max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
+        max(abs(coupling_state.mesh_torque[name]) / entry.sharing, LEAST_TORQUE),
         rig.shaft_speed(gears[0].shaft, point.speed),
         reference_diameter_1=2.0 * pair.reference_radii[0],
         roughness=0.5 * (gears[0].flank_roughness + gears[1].flank_roughness),

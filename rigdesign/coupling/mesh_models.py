@@ -10,7 +10,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, default_slices
 from dynamics.mesh.friction import FrictionCoefficient
-from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.law import MeshLaw, in_parallel
 from dynamics.mesh.stiffness import PairStiffness
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.mesh_axes import axes_in_mesh
@@ -24,13 +24,22 @@ from rigdesign.rig.model import Rig
 
 @dataclass(frozen=True, kw_only=True)
 class MeshModel:
-    """One mesh, warm, at one operating point."""
+    """One mesh, warm, at one operating point.
+
+    stiffness, law : of one half of a double-helical mesh; halves : that share its torque
+    """
 
     name: str
     pair: GearPair
     stiffness: PairStiffness
     friction: FrictionCoefficient
     law: MeshLaw
+    halves: int = 1
+
+    @property
+    def whole(self) -> MeshLaw:
+        """The law of all halves that carry, as the loop has it."""
+        return in_parallel(self.law, self.halves)
 
 
 def mesh_models(
@@ -82,7 +91,7 @@ def mesh_model(
     warm = WarmMesh(
         name=name,
         pair=pair,
-        torque=max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
+        torque=max(abs(coupling_state.mesh_torque[name]) / entry.sharing, LEAST_TORQUE),
         micro=micro,
         cold_micro=mesh_microgeometry(rig, name, rig.pairs[name]),
         position=MeshPosition(
@@ -102,7 +111,7 @@ def mesh_model(
     )
     shape, law = springs_of(rig, warm, stiffness or rig.mesh_stiffness)
     law = law._replace(damping=mesh_damping(rig, name, law))
-    return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
+    return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law, halves=entry.sharing)
 
 
 def mesh_phase(rig: Rig, name: str) -> float:
@@ -142,4 +151,4 @@ def flank_expansion(reference: GearPair, warm: GearPair) -> float:
 
 def laws_of(models: Sequence[MeshModel]) -> list[MeshLaw]:
     """The mesh laws in the order of the drivetrain."""
-    return [model.law for model in models]
+    return [model.whole for model in models]

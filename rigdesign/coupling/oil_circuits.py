@@ -15,7 +15,7 @@ from dataclasses import replace
 from rigdesign.base.number_faults import celsius
 from rigdesign.case.model import Case
 from rigdesign.case.oil_circuits import place_of
-from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.oil import OilStream
 from rigdesign.coupling.rig_heat import machine_heat

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from dynamics.errors import DynamicsNotConverged
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, respond
 from rigdesign.coupling.drag_torques import drag_torques

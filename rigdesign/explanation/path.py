@@ -13,7 +13,8 @@ from rigdesign.case.provenance import take_off
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
 from rigdesign.explanation.rules import declared_checks, depends_on
-from rigdesign.explanation.stations import Station, entering
+from rigdesign.explanation.station import Station
+from rigdesign.explanation.stations import entering
 
 BasisKind = Literal["measured", "assumed", "source", "stated", "default", "left out"]
 """Where a value comes from: a measurement, an assumption, a printed source, the case alone, the tool."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.flank_heat import rim_surfaces
+from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
 from rigdesign.prediction.expansion_map import ExpansionMap

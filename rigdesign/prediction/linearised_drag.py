@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, signed_torque
 from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.mesh_models import MeshModel

@@ -15,7 +15,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
 from rigdesign.coupling.braced_loop import (
     BracingState,

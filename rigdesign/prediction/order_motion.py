@@ -12,7 +12,8 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import DeviationResponse, OrderLoads, OrderTorque
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws, signed_torque
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.prediction.exact_orders import ExactMotion

@@ -17,7 +17,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
 from dynamics.orders.deviation_response import CYCLE_STEPS, DeviationResponse, OrderLoads, mean_windup
 from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws
 from rigdesign.prediction.exact_orders import exact_motion

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.prediction.converged_point import ConvergedPoint
 from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.prediction.model import Channel, Feature

@@ -12,7 +12,7 @@ from itertools import islice
 
 import numpy as np
 
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import LoadedCircuit
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
 from rigdesign.coupling.state import CouplingState

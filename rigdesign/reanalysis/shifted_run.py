@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.response.envelopes import EnvelopeWindows
-from dynamics.response.speed_sweep import ResponseCurve
+from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.state_reader import SectionEnvelopes
 from dynamics.response.time_response import TimeResponse
 from rigdesign.records.curves import Curves

@@ -5,7 +5,7 @@ shown whatever drives it, as unbalance and misalignment act on all shafts.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Literal
 
@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.modes import LoopMode, ModeShape
-from dynamics.drivetrain.tracked_modes import TrackedMode, shaped_modes, tracked
+from dynamics.drivetrain.tracked_modes import ShapedModes, TrackedMode, shaped_modes, tracked
+from dynamics.elastic_rig.damped_modes import mode_character
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.records.curves import own_ratio
@@ -40,6 +41,8 @@ ABOVE = 1.25
 """Frequency above the highest shaft order up to which its modes are shown, as a share of that order."""
 PEAKED = 0.35
 """Damping ratio from which a mode has hardly a peak: journals in their films."""
+LATERAL = 0.5
+"""Share of lateral motion in the kinetic energy from which a mode has a sense of whirl."""
 
 
 def campbell(
@@ -57,8 +60,9 @@ def campbell(
     orders = tuple(excitation_orders(rig))
     oscillating = [mode.name for mode in names if mode.frequency > 0.0]
     numbers = {id(mode): number for number, mode in enumerate(found[at_held].modes)}
+    whirls = _whirls(rig, states, found)
     shown = [
-        _record(rig, mode, driver, numbers[id(here)] + 1, oscillating[numbers[id(here)]])
+        _record(rig, mode, driver, whirls, numbers[id(here)] + 1, oscillating[numbers[id(here)]])
         for mode, driver in _chosen(modes, orders, float(speeds[-1]))
         if (here := mode.modes[at_held]) is not None
     ]
@@ -142,13 +146,33 @@ def _gain(mode: TrackedMode) -> float:
     return float(mode.strongest.mesh_gain.max(initial=0.0))
 
 
-def _record(rig: Rig, mode: TrackedMode, driver: Driver, number: int, name: str) -> CampbellMode:
+def _whirls(rig: Rig, states: Sequence[LoopState], found: Sequence[ShapedModes]) -> dict[int, float | None]:
+    """Whirl of every mode of every state, by its identity; empty for shafts that only twist."""
+    whirls: dict[int, float | None] = {}
+    for state, at in zip(states, found):
+        if state.state is None:
+            continue
+        own = np.linalg.solve(state.system.coordinates.freedoms, at.shapes)
+        character = mode_character(rig.elastic.seen.reduced, np.asarray(own, complex))
+        whirls.update(zip((id(mode) for mode in at.modes), character.lateral_whirl(LATERAL)))
+    return whirls
+
+
+def _record(
+    rig: Rig,
+    mode: TrackedMode,
+    driver: Driver,
+    whirls: Mapping[int, float | None],
+    number: int,
+    name: str,
+) -> CampbellMode:
     gains = np.max([at.mesh_gain for at in mode.modes if at], axis=0)
     return CampbellMode(
         number=number,
         name=name,
         frequency=tuple(at.frequency if at else None for at in mode.modes),
         damping_ratio=tuple(at.damping_ratio if at else None for at in mode.modes),
+        whirl=tuple(whirls.get(id(at)) for at in mode.modes),
         gain={rig.mesh_labels[mesh]: float(gain) for mesh, gain in zip(rig.mesh_names, gains)},
         driven_by=driver,
     )

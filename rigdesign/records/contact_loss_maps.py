@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
-from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response
+from dynamics.response.response_curve import ResponseCurve
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws

@@ -11,7 +11,8 @@ import numpy as np
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
-from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response, refined_response
+from dynamics.response.response_curve import ResponseCurve
+from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.braced_loop import locked_share, signed_torque
@@ -212,7 +213,10 @@ def rating_options(rig: Rig, name: str) -> RatingOptions:
 
 def iso_factor(rig: Rig, name: str, torque: float, speed: float) -> DynamicFactor:
     """K_V of one mesh by ISO 6336-1 method B; torque [N m] and speed [rad/s] of its pinion, gears as drawn."""
-    return dynamic_factor(rig.pairs[name], abs(torque), speed, rating_options(rig, name))
+    box, own = rig.mesh(name)
+    return dynamic_factor(
+        rig.pairs[name], abs(torque) / box.meshes[own].sharing, speed, rating_options(rig, name)
+    )
 
 
 def own_ratio(rig: Rig, mesh: int) -> float:

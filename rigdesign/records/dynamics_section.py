@@ -23,6 +23,7 @@ from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.results.rows.campbell import campbell_row
+from rigdesign.results.rows.contact_in_loop import contact_in_loop_row
 from rigdesign.results.rows.contact_in_motion import contact_loss_row, pair_share_row
 from rigdesign.results.rows.dwell import dwell_row
 from rigdesign.results.rows.dynamic_root import dynamic_root_rows
@@ -49,7 +50,7 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
     vibration = loop_vibration(solved)
     return DynamicsResult(
         gearboxes={
-            rig.mesh_labels[name]: _mesh_section(rig, run, mesh, loads.meshes[rig.mesh_labels[name]])
+            rig.mesh_labels[name]: _mesh_section(solved, run, mesh, loads.meshes[rig.mesh_labels[name]])
             for mesh, name in enumerate(rig.mesh_names)
         },
         natural_frequencies=[rows.mode_row(number, mode) for number, mode in numbered(loads.modes)],
@@ -76,6 +77,7 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         campbell=campbell_row(vibration.campbell),
         section_torques=section_torque_rows(vibration.torques),
         dwell=dwell_row(vibration.dwell),
+        contact_in_loop=[contact_in_loop_row(found) for found in solved.contact_in_loop.meshes],
         press_fits=[press_fit_row(found) for found in solved.press_fits],
         splines=[spline_stress_row(found) for found in solved.splines],
         contact_loss_maps=[contact_loss_row(found) for found in vibration.maps],
@@ -86,15 +88,16 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
     )
 
 
-def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> GearboxDynamics:
-    """Section of one mesh."""
+def _mesh_section(solved: SolvedRig, run: DynamicRun, mesh: int, loads: MeshLoads) -> GearboxDynamics:
+    """Section of one mesh; what depends on temperatures is that of the final mesh of the housing."""
+    rig = solved.rig
     name = rig.mesh_names[mesh]
     response = run.test.last.response
     assert response is not None
     speed = rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, run.test.point.speed)
     iso = iso_factor(rig, name, float(response.mean[mesh]), speed)
     main = next(iter(run.curves.named))
-    contact = loaded_contact(rig, run.test, mesh)
+    contact = loaded_contact(rig, solved.test, mesh)
     return GearboxDynamics(
         role=loads.role,
         torque=main,
@@ -116,7 +119,7 @@ def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> Gea
         root_stress=[rows.root_stress_row(path) for path in loads.root_stress],
         root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
         geometry=rows.geometry_row(rig.pairs[name], run.test.last.models[mesh]),
-        flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, run.points, mesh)],
+        flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, solved.points, mesh)],
         loaded_contact=None if contact is None else loaded_contact_row(contact),
     )
 

@@ -125,10 +125,11 @@ def _standard_bulk(rig: Rig, point: PointResult, box: str, own: str) -> float:
         for placed in point.last.losses
         if (placed.gearbox, placed.part, placed.loss.kind) == (box, own, "mesh")
     )
+    width = rig.case.gearboxes[box].meshes[own].sharing * pair.face_width
     inlet = _feed(rig, point, f"{box}.{own}").inlet
     supply = "dip" if rig.case.gearboxes[box].jets is None else "injection"
     warm = iso_ts_6336_22_2018.theta_M(
-        inlet - ZERO_CELSIUS, 1e-3 * loss, 1e6 * pair.centre_distance * pair.face_width, supply
+        inlet - ZERO_CELSIUS, 1e-3 * loss, 1e6 * pair.centre_distance * width, supply
     )
     return warm + ZERO_CELSIUS
 

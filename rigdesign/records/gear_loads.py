@@ -24,7 +24,8 @@ STATED = "load factors of face_load_factor and ISO 6336-1"
 
 @dataclass(frozen=True, kw_only=True)
 class RatedLoad:
-    """Load of one mesh at a held stage, as the ratings take it; torque and speed of its pinion."""
+    """Load of one mesh at a held stage, as the ratings take it; torque, on one half of a double-helical gear, and speed
+    of its pinion."""
 
     stage: str
     torque: float
@@ -67,9 +68,9 @@ def rated_loads(rig: Rig, points: Iterable[PointResult], mesh: int) -> Iterator[
         response = point.last.response
         if response is None:
             continue
-        torque, factor = float(response.mean[mesh]), float(response.dynamic_factor[mesh])
+        torque, factor = float(response.mean[mesh]) / entry.sharing, float(response.dynamic_factor[mesh])
         speed = rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, point.point.speed)
-        standard = iso_factor(rig, name, torque, speed)
+        standard = iso_factor(rig, name, float(response.mean[mesh]), speed)
         contact = held_contact(rig, point, mesh)
         sharing = (
             stated_factors(rig.pairs[name], standard, dynamic=factor, face_load=entry.face_load_factor)

@@ -54,7 +54,7 @@ def _loads(solved: SolvedRig) -> list[dict[str, Any]]:
         shaft = box.gears[box.meshes[mesh].pinion].shaft
         speed = rig.shaft_speed(shaft, solved.test.point.speed)
         torque = abs(last.coupling_state.mesh_torque[model.name])
-        stiffness, pair = model.law.mean_stiffness, model.pair
+        stiffness, pair = model.whole.mean_stiffness, model.pair
         deflection = torque / pair.base_radii[0] / stiffness + mean_gap(model)
         rows.append(
             _row(

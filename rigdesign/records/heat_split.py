@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.surface_conditions import FlankFilm
-from rigdesign.coupling.boundary import GEAR_OIL
 from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
+from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.temperatures import HousingField, body_mean
 from rigdesign.results.housing import GearHeatSplit

@@ -132,8 +132,8 @@ class _Whirls:
         first, second = model.pair.base_radii
         return RowSpring(
             row=first * pinion - second * wheel,
-            stiffness=model.law.mean_stiffness,
-            damping=model.law.damping,
+            stiffness=model.whole.mean_stiffness,
+            damping=model.whole.damping,
         )
 
     def bearing_whirls(

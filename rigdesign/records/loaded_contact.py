@@ -122,7 +122,7 @@ def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
         HeldContact(
             cold=rig.pairs[rig.mesh_names[mesh]],
             flanks=flanks,
-            force=torque / flanks.pair.base_radii[0],
+            force=torque / point.last.models[mesh].halves / flanks.pair.base_radii[0],
             influence=rig.tooth_influence,
         )
     )

@@ -7,7 +7,7 @@ between motor and meshes.
 
 from collections.abc import Sequence
 
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.curves import curve_at, resolved, response_solver, torque_key

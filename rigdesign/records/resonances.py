@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.drivetrain.modes import LoopMode
 from dynamics.rating.dynamic_factor import DynamicFactorCurve, Resonance
 from dynamics.rating.dynamic_factor import resonances as find_resonances
-from dynamics.response.speed_sweep import CurvePoint, ResponseCurve
+from dynamics.response.response_curve import CurvePoint, ResponseCurve
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.curves import Curves, own_ratio
 from rigdesign.results.loads import MeshResonance

@@ -75,7 +75,9 @@ def _opposite_share(rig: Rig, place: GearInMesh) -> float:
 def _load(rig: Rig, place: GearInMesh) -> float:
     """Load of a mesh per face width, with K_A, per force in the control mesh [1/m]."""
     name = rig.mesh_names[place.mesh]
-    return application_factor(rig, place.mesh) * abs(rig.mesh_forces[name]) / rig.pairs[name].face_width
+    box, own = rig.mesh(name)
+    width = box.meshes[own].sharing * rig.pairs[name].face_width
+    return application_factor(rig, place.mesh) * abs(rig.mesh_forces[name]) / width
 
 
 def _flank(rig: Rig, place: GearInMesh) -> Fillet:

@@ -17,7 +17,7 @@ from dynamics.contact.root_field import PairForces, RootField, Side, root_field
 from dynamics.drivetrain.static_loop import PortModel, StaticState
 from dynamics.mesh.force import ToothForces, tooth_forces
 from dynamics.rating.root_stress import RootInfluence, root_influence, root_stress_over_face
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.records.loaded_contact import ROOT
 from rigdesign.results.loads import RootStressPath

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import resolved, response_solver
 from rigdesign.records.dynamics import DynamicRun

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.response.response_curve import CurvePoint
 from dynamics.response.schedule import Stage
-from dynamics.response.speed_sweep import CurvePoint
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import schedule_of

@@ -6,7 +6,8 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.response.harmonic_walk import MOST_HARMONICS, mesh_cells
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult

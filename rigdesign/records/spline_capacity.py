@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from dynamics.rating.mean_stress import seat_pressure
 from dynamics.standards import dudley_1957 as dudley
-from rigdesign.case.gears import SplineToothing
+from rigdesign.case.gear_seats import SplineToothing
 from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.press_fits import grown_over_shaft
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, seated_gear, shaft_bore
@@ -57,7 +57,7 @@ def _of_teeth(
     yield _stress(seat, "shear of the teeth", shear, toothing.allowable_shear)
     if toothing.shaft_root_diameter is not None:
         entry = rig.mesh_gear(place.mesh, place.index)
-        bore = 2.0 * shaft_bore(rig, entry.shaft, entry.position)
+        bore = 2.0 * shaft_bore(rig, entry.shaft, entry.seat_position)
         shear = dudley.S_s_shaft(seat.torque, toothing.shaft_root_diameter, bore)
         yield _stress(seat, "shear of the shaft", shear, toothing.allowable_shear)
 

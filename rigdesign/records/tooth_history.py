@@ -203,7 +203,7 @@ def seated_gear(rig: Rig, place: GearInMesh) -> tuple[GearDisc, PressFit | None]
         fit = PressFit(
             interference=gear.shaft_interference,
             shaft=_solid(shaft_material(rig, gear.shaft) or rig.materials[gear.material]),
-            shaft_bore=shaft_bore(rig, gear.shaft, gear.position),
+            shaft_bore=shaft_bore(rig, gear.shaft, gear.seat_position),
         )
     return disc, fit
 

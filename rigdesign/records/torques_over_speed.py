@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.response_curve import CurvePoint, ResponseCurve
 from dynamics.response.section_torque import SectionTorques, section_torques
-from dynamics.response.speed_sweep import CurvePoint, ResponseCurve
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws

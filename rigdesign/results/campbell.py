@@ -1,10 +1,14 @@
 """Campbell diagram of the closed loop: SI record. Speeds are those of the pinion of the first mesh."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 OrderKind = Literal["mesh", "shaft", "coupling"]
+Sense = Literal["forward", "backward", ""]
+CIRCLING = 0.1
+"""Whirl, as area of an orbit over that of a circle of its size, from which it has a sense."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,9 +23,20 @@ class CampbellMode:
     """(s,) [Hz]; None where it is damped out or beyond the range."""
     damping_ratio: tuple[float | None, ...]
     """(s,) [-]"""
+    whirl: tuple[float | None, ...]
+    """(s,) of the shaft that moves most sideways, -1 backward circle to 1 forward circle in its own sense; None where
+    less than half of the kinetic energy is lateral motion of shafts, and for shafts that only twist."""
     gain: Mapping[str, float]
     """Largest over speed of what each mesh makes of it, by label (`LoopMode.mesh_gain`) [-]."""
     driven_by: Literal["mesh", "shaft"]
+
+    @property
+    def logarithmic_decrement(self) -> tuple[float | None, ...]:
+        """(s,) decay from one period to the next, 2 pi D / sqrt(1 - D^2) [-]."""
+        return tuple(
+            None if ratio is None else 2.0 * math.pi * ratio / math.sqrt(1.0 - ratio**2)
+            for ratio in self.damping_ratio
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,3 +79,11 @@ class CampbellRecord:
     crossings: tuple[CampbellCrossing, ...]
     left_out: int
     """Modes of the range that no order drives enough."""
+
+
+def sense_of_whirl(whirl: Iterable[float | None]) -> Sense:
+    """Sense of a mode over speed, at the speed at which it whirls most clearly; empty for one that does not."""
+    clearest = max((value for value in whirl if value is not None), key=abs, default=0.0)
+    if abs(clearest) < CIRCLING:
+        return ""
+    return "forward" if clearest > 0.0 else "backward"

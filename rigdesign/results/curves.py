@@ -162,6 +162,8 @@ def _campbell(campbell: Mapping[str, Any]) -> Columns:
     for mode in campbell["modes"]:
         columns[f"mode {mode['mode']} frequency [Hz]"] = list(mode["frequency_Hz"])
         columns[f"mode {mode['mode']} damping ratio [1]"] = list(mode["damping_ratio"])
+        if any(whirl is not None for whirl in mode["whirl"]):
+            columns[f"mode {mode['mode']} whirl [1]"] = list(mode["whirl"])
     return columns
 
 

@@ -20,6 +20,7 @@ from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
 from rigdesign.case.elastic_shafts import disc_mass
+from rigdesign.case.gear_seats import Spline
 from rigdesign.case.model import Case
 from rigdesign.case.rotation import pinion_hand
 from rigdesign.properties.materials import Material
@@ -111,21 +112,33 @@ def _gear_bodies(
     bodies = []
     for box_name, box in case.gearboxes.items():
         for name, gear in box.gears.items():
-            assert gear.position is not None
+            assert gear.seat_position is not None
             bodies.append(
                 GearBody(
                     name=f"{box_name}.{name}",
                     shaft=gear.shaft,
-                    position=gear.position,
+                    position=gear.seat_position,
+                    offset=gear.seat_offset,
                     inertia=gear_inertia(case, box_name, name, pairs, materials),
                     mass=gear_mass(case, box_name, name, pairs, materials),
-                    width=box.body_width(name),
+                    width=box.carrying_halves(name) * gear.face_width,
                     stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
                     damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
                     loss_factor=0.0 if gear.spline is None else gear.spline.loss_factor,
+                    seat=None if gear.spline is None else _seat(gear.spline),
                 )
             )
     return bodies
+
+
+def _seat(spline: Spline) -> JointStiffness | None:
+    """What a seat resists besides torsion; None for a gear that only twists against its shaft."""
+    if spline.radial_stiffness is None:
+        return None
+    return _joint(
+        (spline.axial_stiffness, spline.radial_stiffness, spline.angular_stiffness),
+        spline.lateral_damping_time,
+    )
 
 
 def gear_inertia(
@@ -138,13 +151,14 @@ def gear_inertia(
     inertia = part.inertia
     if inertia is None:
         toothing, density = _toothing(gear, box, case, pairs), materials[part.material].density
-        outer, width = 2.0 * toothing.reference_radius, gearbox.body_width(gear)
+        halves = gearbox.carrying_halves(gear)
+        outer, width = 2.0 * toothing.reference_radius, halves * part.face_width
         inner = part.bore_diameter
         if part.rim_thickness is not None and part.web_thickness is not None:
             inner = max(2.0 * (toothing.root_radius - part.rim_thickness), inner)
         inertia = disc_inertia(outer, inner, width, density)
         if inner > part.bore_diameter:
-            web = (part.web_thickness or 0.0) * gearbox.halves(gear)
+            web = (part.web_thickness or 0.0) * halves
             inertia += disc_inertia(inner, part.bore_diameter, web, density)
     return part.inertia_factor * inertia
 
@@ -161,11 +175,13 @@ def gear_mass(
 
 def _flexibility(coupling: CouplingInput) -> JointStiffness:
     """What a coupling resists besides torsion."""
-    axial, lateral, angular = (
-        value or 0.0
-        for value in (coupling.axial_stiffness, coupling.radial_stiffness, coupling.angular_stiffness)
-    )
-    time = coupling.lateral_damping_time
+    stiffness = coupling.axial_stiffness, coupling.radial_stiffness, coupling.angular_stiffness
+    return _joint(stiffness, coupling.lateral_damping_time)
+
+
+def _joint(stiffness: tuple[float | None, float | None, float | None], time: float) -> JointStiffness:
+    """Axial, radial and angular stiffness, with dampers that have a time over them [s]."""
+    axial, lateral, angular = (value or 0.0 for value in stiffness)
     return JointStiffness(
         axial=axial, lateral=lateral, angular=angular,
         axial_damping=time * axial, lateral_damping=time * lateral, angular_damping=time * angular,

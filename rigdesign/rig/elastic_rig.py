@@ -185,8 +185,10 @@ def _locations(case: Case) -> Iterator[AxialLocation]:
 def _double_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[AxialMeshSpring]:
     for full, pair in pairs.items():
         box, name = full.split(".")
-        if case.gearboxes[box].meshes[name].double_helical and pair.helix_angle:
-            stiffness = pair.face_width * mesh_stiffness(pair, NOMINAL_TORQUE, RatingOptions())
+        mesh = case.gearboxes[box].meshes[name]
+        if mesh.double_helical and pair.helix_angle:
+            half = mesh_stiffness(pair, NOMINAL_TORQUE / mesh.sharing, RatingOptions())
+            stiffness = mesh.sharing * pair.face_width * half
             yield AxialMeshSpring(
                 mesh=full, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
             )

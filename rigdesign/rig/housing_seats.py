@@ -68,7 +68,9 @@ def _support(
     )
     bearings = {f"bearing_bore_{entry.shaft}_{entry.side}": part for part, entry in box.bearings.items()}
     surfaces = {station.name: station.bore_surface for station in model.bearings}
-    turned = np.tile([direction, 1.0], len(seats.names))  # turned about z: y changes its sign
+    turned = np.tile(
+        [direction, 1.0, direction], len(seats.names)
+    )  # turned about z: y and x change their sign
     stiffness = seats.stiffness * np.outer(turned, turned)
     return HousingSupport(
         name=f"{name} housing",

@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from typing import Self
 
-from dynamics.response.speed_sweep import ResponseCurve
+from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.coupling.loop import PointResult, governing_point

@@ -24,6 +24,7 @@ from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, schedule_of
+from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.dynamics import dynamic_loads
 from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.events import solve_events
@@ -134,6 +135,10 @@ def solve_case(
         say("events: " + ", ".join(wanted.case.events))
         solved = replace(solved, events=solve_events(wanted, run))
         lap("events")
+    if run is not None and fidelity == "reference":
+        say("contact in the loop")
+        solved = replace(solved, contact_in_loop=contact_in_loop(wanted, run))
+        lap("contact_in_loop")
     say("errors of slices and shaft elements")
     solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
     lap("load_errors")

@@ -6,32 +6,30 @@ import numpy as np
 
 from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.checks.omissions import thrust
-from rigdesign.coupling.boundary import GEAR_OIL, printed_films
-from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
 from rigdesign.results.check import Check
+from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil
+from rigdesign.run.fast_ramps import fast_ramps
+from rigdesign.run.heat_audits import film_warnings, heat_audits
 from rigdesign.run.load_convergence import missing_load_errors
-from thermal.conditions.boundary import Film, Radiation
-from thermal.conduction.audit import assumed_difference, audit_conditions, radiation_too_small
 
+MOST_UNCONVERGED = 10
+"""Steps of a march with the contact in the loop that may end before their contact is solved to its tolerance."""
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
-FILM_FACTOR = 3.0
-"""Between a given film on the rim of a gear and the one its oil makes, from which it is named."""
 
 
 def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
@@ -44,6 +42,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="damping", text=text) for text in _light_dwells(solved)),
         *(Finding(id="unlike_teeth", text=text) for text in _deviating_teeth(solved)),
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
+        *(Finding(id="time_run", text=text) for text in fast_ramps(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
         *(Finding(id="oil", text=text) for text in _oils(solved)),
         *(Finding(id="oil_circuit", text=text) for text in _circuits(solved)),
@@ -51,9 +50,10 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="damping", text=text) for text in _damping(solved)),
         *(Finding(id="sampling", text=text) for text in _sampling(solved)),
         *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
-        *(Finding(id="film", text=text) for text in _films(solved)),
+        *(Finding(id="load_error", text=text) for text in _contact_in_loop(solved.contact_in_loop)),
+        *(Finding(id="film", text=text) for text in film_warnings(solved)),
         *(Finding(id="not_steady", text=text) for text in _warming(solved)),
-        *(Finding(id="heat_audit", text=text) for text in _audits(solved)),
+        *(Finding(id="heat_audit", text=text) for text in heat_audits(solved)),
     ]
     return list(dict.fromkeys(found))
 
@@ -83,7 +83,7 @@ def _gears(solved: SolvedRig) -> Iterator[str]:
         if point.last.response is not None:
             wave = point.last.response.wave
             for model, approach, torque in zip(point.last.models, wave.approach, wave.torque):
-                by_body = model.law.body_compliance / model.law.base_radius_1 * torque
+                by_body = model.whole.body_compliance / model.law.base_radius_1 * torque
                 if text := reach_beyond(model.law, approach - by_body):
                     yield f"{model.name}, stage {point.point.stage}: {text}"
 
@@ -222,6 +222,24 @@ def _damping(solved: SolvedRig) -> Iterator[str]:
         yield from (record.warning for record in solved.loads.damping if record.warning)
 
 
+def _contact_in_loop(found: ContactInLoop) -> Iterator[str]:
+    """Where fidelity reference has no comparison with the contact solved in the loop, or a poor one."""
+    for place in found.missing:
+        yield f"contact in the loop: none at {place}; the errors of the loads there are without it"
+    for mesh in found.meshes:
+        where = f"contact in the loop: gearbox {mesh.mesh}, {mesh.speed * RPM:.0f} rpm"
+        if not mesh.settled:
+            yield (
+                f"{where}: K_V still changes by {mesh.still_changing:.2g} after {mesh.time:.2g} s; added to the error "
+                "of the loads"
+            )
+        if mesh.unconverged > MOST_UNCONVERGED:
+            yield (
+                f"{where}: in {mesh.unconverged} steps the contact was not solved to its tolerance, limit "
+                f"{MOST_UNCONVERGED}; its K_V is doubtful"
+            )
+
+
 def _load_errors(solved: SolvedRig) -> Iterator[str]:
     missing = missing_load_errors(solved)
     if missing:
@@ -245,90 +263,6 @@ def _sampling(solved: SolvedRig) -> Iterator[str]:
             if mode.damping_ratio < -1e-6
         )
         yield from modes_above_samples(modes, solved.case.numerics.sample_rate)
-
-
-def _films(solved: SolvedRig) -> Iterator[str]:
-    for field in _fields(solved):
-        yield from field.solution.warnings
-
-
-def _audits(solved: SolvedRig) -> Iterator[str]:
-    """Heat that cannot be, films taken at another temperature difference, radiation counted twice."""
-    for field in _fields(solved):
-        found = (
-            *audit_conditions(field.conditions),
-            *_radiation_bound(field),
-            *_assumed_differences(solved, field),
-            *_thin_rim_films(solved, field),
-        )
-        yield from (f"{field.gearbox}: {text}" for text in found)
-
-
-def _radiation_bound(field: HousingField) -> Iterator[str]:
-    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
-    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
-    for condition in field.conditions:
-        if not isinstance(condition, Radiation) or condition.surface not in films:
-            continue
-        film, own = films[condition.surface], rows[(condition.surface, condition.kind)]
-        convection = rows[(film.surface, film.kind)]
-        if convection.coefficient is None or condition.surroundings_temperature != film.fluid_temperature:
-            continue
-        text = radiation_too_small(
-            condition.surface,
-            convection=-convection.power,
-            radiation=-own.power,
-            emissivity=condition.emissivity,
-            film=convection.coefficient.value,
-            ambient=film.fluid_temperature,
-        )
-        if text is not None:
-            yield text
-
-
-def _assumed_differences(solved: SolvedRig, field: HousingField) -> Iterator[str]:
-    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
-    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
-    for surface, taken in printed_films(solved.rig, field.gearbox):
-        film = films[surface]
-        text = assumed_difference(
-            surface,
-            assumed=taken.temperature_difference,
-            solved=rows[(surface, film.kind)].mean_temperature - film.fluid_temperature,
-            law=taken.film_law(),
-            fluid_temperature=film.fluid_temperature,
-        )
-        if text is not None:
-            yield text
-
-
-def _thin_rim_films(solved: SolvedRig, field: HousingField) -> Iterator[str]:
-    """Gears whose friction heat is split by assumption under a given film far from the one their jets make."""
-    name, rig = field.gearbox, solved.rig
-    box = rig.case.gearboxes[name]
-    result = next(p for p in solved.points if p.last.fields.get(name) is field)
-    point, state = result.point, result.last.coupling_state
-    chamber = ChamberOil.of(name, state.oil_outlet, state.oil_supply)
-    if box.heat_split.rule != "assumed" or point.speed == 0.0:
-        return
-    rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}
-    for gear, rim in rim_surfaces(box).items():
-        row = rows.get(rim)
-        if row is None or row.coefficient is None:
-            continue
-        given = row.coefficient.value
-        made = film_of_oil(rig, name, gear, point, wall=row.mean_temperature, chamber=chamber)
-        if not given * FILM_FACTOR >= made >= given / FILM_FACTOR:
-            yield (
-                f"{gear}: film on its rim = {given:.0f} W/(m2 K) with mesh_into_gears = "
-                f"{box.heat_split.mesh_into_gears:g}, its oil makes {made:.0f} W/(m2 K) (fling-off): its bulk "
-                f'temperature depends on the assumption; write law = "flank_film" and give no share, or ranges'
-            )
-
-
-def _fields(solved: SolvedRig) -> Iterable[HousingField]:
-    for point in solved.points:
-        yield from point.last.fields.values()
 
 
 def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
@@ -396,9 +330,13 @@ def not_modelled(solved: SolvedRig) -> list[str]:
             "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part depends on it"
         )
     for name, box in solved.case.gearboxes.items():
-        if any(mesh.double_helical for mesh in box.meshes.values()):
+        if any(mesh.double_helical and mesh.sharing == 1 for mesh in box.meshes.values()):
             items.append(
                 f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
+            )
+        elif any(mesh.double_helical for mesh in box.meshes.values()):
+            items.append(
+                f"{name}: unequal shares of the halves of the double-helical gears: each carries half"
             )
         single = [name for name, mesh in box.meshes.items() if mesh.helix_angle and not mesh.double_helical]
         if single:

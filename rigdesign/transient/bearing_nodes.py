@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from dynamics.bearing.protocol import HeatStar
 from rigdesign.coupling.bearing_heat import conductances, on_surface
 from rigdesign.coupling.bearing_seats import bearing_seats
-from rigdesign.coupling.boundary import BEARING_FILM
+from rigdesign.coupling.housing_context import BEARING_FILM
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig

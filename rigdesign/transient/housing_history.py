@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.housing_context import BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil_power import OilHistory

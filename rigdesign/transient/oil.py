@@ -17,7 +17,8 @@ from dataclasses import dataclass, replace
 from rigdesign.case.jets import injected_flow
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
-from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
+from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.housing_fluids import without_oils
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rigdesign.case.jets import injected_flow
 from rigdesign.case.model import Case
-from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.housing_context import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.oil import heater_and_cooler, oil_streams
 from rigdesign.coupling.oil_circuits import one_tank
 from rigdesign.coupling.state import OperatingPoint

@@ -1,6 +1,6 @@
 """Places of a housing whose temperatures are kept over time."""
 
-from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
 from rigdesign.transient.bearing_nodes import seated_bearings
 from thermal.transient.probes import Probe

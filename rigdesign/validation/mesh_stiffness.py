@@ -15,7 +15,7 @@ from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.gear.pair import GearPair
 from dynamics.influence.build import influence_numbers
 from dynamics.rating.iso_rating import RatingOptions, mesh_data, mesh_stiffness
-from dynamics.standards import iso6336_1_2006
+from dynamics.standards import iso6336_1_2006_stiffness
 from rigdesign.rig.tooth_influence import gear_model
 from rigdesign.validation.rows import Goal, PublishedQuantity, ValidationRow, compare
 
@@ -39,7 +39,7 @@ def mesh_stiffness_rows() -> Iterator[ValidationRow]:
     cycle = plane_cycle(pair, FZG_TORQUE)
     alone = (cycle.closing.max(axis=2) > 0.0).sum(axis=1) == 1
     data = mesh_data(pair)
-    standard = iso6336_1_2006.stiffness(data, FZG_TORQUE / pair.base_radii[0] / pair.face_width)
+    standard = iso6336_1_2006_stiffness.stiffness(data, FZG_TORQUE / pair.base_radii[0] / pair.face_width)
     quantities = (
         ("stiffness-single", "largest stiffness of one pair of FZG-C, c'_th", standard.c_prime_th,
          float(cycle.secant_stiffness[alone].max())),

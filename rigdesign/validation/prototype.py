@@ -56,7 +56,12 @@ class Prototype:
         """The same with both halves of the double-helical gears in mass and inertia; their axial forces cancel."""
         gears = ("pinion", "wheel")
         return _as_simulated(
-            self._table_1({f"gearboxes.reference.gears.{gear}.inertia_factor": 2.0 for gear in gears})
+            self._table_1(
+                {
+                    "gearboxes.reference.meshes.main.carrying_halves": 2,
+                    **{f"gearboxes.reference.gears.{gear}.inertia_factor": 2.0 for gear in gears},
+                }
+            )
         )
 
     def _table_1(self, values: Mapping[str, object]) -> Case:

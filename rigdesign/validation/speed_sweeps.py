@@ -15,12 +15,13 @@ from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.tip_contact import tip_separation
 from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
+from dynamics.response.response_curve import Method
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop_system import running_state
-from rigdesign.coupling.mesh_models import MeshModel, mesh_models
+from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
@@ -95,6 +96,12 @@ def simulation_laws(prototype: Prototype, stiffness: MeshStiffness | None = None
     return [model.law for model in simulation_models(prototype, stiffness)]
 
 
+def laws_of_both_halves(prototype: Prototype) -> list[MeshLaw]:
+    """The same with both halves of the double-helical gears, each under half of the torque."""
+    point = _loaded(TOP_SPEED)
+    return laws_of(mesh_models(prototype.both_halves, point, initial_state(prototype.both_halves, point)))
+
+
 def _point(prototype: Prototype) -> tuple[Rig, OperatingPoint]:
     return prototype.simulated, _loaded(TOP_SPEED)
 
@@ -164,19 +171,6 @@ def corner_gaps(models: Sequence[MeshModel], factor: float) -> list[MeshLaw]:
         path: Array = law.path_start + law.path_step * np.arange(law.gap.shape[1], dtype=np.float64)
         laws.append(law._replace(gap=law.gap + (factor - 1.0) * tip_separation(model.pair, path)))
     return laws
-
-
-def two_halves(laws: Sequence[MeshLaw]) -> list[MeshLaw]:
-    """The laws with a reference mesh of two halves: twice the springs and the damping of one."""
-    reference = laws[1]
-    return [
-        laws[0],
-        reference._replace(
-            stiffness=2.0 * reference.stiffness,
-            mean_stiffness=2.0 * reference.mean_stiffness,
-            damping=2.0 * reference.damping,
-        ),
-    ]
 
 
 def damped(laws: Sequence[MeshLaw], damping: float) -> list[MeshLaw]:

@@ -11,12 +11,16 @@ import pickle
 import shutil
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
-import rigdesign
 from rigdesign import load_case
 from rigdesign.base.cache_folder import cache_folder
+from rigdesign.reanalysis.flips import with_flips
+from rigdesign.records.contact_in_loop import contact_in_loop
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
@@ -63,12 +67,36 @@ def shared(name: str, make: Callable[[], T]) -> T:
         return found
 
 
+@dataclass(frozen=True)
+class ShippedRun:
+    """A shipped case as `rigdesign check` computes it, and what fidelity reference adds to its loads."""
+
+    result: RunResult
+    contact_in_loop: ContactInLoop
+
+
 def shipped_run(name: str) -> RunResult:
     """A shipped case as `rigdesign check` computes it, at the fidelity of its expected.json."""
+    return shipped(name).result
+
+
+def shipped(name: str) -> ShippedRun:
+    """The same with the contact in the loop, empty at fidelity quick."""
+    return shared(f"{name}-shipped", lambda: _shipped(name))
+
+
+def _shipped(name: str) -> ShippedRun:
     expected = json.loads((CASES / name / "expected.json").read_text(encoding="utf-8"))
-    return shared(
-        f"{name}-shipped", lambda: rigdesign.run_case(load_case(CASES / name), expected["fidelity"])
-    )
+    looped = [ContactInLoop()]
+
+    def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
+        if solved.run is not None and solved.rig.fidelity == "standard":
+            looped.append(contact_in_loop(replace(solved.rig, fidelity="reference"), solved.run))
+        return result
+
+    follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}
+    result = run_case(load_case(CASES / name), expected["fidelity"], follow_ups=follow_ups)
+    return ShippedRun(result, looped[-1])
 
 
 def quick_run(name: str, file: str = "case.toml") -> RunResult:

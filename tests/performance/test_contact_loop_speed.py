@@ -1,8 +1,8 @@
 """The prototype at its test stage with the tooth contact in the loop, next to its response with contact tables.
 
-Prints processor time of a step, seconds per simulated second, K_V of both meshes by both, and the tilt in motion. The
-first stretch of the march is left out: it settles from uniform rotation. Run with
-``pytest -m performance -s tests/performance/test_contact_loop_speed.py``; influence numbers of the four gears are
+Prints processor time of a step, that of a run-up of 3.2 s, K_V of both meshes by both, and the tilt
+in motion, at the positions over the face that fidelity reference takes and at those of the quasi-static contact. Run
+with ``pytest -m performance -s tests/performance/test_contact_loop_speed.py``; influence numbers of the four gears are
 computed where they are not kept.
 """
 
@@ -11,57 +11,42 @@ from time import process_time
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.elastic_rig.wrench_rows import wrench_rows
-from dynamics.response.contact_loop import ContactLoop, MeshInLoop
-from dynamics.response.initial_state import wound_state
+from dynamics.response.looped_response import looped_response
 from rigdesign.case import load_case
-from rigdesign.coupling.braced_loop import signed_torque
-from rigdesign.coupling.loop import solve_point
-from rigdesign.coupling.loop_system import loop_system
-from rigdesign.coupling.mesh_models import laws_of
+from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.loaded_contact import held_contact
-from rigdesign.rig.model import build_rig
+from rigdesign.records import contact_in_loop
+from rigdesign.rig.model import Rig, build_rig
 
 pytestmark = pytest.mark.performance
-SAMPLE = 25e-6
-SETTLED, SEEN = 1200, 400
-"""Samples."""
+RUN_UP, STEP = 3.2, 6.25e-6
+"""Time of a run-up, and the step that it is taken with: four steps a sample [s]."""
 
 
-@pytest.mark.parametrize("substeps", [4, 8])
-def test_contact_in_the_loop_of_the_prototype(substeps: int) -> None:
+@pytest.fixture(scope="module")
+def solved() -> tuple[Rig, PointResult]:
     rig = build_rig(load_case("cases/uhcf_prototype"), "standard")
     rig.prepare_teeth(print)
-    point = solve_point(rig, held_points(rig)[-1])
-    last, response = point.last, point.last.response
-    assert response is not None
-    system = loop_system(rig, point.point, last.coupling_state, last.bearings)
-    laws = laws_of(last.models)
-    load = LoopLoad(torque=signed_torque(rig, point.point))
-    wound = wound_state(system, laws, rig.pinion_speed(point.point.speed), load, last.drags)
-    meshes = []
-    for number, law in enumerate(laws):
-        contact = held_contact(rig, point, number)
-        assert contact is not None
-        force = float(np.sign(response.flank[number])) * contact.force
-        meshes.append(MeshInLoop(contact=contact.mesh, law=law, force=force))
-    model = rig.elastic.model
-    rows = rig.elastic.seen.on_freedoms(np.vstack([wrench_rows(model, name) for name in rig.mesh_names]))
-    loop = ContactLoop(
-        system, rows, meshes, wound, step=SAMPLE / substeps, cutoff=rig.highest_mode, drag_torques=last.drags
-    )
-    loop.advance(SETTLED * substeps)
+    return rig, solve_point(rig, held_points(rig)[-1])
+
+
+@pytest.mark.parametrize("fewer", [contact_in_loop.FEWER_POSITIONS, 1])
+def test_contact_in_the_loop_of_the_prototype(
+    fewer: int, solved: tuple[Rig, PointResult], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contact_in_loop, "FEWER_POSITIONS", fewer)
+    rig, point = solved
+    by_table, problem = contact_in_loop.problem_in_loop(rig, point, point.point.speed)
+    looped_response(problem, longest=0.0)  # compiles
     before = process_time()
-    record = loop.advance(SEEN * substeps)
-    seconds = process_time() - before
-    force = record.net_force
-    factors = force.max(axis=1) / force.mean(axis=1)
+    looped = looped_response(problem)
+    each = (process_time() - before) / looped.steps
+    positions = [len(mesh.contact.grid.position) for mesh in problem.meshes]
     print(
-        f"\n{substeps} steps a sample: {1e6 * seconds / SEEN / substeps:.0f} us a step, "
-        f"{seconds / SEEN / SAMPLE:.1f} s per simulated second; K_V {np.array2string(factors, precision=4)}, "
-        f"contact tables {np.array2string(response.dynamic_factor, precision=4)}; "
-        f"tilt, peak to peak [urad] {np.array2string(1e6 * np.ptp(record.tilt, axis=1), precision=2)}"
+        f"\n{positions} positions over the faces: {1e6 * each:.0f} us a step, run-up of {RUN_UP} s "
+        f"{each * RUN_UP / STEP:.0f} s; K_V {np.array2string(looped.dynamic_factor, precision=4)}, "
+        f"contact tables {np.array2string(by_table.dynamic_factor, precision=4)}; tilt, peak to peak [urad] "
+        f"{np.array2string(1e6 * looped.tilt, precision=2)}; settled after {looped.time:.2f} s"
     )
-    assert loop.unconverged == 0
+    assert looped.settled
+    assert looped.unconverged == 0

@@ -20,7 +20,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState, full_matrices
+from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.response.initial_state import WoundLoop, wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings
@@ -28,6 +28,7 @@ from dynamics.response.march_loads import march_model
 from dynamics.response.time_march import TimeMarch
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.exudyn_march import ExudynSolver, Motion, WaveMesh, exudyn_march
+from tests.builders.full_matrices import full_matrices
 from tests.performance.test_dynamics_speed import BACKLASH, DAMPING, DEPTHS, SAMPLE_RATE, TORQUE, phase_laws
 from tests.unit.dynamics_package.elastic_rig.test_seen_system import FILM
 

@@ -20,7 +20,8 @@ from dynamics.response.harmonic_continuation import CRAWLING, BranchTrace, Speed
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.response.harmonic_stability import instability
 from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.speed_sweep import Method, ResponseCurve, SweepSettings, periodic_response
+from dynamics.response.response_curve import Method, ResponseCurve
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.waveform import waveform
 from rigdesign.validation.oscillator import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 from tests.builders.rig import prototype, prototype_laws

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
-from dynamics.elastic_rig.statics import static_deflection
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_loads import bearing_loads
@@ -14,6 +13,7 @@ from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
+from tests.builders.static_deflection import static_deflection
 
 
 def helical(hand: str, rotation: str) -> Case:

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 import scipy.linalg
+from numpy.typing import NDArray
 
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
@@ -16,15 +17,18 @@ from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.elastic_rig.wrench_rows import wrench_rows
+from dynamics.errors import DynamicsInputError
 from dynamics.kernels.looped_contact import FlankMotion, PhaseTable, Pressed, contact_work, press_phase
 from dynamics.response.contact_loop import ContactLoop, MeshInLoop
 from dynamics.response.held_modes import ModesOverStep
 from dynamics.response.initial_state import wound_state
+from dynamics.response.looped_response import LoopedProblem, LoopedResponse, looped_response
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.loaded_mesh import fzg_c, influence_of
 from tests.builders.p2_gears import helical_pair, spur_pair
 from tests.builders.rig import prototype_laws
 
+Array = NDArray[np.float64]
 RPM = np.pi / 30.0
 FORCE = 5000.0
 
@@ -94,13 +98,13 @@ def seen() -> SeenRig:
     )
 
 
-def looped(step: float, *, lossless: bool) -> ContactLoop:
-    """The prototype on Table 1's bearings; both meshes with the contact in the loop."""
-    state = running(seen().reduced.model.rig, 3000.0 * RPM)
-    system = seen().system(state)
+SPEED = 3000.0 * RPM
+
+
+@cache
+def loaded_meshes(*, lossless: bool) -> tuple[MeshInLoop, ...]:
     laws = [law._replace(damping=0.0, friction=0.0) if lossless else law for law in prototype_laws()]
-    wound = wound_state(system, laws, 3000.0 * RPM, LoopLoad(torque=180.0))
-    meshes = []
+    meshes: list[MeshInLoop] = []
     for law, pair in zip(laws, (spur_pair(), helical_pair()), strict=True):
         contact = LoadedMesh(
             pair=pair,
@@ -112,9 +116,30 @@ def looped(step: float, *, lossless: bool) -> ContactLoop:
                 contact=contact, law=law, force=180.0 / law.base_radius_1 * (1.0 if not meshes else -1.0)
             )
         )
+    return tuple(meshes)
+
+
+def loop_rows() -> Array:
     model = seen().reduced.model
-    rows = seen().on_freedoms(np.vstack([wrench_rows(model, name) for name in seen().ports]))
-    return ContactLoop(system, rows, meshes, wound, step=step, cutoff=20e3)
+    return seen().on_freedoms(np.vstack([wrench_rows(model, name) for name in seen().ports]))
+
+
+def looped(step: float, *, lossless: bool) -> ContactLoop:
+    """The prototype on Table 1's bearings; both meshes with the contact in the loop."""
+    system = seen().system(running(seen().reduced.model.rig, SPEED))
+    meshes = loaded_meshes(lossless=lossless)
+    wound = wound_state(system, [mesh.law for mesh in meshes], SPEED, LoopLoad(torque=180.0))
+    return ContactLoop(system, loop_rows(), meshes, wound, step=step, cutoff=20e3)
+
+
+def problem(speed: float = SPEED) -> LoopedProblem:
+    """The same in steady rotation; the motor torque starts without the friction of the teeth."""
+    system, meshes = seen().system(running(seen().reduced.model.rig, SPEED)), loaded_meshes(lossless=False)
+    wound = wound_state(system, [mesh.law for mesh in meshes], SPEED, LoopLoad(torque=180.0))
+    return LoopedProblem(
+        system=system, rows=loop_rows(), meshes=meshes, speed=speed, twist=wound.state.twist,
+        drive_torque=wound.drive_torque, drag_torques={}, cutoff=20e3,
+    )  # fmt: skip
 
 
 def test_one_step_of_the_linear_part_is_exact() -> None:
@@ -174,3 +199,41 @@ def test_both_meshes_of_the_loop_carry_its_torque() -> None:
     assert late.min() > 0.0
     assert torques[0] == pytest.approx(180.0, rel=0.1)
     assert torques[1] == pytest.approx(torques[0], rel=0.01)
+
+
+@cache
+def steady() -> LoopedResponse:
+    return looped_response(problem())
+
+
+def test_a_steady_response_keeps_its_speed_and_torque() -> None:
+    found = steady()
+    assert found.settled
+    assert found.unconverged == 0
+    assert found.speed == pytest.approx(SPEED, rel=1e-4)
+    assert np.all(found.dynamic_factor > 1.0)
+    assert np.all(found.least_share < 1.0)
+    torques = [
+        force * mesh.law.base_radius_1
+        for force, mesh in zip(found.mean_force, loaded_meshes(lossless=False), strict=True)
+    ]
+    assert torques == pytest.approx([180.0, 180.0], rel=0.1)
+
+
+def test_a_steady_response_is_that_of_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("dynamics.response.looped_response.LONGEST_STEP", 2e-6)
+    assert looped_response(problem(), longest=0.2).dynamic_factor == pytest.approx(
+        steady().dynamic_factor, abs=3e-3
+    )
+
+
+def test_a_march_that_ends_before_it_settles_says_so() -> None:
+    found = looped_response(problem(), tolerance=1e-9, longest=0.1)
+    assert not found.settled
+    assert found.time <= 0.1
+    assert np.any(found.change > 1e-9)
+
+
+def test_a_speed_that_is_not_positive_is_refused() -> None:
+    with pytest.raises(DynamicsInputError, match=r"speed = 0\.0 rad/s must be above 0"):
+        problem(0.0)

@@ -18,7 +18,7 @@ import pytest
 
 from dynamics.bearing.rolling_state import RollingState
 from dynamics.losses.mesh_loss import ToothPath
-from dynamics.response.speed_sweep import CurvePoint
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
 from rigdesign.coupling.alignment import coupled_ends, coupling_places

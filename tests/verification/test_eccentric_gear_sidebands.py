@@ -18,13 +18,16 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.flank.microgeometry import Microgeometry
+from dynamics.mesh.contact_table import contact_tables
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import pair_stiffness
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.mesh.table_force import evaluate_table
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.mesh import chain
-from tests.builders.p2_gears import ALLOWANCES, spur_pair
+from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 
 Array = NDArray[np.float64]
 TEETH = 99
@@ -121,3 +124,32 @@ def test_an_eccentric_gear_presses_as_one_moved_along_the_line_of_action() -> No
     found = evaluate_mesh(eccentric, theta, x, 0.0, 0.0).force_front
     still = evaluate_mesh(true, theta, x, 0.0, 0.0).force_front
     assert np.abs(found - moved).max() < 5e-3 * np.abs(moved - still).max()
+
+
+def helical_law(eccentricity: float) -> MeshLaw:
+    pair = helical_pair(**ALLOWANCES)
+    return mesh_law(
+        pair,
+        pair_stiffness(pair, TORQUE / pair.base_radii[0] / pair.face_width),
+        micro=(Microgeometry(run_out=eccentricity, run_out_phase=PHASE), Microgeometry()),
+        dissipation=MeshDissipation(damping=0.0, friction=0.0),
+    )
+
+
+def test_an_eccentric_helical_gear_stands_at_one_rotation_over_its_face() -> None:
+    """All slices of a tooth see the eccentricity at the rotation of their gear: both sidebands of the tooth frequency
+    are those of the true gear moved by e cos(theta - phi), wherever over the face its teeth touch."""
+    true, eccentric = helical_law(0.0), helical_law(ECCENTRICITY)
+    teeth = true.teeth_1
+    theta = np.arange(teeth * 64) * 2.0 * np.pi / (teeth * 64)
+    x = TORQUE / true.base_radius_1 / true.mean_stiffness
+    moved = evaluate_table(
+        contact_tables([true]), theta, x + ECCENTRICITY * np.cos(theta - PHASE)
+    ).force_front
+    found = evaluate_table(contact_tables([eccentric]), theta, x).force_front
+    bands = [
+        2.0 * np.abs(np.fft.rfft(force))[[1, teeth - 1, teeth + 1]] / theta.size for force in (found, moved)
+    ]
+    print(*bands)
+    assert bands[0][0] == pytest.approx(bands[1][0], rel=2e-3)
+    assert bands[0][1:] == pytest.approx(bands[1][1:], rel=0.02)

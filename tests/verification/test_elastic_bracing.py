@@ -13,11 +13,11 @@ from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.elastic_rig.statics import static_deflection
 from dynamics.mesh.law import MeshLaw
 from tests.builders.elastic_rig import bearings, prototype_drivetrain, prototype_rig, running
 from tests.builders.mesh import wavy_law
 from tests.builders.rig import prototype_laws
+from tests.builders.static_deflection import static_deflection
 
 TORQUE = 180.0
 MODES: tuple[Mode, ...] = ("twist_held", "shift_held", "torque_controlled")

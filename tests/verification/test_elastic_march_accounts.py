@@ -1,10 +1,9 @@
 """Energy of a march of shafts that bend on films, every term integrated by itself.
 
 Work of motor and bracing = losses of teeth, films and joints + what skew stiffness takes + change of the stored energy.
-Prototype in six degrees of freedom at 180 N m, 20 ms. Imbalance over all losses at the default step of 8 a sample: 8e-5
-at 5730 rpm with friction of the teeth, which is 94 % of the losses; without it 7e-4 at 2860 and 1.5e-3 at 5730 rpm,
-where 4.2 samples fall on a mesh period: rates are of second order, and the dampers of the teeth are booked with 0.6 %
-too little. 16 steps leave 4e-4 there.
+Prototype in six degrees of freedom at 180 N m, 20 ms. Imbalance over all losses at the default step of 8 a sample: 3e-6
+at 5730 rpm with friction of the teeth, which is 94 % of the losses; without it 9e-5 there, where 4.2 samples fall on a
+mesh period. Speeds without the error of the trapezoid, of which the mesh dampers lost 0.6 % (imbalance 1.5e-3).
 """
 
 import numpy as np
@@ -45,7 +44,7 @@ def books(
 
 
 @pytest.mark.parametrize(
-    ("friction", "speed", "substeps"), [(0.04, SPEED, 8), (0.0, 300.0, 8), (0.0, SPEED, 16)]
+    ("friction", "speed", "substeps"), [(0.04, SPEED, 8), (0.0, 300.0, 8), (0.0, SPEED, 8), (0.0, SPEED, 16)]
 )
 def test_the_books_close(friction: float, speed: float, substeps: int) -> None:
     """With the friction that the case has at the default step; without it films and dampers alone."""
@@ -57,7 +56,7 @@ def test_the_books_close(friction: float, speed: float, substeps: int) -> None:
 
 def test_the_imbalance_falls_with_the_square_of_the_step() -> None:
     """All modes move."""
-    coarse, middle, fine = (books(0.0, substeps, 1e12)[0] for substeps in (4, 8, 16))
+    coarse, middle, fine = (books(0.0, substeps, 1e12)[0] for substeps in (2, 4, 8))
     print(coarse, middle, fine)
     assert coarse / middle > 3.5 and middle / fine > 3.5
 

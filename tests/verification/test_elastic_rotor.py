@@ -14,19 +14,15 @@ from dynamics.drivetrain.shaft import STEEL_DENSITY, STEEL_SHEAR_MODULUS, Disc, 
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.beam import ShearRule, shear_coefficient
 from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
-from dynamics.elastic_rig.forced import Unbalance, orbit, unbalance_load
 from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
 from dynamics.elastic_rig.mesh_rows import approach_row
+from dynamics.elastic_rig.orbits import orbit
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import (
-    BearingCoefficients,
-    RowSpring,
-    RunningState,
-    full_matrices,
-    isotropic_bearing,
-)
-from dynamics.elastic_rig.statics import static_deflection
+from dynamics.elastic_rig.running_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
 from tests.builders.elastic_rig import bearings, gear_on, prototype_drivetrain, prototype_rig, single_shaft
+from tests.builders.full_matrices import full_matrices
+from tests.builders.harmonic_response import Unbalance, unbalance_load
+from tests.builders.static_deflection import static_deflection
 
 OUTER, INNER, LENGTH = 0.060, 0.020, 0.500
 MODULUS = 2.0 * STEEL_SHEAR_MODULUS * 1.3
@@ -120,7 +116,7 @@ def test_rigid_rotor_whirls_as_euler_says(speed: float) -> None:
     assert found == pytest.approx([parallel, parallel, backward, forward], rel=1e-4)
     if speed:
         assert (found[3] - found[2]) == pytest.approx(forward - backward, rel=1e-3)
-        whirl = mode_character(reduced, modes).whirl[:, 0]
+        whirl = mode_character(reduced, modes.shapes).whirl[:, 0]
         assert whirl[2:] == pytest.approx([-1.0, 1.0], abs=1e-6)
 
 
@@ -180,7 +176,7 @@ def test_internal_damping_drives_whirl_above_its_threshold() -> None:
     growth = []
     for share in (0.99, 1.01):  # gyroscopics of the shaft raise the forward mode by 0.2 %
         modes = damped_modes(reduced, RunningState(speed=share * limit, bearings=held), 400.0)
-        forward = int(np.argmax(mode_character(reduced, modes).whirl[:2, 0]))
+        forward = int(np.argmax(mode_character(reduced, modes.shapes).whirl[:2, 0]))
         growth.append(float(modes.poles[forward].real))
     assert growth[0] < 0.0 < growth[1]
     # without the circulation of the rotating dampers nothing would grow

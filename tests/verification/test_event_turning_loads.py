@@ -23,7 +23,8 @@ from dynamics.response.event_channels import Channel, Watched, bearing_channels,
 from dynamics.response.event_march import Brake, EventMarch, Trip
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.periodic_response import TimeSettings
-from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.steady_start import steady_start
 from dynamics.response.turning_loads import TurningLoads
 from tests.builders.elastic_rig import bearings, prototype_rig

@@ -10,7 +10,7 @@ from rigdesign.case import load_case
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.warnings import _thin_rim_films
+from rigdesign.run.heat_audits import thin_rim_films
 from tests.builders.fzg_case import HELD, RIM_FILM, fzg_case
 
 MICHAELIS = 126.0
@@ -53,7 +53,7 @@ def test_half_of_the_heat_under_a_film_of_walls_is_far_too_hot_and_said(tmp_path
     assert rig.case.gearboxes["test"].heat_split.rule == "assumed"
     assert min(bulk(result)) > MICHAELIS + 40.0
     solved: Any = SimpleNamespace(rig=rig, points=(result,))
-    texts = list(_thin_rim_films(solved, result.last.fields["test"]))
+    texts = list(thin_rim_films(solved, result.last.fields["test"]))
     assert len(texts) == 2
     assert "film on its rim = 300 W/(m2 K) with mesh_into_gears = 0.5" in texts[0]
     assert 'law = "flank_film"' in texts[0]

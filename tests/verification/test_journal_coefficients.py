@@ -20,8 +20,8 @@ from dynamics.bearing.journal_lateral import RunningFilm, journal_lateral
 from dynamics.bearing.journal_perturbation import film_coefficients
 from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.bearing.protocol import LateralOperation
-from dynamics.bearing.rotor_stability import rotor_stability, threshold_speed
 from dynamics.kernels.journal import short_bearing_load
+from tests.builders.rotor_stability import rotor_stability, threshold_speed
 
 # J. W. Lund, K. K. Thomsen, A calculation method and data for the dynamic coefficients of oil-lubricated journal
 # bearings, ASME 1978, two-axial-groove bearing: two shells of 160 degrees, load on the middle of the lower one.

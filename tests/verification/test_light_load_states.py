@@ -21,7 +21,8 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings
 from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response
+from dynamics.response.response_curve import ResponseCurve
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.time_march import TimeMarch
 from tests.builders.rig import prototype, prototype_laws
 from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen

@@ -24,13 +24,14 @@ from dynamics.elastic_rig.rotating_parts import (
     ShaftBow,
     ShaftUnbalance,
 )
-from dynamics.elastic_rig.running_state import RunningState, full_matrices, isotropic_bearing
+from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
 from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.elastic_rig.statics import static_deflection
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, single_shaft
+from tests.builders.full_matrices import full_matrices
 from tests.builders.mesh import BASE_RADIUS_1, TEETH, chain, wavy_law
 from tests.builders.rig import prototype_laws
+from tests.builders.static_deflection import static_deflection
 
 LENGTH, DIAMETER, MASS = 0.4, 0.02, 8.0
 MODULUS = 2.0 * STEEL_SHEAR_MODULUS * 1.3

@@ -65,7 +65,7 @@ def test_stiffness_and_mass_of_a_direct_solution(model: GearboxModel, stated: Co
         bore = elements.surfaces[bearing.bore_surface]
         for facet, weights in zip(facets, bore.weights):
             share[facet] += weights @ bore.values
-        for direction in (1, 2):
+        for direction in (1, 2, 0):
             force = np.zeros((n, 3))
             force[:, direction] = share / share.sum()
             loads.append(force.ravel()[free])
@@ -93,11 +93,12 @@ def test_the_case_gives_the_rig_its_housing() -> None:
     rig = build_rig(case.with_value("gearboxes.test.housing.bearing_seats", "elastic"), "standard")
     (support,) = rig.elastic.rig.supports
     assert set(support.bearings) == {f"test.{name}" for name in case.gearboxes["test"].bearings}
-    assert support.directions == 2 and SEAT_DIRECTIONS[:2] == ("u_y", "u_z")
+    assert support.directions == 3 and SEAT_DIRECTIONS[:3] == ("u_y", "u_z", "u_x")
     assert not build_rig(case, "standard").elastic.rig.supports
-    # along y the wall yields more than upwards, where the plate stands under it
+    # along y the wall yields more than upwards, where the plate stands under it, and along the shafts it bends
     compliance = np.diag(np.linalg.inv(support.stiffness))
-    assert (compliance[::2] > 1.2 * compliance[1::2]).all() and 1e9 < 1.0 / compliance.max() < 2e10
+    across, upwards, along = compliance[::3], compliance[1::3], compliance[2::3]
+    assert (across > 1.2 * upwards).all() and (along > across).all() and 1e9 < 1.0 / compliance.max() < 2e10
 
 
 def test_a_seat_is_not_stated_twice() -> None:

@@ -13,15 +13,16 @@ from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import full_matrices
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.elastic_rig.twist_rows import elastic_twist_rows
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.motion_kind import Motion
+from dynamics.response.response_curve import CurvePoint
 from dynamics.response.section_torque import section_torques
-from dynamics.response.speed_sweep import CurvePoint, periodic_response
+from dynamics.response.speed_sweep import periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, running
+from tests.builders.full_matrices import full_matrices
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype, synthetic_law
 
 SPEED, TORQUE = 240.0, 180.0

@@ -15,8 +15,9 @@ from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.layout import ElasticRig
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RunningState, full_matrices
+from dynamics.elastic_rig.running_state import RunningState
 from tests.builders.elastic_rig import bearings, prototype_rig
+from tests.builders.full_matrices import full_matrices
 
 STIFFNESS, TEETH = 2e5, (20, 30)
 SPEEDS = (150.0, 900.0)

@@ -13,7 +13,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.accuracy import ReductionError, reduction_error
 from dynamics.elastic_rig.running_state import RowSpring
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -24,6 +23,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.resolution import HIGHEST_COUNTED
 from tests.builders.paths import CASES
+from tests.builders.reduction_error import ReductionError, reduction_error
 
 RPM = np.pi / 30.0
 

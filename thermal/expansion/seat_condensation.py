@@ -1,8 +1,9 @@
 """Stiffness and mass of a housing at its bearing seats, condensed from its finite-element mesh.
 
-A seat moves by the area mean of its bore's displacement across the axis; a force on it is spread evenly over the bore,
-which is the same condition read as a load, so that the compliance is symmetric. The housing stands bolted: every node
-of its foot is held. The mass is that of the static shapes (R. J. Guyan, AIAA J. 3 (1965) 380).
+A seat moves by the area mean of its bore's displacement, across the axis and along it; a force on it is spread evenly
+over the bore, which is the same condition read as a load, so that the compliance is symmetric. So does the thrust of a
+bearing that locates its shaft press on the whole bore, not on the ring of its shoulder. The housing stands bolted:
+every node of its foot is held. The mass is that of the static shapes (R. J. Guyan, AIAA J. 3 (1965) 380).
 """
 
 from collections.abc import Mapping
@@ -15,15 +16,15 @@ from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
 from thermal.housing.stations import GearboxModel
 
-ACROSS = (1, 2)
-"""Directions of a seat: y, z."""
+SEAT_MOTIONS = (1, 2, 0)
+"""Directions of a seat: y, z across the axis, x along it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CondensedSeats:
     """Seats of k bearings on one housing.
 
-    names : of the bearing stations; stiffness, mass : (2 k, 2 k) in the order y, z of each [N/m], [kg]
+    names : of the bearing stations; stiffness, mass : (3 k, 3 k) in the order y, z, x of each [N/m], [kg]
     """
 
     names: tuple[str, ...]
@@ -84,10 +85,11 @@ def _bolted(model: GearboxModel, spaces: FiniteElements) -> np.ndarray[tuple[int
 
 
 def _seat_loads(model: GearboxModel, spaces: FiniteElements) -> FloatArray:
-    """(2 k, n_nodes, 3) nodal forces of 1 N on every seat in y and z [N]."""
-    loads = np.zeros((2 * len(model.bearings), len(model.mesh.points), 3))
+    """(3 k, n_nodes, 3) nodal forces of 1 N on every seat in y, z and x [N]."""
+    size = len(SEAT_MOTIONS)
+    loads = np.zeros((size * len(model.bearings), len(model.mesh.points), 3))
     for i, bearing in enumerate(model.bearings):
         bore = spaces.surfaces[bearing.bore_surface]
-        for j, direction in enumerate(ACROSS):
-            loads[2 * i + j, :, direction] = bore.shares / bore.area
+        for j, direction in enumerate(SEAT_MOTIONS):
+            loads[size * i + j, :, direction] = bore.shares / bore.area
     return loads

@@ -63,6 +63,21 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
                     )  # fmt: skip
                 else:
                     yield from _on_shaft(f"{path}.position", part.position, lengths[part.shaft])
+        for gear_name, gear in box.gears.items():
+            if gear.seat_offset and gear.seat_position is not None and gear.shaft in shafts:
+                yield from _seat_on_shaft(
+                    f"gearboxes.{name}.gears.{gear_name}.seat_offset", gear, lengths[gear.shaft]
+                )
+
+
+def _seat_on_shaft(path: str, gear: "Gear", length: float) -> Iterator[Fault]:
+    seat = gear.seat_position
+    if seat is not None and not -1e-9 * length <= seat <= length * (1.0 + 1e-9):
+        yield Fault(
+            path, show(gear.seat_offset, "length"),
+            f"puts the middle of the seat at {show(seat, 'length')} of a shaft of {show(length, 'length')}",
+            "write the distance of the face from the seat, positive towards the end of the shaft",
+        )  # fmt: skip
 
 
 def _on_shaft(path: str, position: float, length: float) -> Iterator[Fault]:

@@ -263,9 +263,9 @@ def _press_fits(at: str, box: "Gearbox", case: "Case") -> Iterator[Fault]:
     """A shaft fills the bore of a gear that is pressed on it: its bore lies inside the seat."""
     shafts = {} if case.drivetrain is None else case.drivetrain.shafts
     for name, gear in box.gears.items():
-        if not gear.shaft_interference or gear.position is None or gear.shaft not in shafts:
+        if not gear.shaft_interference or gear.seat_position is None or gear.shaft not in shafts:
             continue
-        section = shafts[gear.shaft].section_at(gear.position)
+        section = shafts[gear.shaft].section_at(gear.seat_position)
         if section is not None and section.inner_diameter >= gear.bore_diameter:
             yield Fault(
                 f"{at}.gears.{name}.shaft_interference", show(gear.shaft_interference, "length", "um"),

@@ -9,6 +9,7 @@ import numpy as np
 from rigdesign.report.figures.drawing import finish, new_figure, words
 from rigdesign.report.numbers import NARROW_SPACE
 from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.results.campbell import sense_of_whirl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +22,12 @@ ORDER_STYLES: Mapping[str, dict[str, Any]] = {
 }
 """Lines of the excitation, by what excites."""
 MARKERS: Mapping[str, str] = {"mesh": "o", "shaft": "s", "coupling": "^"}
+MODE_STYLES: Mapping[str, tuple[Any, str]] = {
+    "": ("-", "modes of the closed loop"),
+    "forward": ((0, (9.0, 1.6)), "modes, forward whirl"),
+    "backward": ((0, (3.0, 1.6)), "modes, backward whirl"),
+}
+"""Line and label of a mode by its sense of whirl."""
 LABEL_DISTANCE = 0.038
 """Least distance of two labels at the right edge, as a share of the height."""
 LEADER = {"arrowstyle": "-", "color": MUTED, "linewidth": 0.5, "relpos": (0.0, 0.5)}
@@ -96,12 +103,15 @@ def _modes(axes: "Axes", campbell: Mapping[str, Any]) -> None:
     speeds = campbell["speed_rpm"]
     low, high = axes.get_xlim()
     ends, texts = [], []
-    for number, mode in enumerate(campbell["modes"]):
+    named: set[str] = set()
+    for mode in campbell["modes"]:
         values = [np.nan if f is None else f for f in mode["frequency_Hz"]]
+        style, text = MODE_STYLES[sense_of_whirl(mode["whirl"])]
         axes.plot(
-            [low, *speeds, high], [values[0], *values, values[-1]], color=INK, linewidth=0.8,
-            label="modes of the closed loop" if number == 0 else None,
+            [low, *speeds, high], [values[0], *values, values[-1]], color=INK, linewidth=0.8, linestyle=style,
+            label=None if text in named else text,
         )  # fmt: skip
+        named.add(text)
         known = [f for f in values if np.isfinite(f)]
         ends.append(known[-1])
         texts.append(f"{mode['mode']}  {_short(mode['shape'])}")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.results.campbell import sense_of_whirl
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ def _vibration(result: RunResult, draw: Draw) -> Values:
         "roots": _roots(dynamics.dynamic_root["curves"], draw) if dynamics.dynamic_root else {},
         "gauge_label": place,
         "leading": leading,
+        "modes": _modes(dynamics.campbell["modes"]),
         **_in_motion(result, draw),
     }
     if dynamics.dwell is not None:
@@ -52,6 +54,25 @@ def _vibration(result: RunResult, draw: Draw) -> Values:
             "Half peak-to-peak torque in meshes, joints and shafts over speed",
         )
     return shown
+
+
+def _modes(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Of every mode of the Campbell diagram frequency and decrement over speed from least to most, and its whirl."""
+    return [
+        {
+            "mode": mode["mode"],
+            "shape": mode["shape"],
+            "frequency": _span(mode["frequency_Hz"]),
+            "decrement": _span(mode["logarithmic_decrement"]),
+            "whirl": sense_of_whirl(mode["whirl"]),
+        }
+        for mode in modes
+    ]
+
+
+def _span(values: list[float | None]) -> tuple[float, float]:
+    known = [value for value in values if value is not None]
+    return min(known), max(known)
 
 
 def _in_motion(result: RunResult, draw: Draw) -> Values:

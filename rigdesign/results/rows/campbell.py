@@ -17,6 +17,8 @@ def campbell_row(record: CampbellRecord) -> dict[str, Any]:
                 "driven_by": mode.driven_by,
                 "frequency_Hz": list(mode.frequency),
                 "damping_ratio": list(mode.damping_ratio),
+                "logarithmic_decrement": list(mode.logarithmic_decrement),
+                "whirl": list(mode.whirl),
                 "gain": dict(mode.gain),
             }
             for mode in record.modes

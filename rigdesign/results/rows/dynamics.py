@@ -178,6 +178,6 @@ def geometry_row(drawn: GearPair, model: MeshModel) -> dict[str, float | str]:
         "centre_distance_cold_mm": MM * drawn.centre_distance,
         "centre_distance_hot_mm": MM * warm.centre_distance,
         "transverse_contact_ratio_hot": warm.transverse_contact_ratio,
-        "mean_mesh_stiffness_N_um": 1e-6 * model.law.mean_stiffness,
+        "mean_mesh_stiffness_N_um": 1e-6 * model.whole.mean_stiffness,
         "friction_coefficient": model.friction.value,
     }

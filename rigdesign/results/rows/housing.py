@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from rigdesign.coupling.boundary import BEARING_OIL
+from rigdesign.coupling.housing_context import BEARING_OIL
 from rigdesign.coupling.oil import OilStream
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.results.housing import CoolingBalance, FluidTemperature, GearHeatSplit, HousingTemperatures

@@ -9,13 +9,7 @@ from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.damped_modes import damped_modes
 from dynamics.elastic_rig.layout import HousingSupport, ProbeStation, isotropic_support
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import (
-    BearingCoefficients,
-    RunningState,
-    full_matrices,
-    isotropic_bearing,
-)
-from dynamics.elastic_rig.statics import static_deflection
+from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState, isotropic_bearing
 from tests.builders.elastic_rig import (
     bearings,
     motion_of_all,
@@ -25,6 +19,8 @@ from tests.builders.elastic_rig import (
     running,
     single_shaft,
 )
+from tests.builders.full_matrices import full_matrices
+from tests.builders.static_deflection import static_deflection
 
 BAR = (Section(length=0.15, outer_diameter=0.05), Section(length=0.25, outer_diameter=0.03))
 
@@ -137,6 +133,22 @@ def test_condensed_housing_moves_one_bearing_under_the_load_of_another() -> None
     assert seats == pytest.approx([2e-6, 1e-6], rel=1e-9)
     assert model.joint("housing", "housing").directions[2] == "b1 u_y"
     assert model.names[-1] == "b1 seat u_z"
+
+
+def test_thrust_of_a_locating_bearing_presses_on_its_seat() -> None:
+    """An axial force passes the spring of the bearing and the seat: F (1 / k_b + h_xx); the other seat follows it."""
+    rig = single_shaft((Section(length=0.4, outer_diameter=0.05),), (0.0, 0.4), 0.1)
+    flexibility = np.diag([2e-9, 3e-9, 5e-9, 2e-9, 3e-9, 5e-9])
+    flexibility[2, 5] = flexibility[5, 2] = 1e-9
+    housing = HousingSupport(
+        name="housing", bearings=("b0", "b1"), stiffness=np.linalg.inv(flexibility), mass=2.0 * np.eye(6)
+    )
+    model = assemble_rig(replace(rig, supports=(housing,)))
+    pull = model.rows("b0")[0]
+    deflection = static_deflection(model, running(rig), 1e3 * pull).deflection
+    assert pull @ deflection == pytest.approx(1e3 * (1e-9 + 5e-9), rel=1e-9)
+    seats = [deflection[model.freedoms.seats[b]][2] for b in ("b0", "b1")]
+    assert seats == pytest.approx([5e-6, 1e-6], rel=1e-9)
 
 
 def test_rolling_bearing_locates_and_resists_tilting() -> None:

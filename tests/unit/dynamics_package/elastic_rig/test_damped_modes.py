@@ -4,16 +4,20 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvals
 
+from dynamics.drivetrain.modes import ModeShape
 from dynamics.drivetrain.shaft import DrivetrainError, Section
+from dynamics.drivetrain.tracked_modes import shaped_modes, tracked
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.campbell import campbell_diagram
 from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
-from dynamics.elastic_rig.forced import Unbalance, orbit, receptance, unbalance_load
 from dynamics.elastic_rig.location import unresisted
 from dynamics.elastic_rig.mesh_rows import approach_row
+from dynamics.elastic_rig.orbits import orbit
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RowSpring, RunningState, full_matrices
+from dynamics.elastic_rig.running_state import RowSpring, RunningState
+from dynamics.elastic_rig.seen_system import SeenRig
 from tests.builders.elastic_rig import bearings, prototype_rig, running, single_shaft
+from tests.builders.full_matrices import full_matrices
+from tests.builders.harmonic_response import Unbalance, receptance, unbalance_load
 
 DRUM = (Section(length=0.3, outer_diameter=0.2),)
 """Short and thick: I_p below I_t, strong gyroscopics."""
@@ -67,7 +71,7 @@ def test_names_and_shares_tell_where_a_mode_moves() -> None:
     model, state = meshed(1256.0)
     reduced = reduce_rig(model, state.bearings, 10e3)  # type: ignore[arg-type]
     modes = damped_modes(reduced, state, 4e3)
-    character = mode_character(reduced, modes)
+    character = mode_character(reduced, modes.shapes)
     assert character.share.sum(axis=(1, 2)) == pytest.approx(np.ones(modes.poles.size))
     assert np.abs(character.whirl).max() <= 1.0 + 1e-9
     assert "reference_wheel torsion" in character.names
@@ -75,39 +79,49 @@ def test_names_and_shares_tell_where_a_mode_moves() -> None:
     assert any(name.endswith("axial") for name in character.names)
 
 
-def test_campbell_follows_modes_through_crossings_and_finds_the_critical_speed() -> None:
-    """Drum on soft bearings: conical modes part from each other; order 1 meets the forward one at
-    s^2 = k L^2 / (2 (I_t - I_p)) (closed form of a rigid rotor)."""
+def test_modes_followed_over_speed_are_those_of_a_rigid_rotor() -> None:
+    """Drum on soft bearings: conical modes part from each other through the crossing with the parallel pair.
+
+    (I_t w^2 -+ I_p Omega w - k L^2 / 2) = 0 (closed form of a rigid rotor), followed by shape from end to end.
+    """
     stiffness, length = 1e4, 0.3
     rig = single_shaft(DRUM, (0.0, length), 0.05)
     held = bearings(rig, stiffness, 5.0)
-    reduced = reduce_rig(assemble_rig(rig), held)
+    seen = SeenRig(reduced=reduce_rig(assemble_rig(rig), held), ports={})
     mass = 7850.0 * 0.25 * math.pi * 0.2**2 * length
     polar = mass * 0.2**2 / 8.0
     across = 0.5 * polar + mass * length**2 / 12.0
-    critical = math.sqrt(0.5 * stiffness * length**2 / (across - polar))
-    found = campbell_diagram(
-        reduced, lambda speed: RunningState(speed=speed, bearings=held), np.linspace(0.0, 120.0, 61), 20.0
-    )
-    assert found.frequency.shape == (61, 4)
-    conical = np.argsort(found.frequency[-1])[[0, -1]]
-    assert [found.names[k] for k in conical] == ["rotor lateral backward", "rotor lateral forward"]
-    for column, sign in zip(conical, (-1.0, 1.0)):
-        root = np.sqrt((polar * found.speeds) ** 2 + 2.0 * across * stiffness * length**2)
-        exact = (sign * polar * found.speeds + root) / (2.0 * across) / (2.0 * math.pi)
-        # followed from end to end, through the crossing with the parallel pair
-        assert found.frequency[:, column] == pytest.approx(exact, rel=1e-4)
-        assert found.whirl[5:, column] == pytest.approx(sign * np.ones(56), abs=1e-2)
-    crossing = [speed for _, speed, _ in found.crossings(1.0)]
-    assert min(abs(speed / critical - 1.0) for speed in crossing) < 1e-3
-    assert all(decrement > 0.0 for _, _, decrement in found.crossings(1.0))
+    speeds = np.linspace(0.0, 120.0, 61)
+    systems = [seen.system(RunningState(speed=speed, bearings=held)) for speed in speeds]
+    found = [
+        shaped_modes(system, (), lambda shape, energy: ModeShape(largest="", name="", energy={}), speed, 20.0)
+        for system, speed in zip(systems, speeds)
+    ]
+    modes = tracked(found, systems[0].inertia)
+    assert len(modes) == 4
+    whirls = {}
+    for system, at in zip(systems, found):
+        own = np.linalg.solve(system.coordinates.freedoms, at.shapes)
+        whirl = mode_character(seen.reduced, own).lateral_whirl(0.5)
+        whirls.update(zip((id(mode) for mode in at.modes), whirl))
+    ends = np.array([mode.modes[-1].frequency for mode in modes])  # type: ignore[union-attr]
+    root = np.sqrt((polar * speeds) ** 2 + 2.0 * across * stiffness * length**2)
+    for place, sign in zip(np.argsort(ends)[[0, -1]], (-1.0, 1.0)):
+        exact = (sign * polar * speeds + root) / (2.0 * across) / (2.0 * math.pi)
+        assert [mode.frequency for mode in modes[place].modes] == pytest.approx(exact, rel=1e-4)  # type: ignore[union-attr]
+        sense = [whirls[id(mode)] for mode in modes[place].modes[5:]]
+        assert sense == pytest.approx(sign * np.ones(56), abs=1e-2)
 
 
-def test_campbell_wants_ascending_speeds() -> None:
-    rig = single_shaft(DRUM, (0.0, 0.3), 0.1)
-    reduced = reduce_rig(assemble_rig(rig), bearings(rig))
-    with pytest.raises(DrivetrainError, match="speeds must ascend"):
-        campbell_diagram(reduced, lambda speed: running(rig, speed), np.array([10.0, 5.0]), 100.0)
+def test_a_mode_without_lateral_motion_has_no_whirl() -> None:
+    model, state = meshed(1256.0)
+    reduced = reduce_rig(model, state.bearings, 10e3)  # type: ignore[arg-type]
+    character = mode_character(reduced, damped_modes(reduced, state, 4e3).shapes)
+    for name, whirl in zip(character.names, character.lateral_whirl(0.5)):
+        if name.endswith(("torsion", "axial")) or name == "housing":
+            assert whirl is None
+        if name.endswith("forward"):
+            assert whirl is not None and whirl > 0.0
 
 
 def test_combinations_that_no_force_resists() -> None:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from dynamics.bearing.lateral import LateralCoefficients
-from dynamics.bearing.rotor_stability import rotor_stability
 from dynamics.drivetrain.shaft import Disc, Section
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.lateral import (
@@ -21,6 +20,7 @@ from dynamics.elastic_rig.reduction import ReducedElasticRig, reduce_rig
 from dynamics.elastic_rig.rotating_parts import ShaftUnbalance
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from tests.builders.elastic_rig import bearings, single_shaft
+from tests.builders.rotor_stability import rotor_stability
 
 SPEED = 800.0
 FILM = LateralCoefficients(

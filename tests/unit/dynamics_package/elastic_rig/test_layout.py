@@ -98,7 +98,7 @@ def with_bearings(*names: str) -> ElasticRig:
         (lambda: isotropic_support("b0", 1e8, 0.0), ["mass = 0", "must be above 0", "mass that moves"]),
         (
             lambda: HousingSupport(name="h", bearings=("a", "b"), stiffness=np.eye(3), mass=np.eye(3)),
-            ["'h'", "stiffness has shape (3, 3)", "(4, 4) or (10, 10)"],
+            ["'h'", "stiffness has shape (3, 3)", "(4, 4), (6, 6) or (10, 10)"],
         ),
         (
             lambda: HousingSupport(

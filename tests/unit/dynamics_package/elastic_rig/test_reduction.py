@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.shaft import DrivetrainError
-from dynamics.elastic_rig.accuracy import reduction_error
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.layout import AxialLocation, HousingSupport, isotropic_support
 from dynamics.elastic_rig.mesh_rows import approach_row, mesh_ports
@@ -15,8 +14,9 @@ from dynamics.elastic_rig.running_state import (
     RunningState,
     isotropic_bearing,
 )
-from dynamics.elastic_rig.statics import static_deflection
 from tests.builders.elastic_rig import bearings, prototype_rig
+from tests.builders.reduction_error import reduction_error
+from tests.builders.static_deflection import static_deflection
 
 FILM = BearingCoefficients(
     stiffness=np.array([[6e7, 8e7], [-1.1e8, 1.6e8]]), damping=np.array([[5e4, -1e4], [-1e4, 9e4]])

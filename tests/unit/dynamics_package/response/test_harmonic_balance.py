@@ -16,7 +16,8 @@ from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_newton import HarmonicNewton
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, resample
 from dynamics.response.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
-from dynamics.response.speed_sweep import DragTorques, ResponseCurve, SweepSettings, periodic_response
+from dynamics.response.response_curve import ResponseCurve
+from dynamics.response.speed_sweep import DragTorques, SweepSettings, periodic_response
 from dynamics.response.waveform import waveform
 from tests.builders.rig import prototype, prototype_laws
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from dynamics.response.motion_kind import PERIODIC
-from dynamics.response.speed_sweep import ResponseCurve, point_in_time, refined_response
+from dynamics.response.response_curve import ResponseCurve, point_in_time
+from dynamics.response.speed_sweep import refined_response
 
 NARROW = 3.0
 """Half width of the resonance below [rad/s], half of the first grid's step."""

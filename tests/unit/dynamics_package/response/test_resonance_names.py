@@ -9,7 +9,7 @@ import pytest
 
 from dynamics.drivetrain.modes import LoopMode
 from dynamics.rating.dynamic_factor import Resonance
-from dynamics.response.speed_sweep import ResponseCurve
+from dynamics.response.response_curve import ResponseCurve
 from rigdesign.records.resonances import name_of
 
 TEETH = 99

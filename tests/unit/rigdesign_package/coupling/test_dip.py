@@ -8,8 +8,8 @@ import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
-from rigdesign.coupling.boundary import GEAR_OIL
 from rigdesign.coupling.dip import churning
+from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig

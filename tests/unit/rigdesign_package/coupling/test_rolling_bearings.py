@@ -12,7 +12,6 @@ from dynamics.bearing.protocol import BearingOperation, HeatStar, OilSupply
 from dynamics.bearing.rolling import RollingBearing
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
 from dynamics.bearing.rolling_heat import SeatConductances, shaft_path
-from dynamics.elastic_rig.statics import static_deflection
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.case.bearing_place import BearingSeats
@@ -39,6 +38,7 @@ from rigdesign.rig.model import Rig, build_rig
 from rigdesign.transient.oil import oil_conditions
 from tests.builders.rolling_rig import FED, GREASE, SPLASH, rolling_case
 from tests.builders.shaft_weight import weight_on_bearing
+from tests.builders.static_deflection import static_deflection
 from thermal.conduction.steady import solve_steady
 
 OIL = OilSupply(

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
-from dynamics.elastic_rig.statics import static_deflection
 from rigdesign import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.initial_state import initial_state
@@ -13,6 +12,7 @@ from rigdesign.coupling.shaft_positions import mesh_placements
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
+from tests.builders.static_deflection import static_deflection
 
 
 def test_gears_stand_on_shafts_that_bend_between_journals_where_these_float() -> None:

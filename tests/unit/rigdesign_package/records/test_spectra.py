@@ -5,7 +5,7 @@ import pytest
 
 from rigdesign.records.campbell import _meetings
 from rigdesign.records.spectra import _blocks, _pooled, order_spectrum, spectrum
-from rigdesign.results.campbell import CampbellMode
+from rigdesign.results.campbell import CampbellMode, sense_of_whirl
 
 RATE = 40e3
 
@@ -49,8 +49,21 @@ def test_pooling_keeps_peaks() -> None:
 def test_an_order_meets_a_mode_where_both_have_one_frequency() -> None:
     """A mode from 100 Hz at 10 rad/s to 200 Hz at 110 rad/s: 90 + n; three per rad/s meet it at 45 rad/s."""
     mode = CampbellMode(
-        number=1, name="", frequency=(100.0, 200.0), damping_ratio=(0.01, 0.03), gain={}, driven_by="mesh"
+        number=1,
+        name="",
+        frequency=(100.0, 200.0),
+        damping_ratio=(0.01, 0.03),
+        whirl=(None, None),
+        gain={},
+        driven_by="mesh",
     )
     ((speed, damping),) = _meetings(np.array([10.0, 110.0]), mode, 3.0)
     assert speed == pytest.approx(45.0)
     assert damping == pytest.approx(0.01 + 0.02 * 35.0 / 100.0)
+
+
+def test_sense_is_that_of_the_roundest_orbit() -> None:
+    assert sense_of_whirl((None, 0.05, -0.02)) == ""
+    assert sense_of_whirl((0.2, -0.9, None)) == "backward"
+    assert sense_of_whirl((0.2, 0.9)) == "forward"
+    assert sense_of_whirl(()) == ""

@@ -17,7 +17,6 @@ from rigdesign.validation.speed_sweeps import (
     simulation_models,
     smooth,
     speed_sweep,
-    two_halves,
 )
 from tests.builders.paths import CASES
 
@@ -71,16 +70,6 @@ def test_the_corner_gap_grows_where_teeth_meet_too_early_and_nowhere_else() -> N
         assert thrice.gap - model.law.gap == pytest.approx(2.0 * added)
         middle = model.law.gap.shape[1] // 2
         assert not added[:, middle].any()
-
-
-def test_two_halves_are_two_meshes_in_parallel() -> None:
-    first, second = two_halves(laws())
-    assert first is laws()[0] or first == laws()[0]
-    assert second.mean_stiffness == pytest.approx(2.0 * laws()[1].mean_stiffness)
-    # the damping ratio of mesh over stiffness stays
-    assert second.damping / second.mean_stiffness == pytest.approx(
-        laws()[1].damping / laws()[1].mean_stiffness
-    )
 
 
 def test_amplitudes_are_k_v_and_mean_in_newton_metres() -> None:

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.elastic_rig.forced import receptance
 from dynamics.elastic_rig.reduction import ReducedElasticRig
-from dynamics.elastic_rig.running_state import RunningState, full_matrices
+from dynamics.elastic_rig.running_state import RunningState
+from tests.builders.full_matrices import full_matrices
+from tests.builders.harmonic_response import receptance
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Harmonic response of the elastic rig: receptance at rows, and whirl under the unbalance of a shaft.
+"""Harmonic response of the elastic rig, for comparison: receptance at rows, and loads of the unbalance of a shaft.
 
 The unbalance of a shaft turns with it, so the response has its speed as frequency, while every shaft keeps its own
 speed in the gyroscopics. Both systems can be used: the reduced one, and all freedoms by a sparse solution.
@@ -25,15 +25,6 @@ class Unbalance:
     place: str
     moment: float
     angle: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Orbit:
-    """Ellipse of a lateral motion: half axes [m], the minor negative for backward whirl; angle of the major [rad]."""
-
-    major: float
-    minor: float
-    angle: float
 
 
 class HarmonicSystem(Protocol):
@@ -77,15 +68,3 @@ def unbalance_load(
         force = unbalance.moment * turn**2 * np.exp(1j * unbalance.angle)
         load += force * (rows[1] - 1j * np.sign(spin) * rows[2])
     return load, turn
-
-
-def orbit(across: complex, up: complex, sense: float = 1.0) -> Orbit:
-    """Ellipse of u_y = Re(across e^{iwt}), u_z = Re(up e^{iwt}) on a shaft that turns about ``sense`` x."""
-    forward = 0.5 * (across + 1j * sense * up)
-    backward = 0.5 * np.conj(across - 1j * sense * up)
-    angle = sense * 0.5 * (np.angle(forward) + np.angle(backward))
-    return Orbit(
-        major=float(abs(forward) + abs(backward)),
-        minor=float(abs(forward) - abs(backward)),
-        angle=float(angle),
-    )

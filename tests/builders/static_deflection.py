@@ -10,7 +10,8 @@ from scipy.sparse.linalg import splu
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.location import unresisted
-from dynamics.elastic_rig.running_state import RunningState, full_matrices
+from dynamics.elastic_rig.running_state import RunningState
+from tests.builders.full_matrices import full_matrices
 
 Array = NDArray[np.float64]
 

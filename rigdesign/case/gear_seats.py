@@ -1,0 +1,141 @@
+"""Seats of gears on their shafts: splines with what they resist, and the teeth that limit what they carry."""
+
+from math import radians
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from rigdesign.base.units import show
+from rigdesign.case.fields import (
+    Count,
+    Length,
+    LinearStiffness,
+    Part,
+    Quantity,
+    Share,
+    Stress,
+    TorsionalDamping,
+    TorsionalStiffness,
+    fault,
+)
+
+SplineAngle = Annotated[float, Quantity("angle", at_least="15 deg", at_most="50 deg")]
+
+
+WORKING_DEPTH = 0.9
+"""Of a spline to DIN 5480, in modules: half of tip diameter of the shaft less tip diameter of the hub."""
+
+
+class SplineToothing(Part):
+    """Teeth of a spline-hub connection and what they may carry; each stress is held where its allowable is stated."""
+
+    teeth: Count = Field(ge=4, le=500)
+    """Number of teeth."""
+    module: Length | None = None
+    """Module; or ``pitch_diameter``."""
+    pitch_diameter: Length | None = None
+    """Pitch diameter, teeth times module."""
+    pressure_angle: SplineAngle = radians(30.0)
+    """Pressure angle of the flanks; 30 deg by DIN 5480."""
+    length: Length
+    """Axial length over which the teeth carry."""
+    working_depth: Length | None = None
+    """Radial height over which the flanks touch; 0.9 modules when left out, as of a spline to DIN 5480."""
+    load_distribution_factor: float = Field(default=1.0, ge=1.0, le=5.0)
+    """K_m of Dudley: uneven load over length and teeth by tilted axes, 1 to 3."""
+    shaft_root_diameter: Length | None = None
+    """Root circle of the teeth of the shaft; without it the shear of the shaft under them is not held."""
+    hub_root_diameter: Length | None = None
+    """Root circle of the teeth of the hub, its largest bore; without it the tension of the hub is not held."""
+    hub_diameter: Length | None = None
+    """Outside of the hub; the root circle of the gear when left out."""
+    allowable_pressure: Stress | None = None
+    """Pressure that the flanks may have under the dynamic torque, life included. Dudley: 35 MPa for straight teeth of
+    case-hardened steel that slide, nine times as much where they are fixed."""
+    allowable_shear: Stress | None = None
+    """Shear stress that teeth and shaft may have under it. Dudley: 345 MPa for case-hardened steel, times its life
+    factor, 0.5 to 0.2 for 1e5 to 1e7 cycles of the torque."""
+    allowable_tension: Stress | None = None
+    """Tension that the hub may have under it, at speed."""
+
+    @model_validator(mode="after")
+    def _geometry(self) -> "SplineToothing":
+        if (self.module is None) == (self.pitch_diameter is None):
+            given = "neither" if self.module is None else "both"
+            raise fault(
+                f"{given} of module and pitch_diameter is given",
+                'write one of the two, e.g. module = "2 mm"',
+            )
+        inner, outer = self.hub_root_diameter, self.hub_diameter
+        if outer is not None and (inner is None or inner >= outer):
+            raise fault(
+                f"hub_diameter = {show(outer, 'length')} needs a hub_root_diameter inside of it",
+                "write the root circle of the teeth of the hub, or leave hub_diameter out",
+            )
+        return self
+
+    @property
+    def reference_diameter(self) -> float:
+        """Pitch diameter [m]."""
+        return self.teeth * (self.module or 0.0) if self.pitch_diameter is None else self.pitch_diameter
+
+    @property
+    def contact_height(self) -> float:
+        """Radial height over which the flanks touch [m]."""
+        if self.working_depth is not None:
+            return self.working_depth
+        return WORKING_DEPTH * self.reference_diameter / self.teeth
+
+
+class Spline(Part):
+    """Spline-hub connection of a gear with its shaft."""
+
+    torsional_stiffness: TorsionalStiffness
+    """Torque per angle of twist between gear and shaft."""
+    torsional_damping: TorsionalDamping = 0.0
+    """Torque per speed of twist between gear and shaft."""
+    loss_factor: Share = 0.0
+    """Friction between the teeth, instead of ``torsional_damping``: a cycle of twist loses pi times this factor times
+    ``torsional_stiffness`` times the square of its amplitude, at any rate. The loop has a damper that loses as much at
+    the mesh frequency of the gear at every speed; other frequencies lose in proportion to theirs."""
+    radial_stiffness: LinearStiffness | None = None
+    """Force per radial offset between gear and shaft, of shafts that bend; with ``axial_stiffness`` and
+    ``angular_stiffness``, or none of the three for a gear that only twists against its shaft."""
+    axial_stiffness: LinearStiffness | None = None
+    """Force per axial travel between gear and shaft."""
+    angular_stiffness: TorsionalStiffness | None = None
+    """Moment per tilt between gear and shaft, about a diameter."""
+    lateral_damping_time: float = Field(default=0.0, ge=0.0, le=1e-3)
+    """Damping over stiffness of these three [s]."""
+    toothing: SplineToothing | None = None
+    """Teeth of the connection: what its capacity is held with."""
+
+    @model_validator(mode="after")
+    def _one_damper(self) -> "Spline":
+        if self.torsional_damping and self.loss_factor:
+            raise fault(
+                f"torsional_damping = {show(self.torsional_damping, 'torsional_damping')} and loss_factor = "
+                f"{self.loss_factor:g} exclude each other",
+                "write one of the two",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _whole_seat(self) -> "Spline":
+        stated = {
+            "radial_stiffness": self.radial_stiffness,
+            "axial_stiffness": self.axial_stiffness,
+            "angular_stiffness": self.angular_stiffness,
+        }
+        missing = [key for key, value in stated.items() if value is None]
+        if missing and len(missing) < len(stated):
+            raise fault(
+                f"{' and '.join(missing)} of the seat missing: a gear that gives in one direction gives in all",
+                "write all three, or none for a gear that is rigid with its shaft but for its twist",
+            )
+        if self.lateral_damping_time and missing:
+            raise fault(
+                f"lateral_damping_time = {self.lateral_damping_time:g} has no stiffness to belong to",
+                "write radial_stiffness, axial_stiffness and angular_stiffness, or leave it out",
+            )
+        return self

@@ -1,0 +1,135 @@
+"""One housing at one iteration: its fluids with their temperatures, and the shaft that a surface belongs to."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from dynamics.bearing.protocol import BearingState
+from rigdesign.case.films import SurfaceCondition
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.housing import Housing
+from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
+from rigdesign.coupling.flank_heat import rim_surfaces
+from rigdesign.coupling.housing_fluids import LinkEnd
+from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import (
+    bearing_feed,
+    conducting_share,
+    gear_feed,
+    wetted_width,
+)
+from thermal.housing.geometry import HousingGeometry
+from thermal.housing.shaft_geometry import ShaftGeometry
+
+GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
+"""Kinds of films: what takes the heat up, as the heat balance names it."""
+
+
+@dataclass(frozen=True)
+class HousingContext:
+    """One housing at one iteration."""
+
+    rig: Rig
+    name: str
+    point: OperatingPoint
+    coupling_state: CouplingState
+    bearings: Mapping[str, BearingState]
+
+    @property
+    def box(self) -> Gearbox:
+        """The gearbox of the case."""
+        return self.rig.case.gearboxes[self.name]
+
+    @property
+    def housing(self) -> Housing:
+        """Its housing, which it has."""
+        housing = self.box.housing
+        assert housing is not None
+        return housing
+
+    def source(self, condition: SurfaceCondition) -> str:
+        """Where the case has the coefficient of a given film from."""
+        entry = next(name for name, own in self.housing.boundary.items() if own is condition)
+        path = f"gearboxes.{self.name}.housing.boundary.{entry}.heat_transfer_coefficient"
+        return self.rig.case.provenance(path)
+
+    @property
+    def geometry(self) -> HousingGeometry:
+        """Geometry of the housing, cold."""
+        return self.rig.geometries[self.name]
+
+    def fluid(self, name: str) -> tuple[str, float]:
+        """Kind and temperature [K] of room air or an oil."""
+        if name == "ambient":
+            return AIR, self.rig.case.ambient.temperature
+        kind, _, which = name.rpartition("_")
+        chamber = self.coupling_state.oil_outlet[f"{self.name}.{GEAR_OIL}"]
+        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(
+            self.rig, self.name, chamber, self.coupling_state.oil_supply
+        )
+        outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
+        return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
+
+    def finds_own_temperature(self, fluid: str | None) -> bool:
+        """Whether a fluid is a volume or stream of the housing."""
+        return fluid in self.housing.volumes or fluid in self.housing.streams
+
+    def link_ends(self, *, sump_given: bool) -> dict[str, LinkEnd]:
+        """Room air and the oils as they leave the chamber; a sump that finds its own temperature is left out."""
+        ends = {"ambient": LinkEnd(temperature=self.rig.case.ambient.temperature, kind=AIR)}
+        for kind in (GEAR_OIL, BEARING_OIL):
+            if kind == BEARING_OIL or self.box.gear_oil_temperature is not None or sump_given:
+                outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
+                ends[kind] = LinkEnd(temperature=outlet, kind=kind)
+        return ends
+
+    def wetting(self, fluid: str, surface: str) -> float:
+        """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
+        if self.finds_own_temperature(fluid):
+            return 1.0
+        kind, _ = self.fluid(fluid)
+        if kind == AIR:
+            return 1.0
+        share = conducting_share(self.rig, self.name, kind)
+        on_flanks = kind == GEAR_OIL and surface in rim_surfaces(self.box).values()
+        return share * wetted_width(self.box) if on_flanks else share
+
+    def place(self, condition: SurfaceCondition, surface: str) -> SurfacePlace:
+        """Numbers of a surface for the law of its condition."""
+        shaft = None
+        if self._shafts_of(surface):
+            gap = self.shaft(surface).seal_gap
+            shaft = ShaftPlace(speed=self.speed(surface), diameter=self.diameter(surface), seal_gap=gap)
+        fluid = condition.wetted_by
+        return SurfacePlace(
+            height=self.housing.height,
+            wall_conductivity=self.rig.materials[self.housing.material].conductivity,
+            shaft=shaft,
+            mist_density=self.rig.case.losses.chamber_density,
+            wetted_share=1.0 if fluid is None else self.wetting(fluid, surface),
+            source=self.source(condition),
+        )
+
+    def shaft(self, surface: str) -> ShaftGeometry:
+        """The shaft a surface belongs to, from its name."""
+        return max(self._shafts_of(surface), key=lambda shaft: len(shaft.name))
+
+    def _shafts_of(self, surface: str) -> list[ShaftGeometry]:
+        return [shaft for shaft in self.geometry.shafts if f"_{shaft.name}_" in f"{surface}_"]
+
+    def speed(self, surface: str) -> float:
+        """Speed of the shaft of a surface [rad/s]."""
+        return self.rig.shaft_speed(self.shaft(surface).name, self.point.speed)
+
+    def diameter(self, surface: str) -> float:
+        """Diameter of a shaft or gear surface [m]."""
+        shaft = self.shaft(surface)
+        if surface.startswith("gear_") and shaft.gear is not None:
+            return shaft.gear.outer_diameter
+        if "_cold_" in surface or ("_seal_" in surface and not surface.endswith("_end")):
+            return shaft.seal_diameter
+        if surface.endswith("_warm"):
+            return shaft.seat_diameter
+        if "_journal_" in surface:
+            return shaft.bearing("front" if surface.endswith("_front") else "rear").journal_diameter
+        return shaft.overhang_diameter

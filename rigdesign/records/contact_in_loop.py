@@ -1,0 +1,199 @@
+"""K_V of the meshes with the contact solved in the loop, at reference: what the contact tables leave out.
+
+At every held stage, and where a mesh has its highest K_V over speed, the loop marches with the contact of each mesh
+solved from influence numbers in every step: tilt of the gears in motion, both flanks on their own normals, friction
+across them (`dynamics.response.contact_loop`). It is held against the periodic response on contact tables under the
+same loads: all teeth alike and nothing that alternates once a turn, so that both repeat in every mesh.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.contact.face import FaceGrid
+from dynamics.contact.loaded_mesh import LoadedMesh
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.elastic_rig.wrench_rows import wrench_rows
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
+from dynamics.mesh.flank import alike_teeth
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.contact_loop import MeshInLoop
+from dynamics.response.looped_response import LoopedProblem, LoopedResponse, looped_response
+from dynamics.response.response_curve import CurvePoint
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from rigdesign.base.parallel import BackgroundTasks
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.braced_loop import signed_torque
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.loop_system import loop_system
+from rigdesign.coupling.mesh_models import laws_of
+from rigdesign.coupling.time_run import drags_at
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loaded_contact import held_contact
+from rigdesign.results.contact_in_loop import ContactInLoop, LoopedContact
+from rigdesign.results.units import RPM
+from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
+
+FEWER_POSITIONS = 2
+"""Positions over the face are so many times further apart than those of the quasi-static contact."""
+SAME_SPEED = 0.01
+"""Speeds that differ by less, over the higher, are one place [-]."""
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where the loop marches; stage: empty where none holds the speed.
+
+    speed : stated [rad/s]; peaks : numbers of the meshes that have their highest K_V there
+    """
+
+    held: PointResult = field(repr=False)
+    stage: str
+    speed: float
+    peaks: tuple[int, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """In messages."""
+        where = f"stage {self.stage}" if self.stage else "the highest K_V over speed"
+        return f"{where}, {self.speed * RPM:.0f} rpm"
+
+
+@dataclass(frozen=True)
+class _Both:
+    """The response at a place by both models."""
+
+    by_table: CurvePoint
+    in_loop: LoopedResponse
+
+
+def contact_in_loop(rig: Rig, run: DynamicRun) -> ContactInLoop:
+    """Of every mesh at every place; empty below fidelity reference, for analytic teeth and shafts that only twist."""
+    if (
+        rig.fidelity != "reference"
+        or rig.mesh_stiffness != "influence_numbers"
+        or rig.shaft_model == "torsional"
+    ):
+        return ContactInLoop()
+    places = _places(rig, run)
+    with BackgroundTasks([partial(_both, rig, place) for place in places]) as tasks:
+        found = list(zip(places, tasks.results(), strict=True))
+    return ContactInLoop(
+        meshes=tuple(
+            row for place, both in found if isinstance(both, _Both) for row in _rows(rig, place, both)
+        ),
+        missing=tuple(f"{place.name}: {both}" for place, both in found if isinstance(both, str)),
+    )
+
+
+def _places(rig: Rig, run: DynamicRun) -> list[_Place]:
+    """Held stages, then peaks of K_V over speed that none of them holds."""
+    places = [_Place(point, point.point.stage, point.point.speed) for point in run.points]
+    curve = run.curves.response
+    for mesh in range(len(rig.mesh_names)):
+        speed = float(curve.speeds[np.argmax(curve.dynamic_factor(mesh))]) / rig.pinion_speed(1.0)
+        near = [i for i, place in enumerate(places) if _same(place, speed, run)]
+        if near:
+            places[near[0]] = replace(places[near[0]], peaks=(*places[near[0]].peaks, mesh))
+        else:
+            places.append(_Place(run.test, "", speed, (mesh,)))
+    return places
+
+
+def _same(place: _Place, speed: float, run: DynamicRun) -> bool:
+    """Whether a place is at a speed [rad/s] under the torque of the curve."""
+    return place.held is run.test and abs(speed - place.speed) <= SAME_SPEED * max(speed, place.speed)
+
+
+def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoint, LoopedProblem]:
+    """The response on contact tables at a stated speed [rad/s], gears as warm as at the held point, and what the march
+    with the contact in the loop starts from: the same matrices, drag torques and bracing twist.
+
+    Raises DynamicsNotConverged where there is no response, DynamicsInputError where a mesh carries no torque.
+    """
+    last, state = held.last, held.last.coupling_state
+    point = replace(held.point, speed=speed)
+    system = replace(loop_system(rig, point, state, solve_bearings(rig, point, state)), periodic_loads=())
+    laws = [alike_teeth(law) for law in laws_of(last.models)]
+    drags = drags_at(rig, last, state, speed)
+    curve = periodic_response(
+        system,
+        laws,
+        [rig.pinion_speed(speed)],
+        LoopLoad(torque=signed_torque(rig, point)),
+        drag_torques=drags,
+        settings=SweepSettings(cutoff=rig.highest_mode),
+    )
+    if not curve.points:
+        raise DynamicsNotConverged(f"no response on contact tables: {curve.failed[0][1]}")
+    (by_table,) = curve.points
+    rows = np.vstack([wrench_rows(rig.elastic.model, name) for name in rig.mesh_names])
+    return by_table, LoopedProblem(
+        system=system,
+        rows=rig.elastic.seen.on_freedoms(rows),
+        meshes=_meshes(rig, held, laws, by_table.flank),
+        speed=by_table.speed,
+        twist=by_table.twist,
+        drive_torque=by_table.drive_torque,
+        drag_torques=drags,
+        cutoff=rig.highest_mode,
+    )
+
+
+def _both(rig: Rig, place: _Place) -> _Both | str:
+    """Both responses, or why there are none."""
+    try:
+        by_table, problem = problem_in_loop(rig, place.held, place.speed)
+        return _Both(by_table, looped_response(problem))
+    except (DynamicsNotConverged, DynamicsInputError) as error:
+        return str(error)
+
+
+def _meshes(rig: Rig, held: PointResult, laws: list[MeshLaw], flank: Array) -> list[MeshInLoop]:
+    found = []
+    for number, law in enumerate(laws):
+        contact, halves = held_contact(rig, held, number), held.last.models[number].halves
+        if contact is None:
+            raise DynamicsInputError(
+                f"mesh {rig.mesh_names[number]} carries no torque: there is no contact to solve"
+            )
+        force = float(flank[number]) * halves * contact.force
+        found.append(MeshInLoop(contact=_coarser(contact.mesh), law=law, force=force, halves=halves))
+    return found
+
+
+def _coarser(mesh: LoadedMesh) -> LoadedMesh:
+    """The contact on fewer positions over the face: K_V of the prototype moves by 1.4e-3."""
+    n = (len(mesh.grid.position) - 1) // FEWER_POSITIONS + 1
+    return replace(mesh, grid=FaceGrid.over(mesh.grid.face_width, n))
+
+
+def _rows(rig: Rig, place: _Place, both: _Both) -> Iterator[LoopedContact]:
+    for mesh, name in enumerate(rig.mesh_names):
+        if not place.stage and mesh not in place.peaks:
+            continue
+        table, loop = both.by_table, both.in_loop
+        yield LoopedContact(
+            mesh=rig.mesh_labels[name],
+            stage=place.stage,
+            peak=mesh in place.peaks,
+            stated=(place.speed, place.held.point.torque),
+            speed=rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, place.speed),
+            torque=float(loop.mean_force[mesh]) * place.held.last.models[mesh].pair.base_radii[0],
+            dynamic_factor=float(loop.dynamic_factor[mesh]),
+            dynamic_factor_by_table=float(table.dynamic_factor[mesh]),
+            least_share=float(loop.least_share[mesh]),
+            least_share_by_table=float(table.minimum[mesh] / table.mean[mesh]),
+            other_flank=float(loop.other_flank[mesh]),
+            apart=float(loop.apart[mesh]),
+            tilt=float(loop.tilt[mesh]),
+            still_changing=float(loop.change[mesh]),
+            settled=loop.settled,
+            time=loop.time,
+            unconverged=loop.unconverged,
+        )
