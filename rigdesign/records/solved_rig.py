@@ -73,8 +73,10 @@ class SolvedRig:
 
     @cached_property
     def held_torques(self) -> tuple[HeldTorque, ...]:
-        """Torque of every section and joint in the periodic responses of the held stages."""
-        return tuple(torque for point in self.points for torque in held_torques(self.rig, point))
+        """Torque of every section and joint in the periodic responses of the held stages, with the teeth that these
+        were found with: those of ``points`` are warmed on the final mesh and stand at another approach."""
+        points = self.points if self.run is None else self.run.points
+        return tuple(torque for point in points for torque in held_torques(self.rig, point))
 
     @cached_property
     def part_torques(self) -> tuple[PartTorque, ...]:
