@@ -4,7 +4,7 @@ A tenth of the test torque and less does not close the deviations of the teeth: 
 passes unnoticed let flanks part.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -78,10 +78,28 @@ class StartResponse:
         ]
 
     def holds_at(self, speed: float) -> bool:
-        """Whether the flanks stay in contact at the computed speeds on both sides of one; True outside them."""
-        place = int(np.searchsorted(self.speed, speed))
-        inside = 0 < place < self.speed.size
-        return not inside or not bool(self.lost[place - 1] or self.lost[place])
+        """Whether the flanks stay in contact at a computed speed, between two of them at both; True outside them."""
+        below = int(np.searchsorted(self.speed, speed, side="right")) - 1
+        above = int(np.searchsorted(self.speed, speed))
+        inside = below >= 0 and above < self.speed.size
+        return not inside or not bool(self.lost[below] or self.lost[above])
+
+    def held(self, windows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        """What is left of rising windows of speeds (low, high) without those at which flanks part."""
+        left = list(windows)
+        for low, high in self._parting():
+            pieces = [piece for a, b in left for piece in ((a, min(b, low)), (max(a, high), b))]
+            left = [(a, b) for a, b in pieces if a < b]
+        return left
+
+    def _parting(self) -> Iterator[tuple[float, float]]:
+        """Computed speeds next to every interval of `spans` on both sides, between which `holds_at` says no."""
+        for first, last in self.spans():
+            below, above = self.speed[self.speed < first], self.speed[self.speed > last]
+            yield (
+                float(below[-1]) if below.size else float(np.nextafter(first, 0.0)),
+                float(above[0]) if above.size else float(np.nextafter(last, np.inf)),
+            )
 
     def next_held(self, speed: float) -> float | None:
         """Least computed speed from one on at which the flanks stay in contact there and at the next; None if none."""
@@ -112,7 +130,8 @@ def worst_start(rig: Rig, loads: DynamicLoads, sense: Literal[1, -1]) -> StagePe
     own = {
         stage.name
         for stage in rig.case.schedule.resolved()
-        if abs(stage.torque_end) <= light and sense * (stage.speed_end - stage.speed_start) > 0.0
+        if max(abs(stage.torque_start), abs(stage.torque_end)) <= light
+        and sense * (stage.speed_end - stage.speed_start) > 0.0
     }
     found = [
         StagePeak(load.stage, load.dynamic_factor, load.speed / own_ratio(rig, mesh), load.least_share <= 0.0)
