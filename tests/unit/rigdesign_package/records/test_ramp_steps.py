@@ -153,11 +153,11 @@ def test_windows_without_the_speeds_at_which_flanks_part() -> None:
     assert found.holds_at(800.0 * RAD) and not found.holds_at(790.0 * RAD) and not found.holds_at(825.0 * RAD)
 
 
-def test_a_stage_that_relieves_while_it_turns_is_none_under_the_start_torque(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stage_that_relieves_while_it_turns_is_none_under_the_start_torque(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """It ends under the start torque, but its resonances are passed under more."""
-    stage = SimpleNamespace(
-        name="down", torque_start=180.0, torque_end=10.0, speed_start=TEST, speed_end=0.0
-    )
+    stage = SimpleNamespace(name="down", torque_start=180.0, torque_end=10.0, speed_start=TEST, speed_end=0.0)
     monkeypatch.setattr(module, "start_torque", lambda rig: 10.0)
     case: Any = SimpleNamespace(schedule=SimpleNamespace(resolved=lambda: (stage,)))
     load = SimpleNamespace(stage="down", dynamic_factor=3.0, speed=TEST, least_share=0.5)
