@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from rigdesign.records.contact_loss_maps import response_under
 from rigdesign.records.curves import own_ratio, resolved
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_states import LoopState
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig
 
@@ -107,12 +106,12 @@ class StartResponse:
         return float(self.speed[:-1][free][0]) if free.any() else None
 
 
-def start_response(rig: Rig, run: DynamicRun, states: Sequence[LoopState]) -> StartResponse | None:
+def start_response(rig: Rig, run: DynamicRun) -> StartResponse | None:
     """Around the speed at which the torque is first raised; None where maps of contact loss are not computed."""
     if not resolved(rig):
         return None
     speeds = np.linspace(BELOW, ABOVE, SPEEDS) * first_speed(rig)
-    curve = response_under(rig, run, states, start_torque(rig), speeds.tolist())
+    curve = response_under(rig, run, start_torque(rig), speeds.tolist())
     factor = np.full(speeds.size, np.nan)
     lost: Flags = np.isin(speeds, curve.unstable)
     for point in curve.points:

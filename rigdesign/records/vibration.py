@@ -38,8 +38,8 @@ def loop_vibration(solved: SolvedRig) -> LoopVibration:
     states = loop_states(rig, run.test, float(top))
     works: list[Callable[[], CampbellRecord | Maps | StartResponse | None]] = [
         partial(campbell, rig, run.test, states, loads.modes),
-        partial(contact_loss_maps, rig, run, states, loads),
-        partial(start_response, rig, run, states),
+        partial(contact_loss_maps, rig, run, loads),
+        partial(start_response, rig, run),
     ]
     with BackgroundTasks(works) as tasks:
         torques = section_torque_record(solved, states)
