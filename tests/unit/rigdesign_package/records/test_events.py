@@ -14,7 +14,7 @@ from rigdesign.checks.component_overload import checks as overloads
 from rigdesign.checks.events import checks
 from rigdesign.checks.seats import checks as seat_checks
 from rigdesign.records.curves import Curves, curve_at
-from rigdesign.records.events import solve_events
+from rigdesign.records.events import overspeed_time, solve_events
 from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.report.pages.report import report_html
@@ -239,3 +239,11 @@ def test_limits_of_a_stop_count_what_it_passes(rig: SolvedRig) -> None:
     passed = max(peak.peak for peak in stop.passing if peak.quantity == "shaft torque")
     assert check.value == pytest.approx(max(marched, passed)) and passed > marched
     assert "on the way down at" in check.reason
+
+
+def test_overspeed_is_marched_for_two_turns_of_the_slowest_shaft(rig: SolvedRig) -> None:
+    """20 ms hold two turns of all shafts at 13,200 rpm, but not those of a shaft at 3000 rpm: 40 ms."""
+    assert rig.rig.drivetrain is not None
+    ratio = min(abs(rig.rig.shaft_speed(shaft.name, 1.0)) for shaft in rig.rig.drivetrain.shafts)
+    assert overspeed_time(rig.rig, 13200.0 * RPM) == 0.02
+    assert overspeed_time(rig.rig, 3000.0 * RPM / ratio) == pytest.approx(0.04)
