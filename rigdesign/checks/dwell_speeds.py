@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule
+from rigdesign.records.loop_states import dwell_stages
 from rigdesign.records.near_dwell import SHAFT_SHARE, near_dwell
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -54,9 +55,9 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     if run is None or solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
     speeds = run.curves.response.speeds
-    for stage in rig.case.schedule.resolved():
+    for stage in dwell_stages(rig):
         speed = rig.pinion_speed(stage.speed_end)
-        if not (stage.kind == "dwell" or stage.held) or not speeds[0] <= speed <= speeds[-1]:
+        if not speeds[0] <= speed <= speeds[-1]:
             continue
         near = near_dwell(rig, run, solved.loads.modes, speed)
         if near.resonance is None:

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigdesign.case.schedule import StageValues
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loop_states import dwell_speeds, dwell_stages
 from rigdesign.records.near_dwell import (
     SHAFT_SHARE,
     Bounds,
@@ -54,7 +56,7 @@ def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
         *shaft_shares(rig, speeds, found.torques.curves),
     ]
     low, high = speeds[0], speeds[-1]
-    dwells = {speed for _, _, speed in _held_speeds(rig) if low <= speed <= high}
+    dwells = {own for speed in dwell_speeds(rig) if low <= (own := rig.pinion_speed(speed)) <= high}
     near = {speed: near_dwell(rig, run, found.loads.modes, speed) for speed in sorted(dwells)}
     avoided = bands([*bounds.resonances(shares), *_orders(rig, found, bounds, list(near))])
     safe = safe_windows(avoided, low, high if limit is None else min(high, limit.speed))
@@ -121,20 +123,14 @@ def _root_shares(rig: Rig, loads: DynamicLoads) -> Iterator[DynamicShare]:
                 yield DynamicShare("root stress", f"{label} {gear}", speed, values)
 
 
-def _held_speeds(rig: Rig) -> Iterator[tuple[str, str, float]]:
-    """Stage, kind and speed of the first pinion of every stage that turns at one speed [rad/s]."""
-    for stage in rig.case.schedule.resolved():
-        if stage.speed_end > 0.0 and stage.speed_start == stage.speed_end:
-            yield stage.name, stage.kind, rig.pinion_speed(stage.speed_end)
-
-
 def _stages(rig: Rig, found: RampLimits) -> Iterator[DwellStage]:
-    """Every stage that turns at one speed."""
-    for stage, kind, speed in _held_speeds(rig):
+    """Every stage in which the rig dwells."""
+    for stage in dwell_stages(rig):
+        speed = rig.pinion_speed(stage.speed_end)
         band = found.band_at(speed)
         yield DwellStage(
-            stage=stage,
-            kind=kind,
+            stage=stage.name,
+            kind=stage.kind,
             speed=speed,
             computed=speed in found.near,
             near=found.near.get(speed),
@@ -145,7 +141,8 @@ def _stages(rig: Rig, found: RampLimits) -> Iterator[DwellStage]:
         )
 
 
-def _light(rig: Rig, stage: str) -> bool:
-    """Whether a stage begins or ends under the start torque."""
-    own = next(one for one in rig.case.schedule.resolved() if one.name == stage)
-    return min(abs(own.torque_start), abs(own.torque_end)) <= start_torque(rig)
+def _light(rig: Rig, stage: StageValues) -> bool:
+    """Whether a stage stands at its speed under the start torque, when it begins or ends."""
+    turns = stage.speed_start == stage.speed_end
+    torques = (stage.torque_start, stage.torque_end) if turns else (stage.torque_end,)
+    return min(abs(torque) for torque in torques) <= start_torque(rig)

@@ -7,11 +7,11 @@ import numpy as np
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.running_state import RunningState
+from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_over_speed import under_share
 from rigdesign.coupling.loop_system import running_state
-from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig
 
 COUNT = 6
@@ -46,10 +46,24 @@ def loop_states(rig: Rig, held: PointResult, top: float, share: float = 1.0) -> 
     return tuple(state_at(rig, held, speed, share) for speed in sorted({*free, *at_held}))
 
 
+def dwell_stages(rig: Rig) -> tuple[StageValues, ...]:
+    """Stages with a speed at which the rig dwells, that at their end: those that turn at one speed, whatever the torque
+    does meanwhile, for a resonance rises within a fraction of a second; and held ones, whose temperatures settle there.
+    """
+    held = {stage.name for stage in rig.case.schedule.held()}
+    return tuple(
+        stage
+        for stage in rig.case.schedule.resolved()
+        if stage.speed_end > 0.0
+        and (stage.kind == "dwell" or stage.name in held or stage.speed_start == stage.speed_end)
+    )
+
+
 def dwell_speeds(rig: Rig) -> tuple[float, ...]:
-    """Stated speeds at which the rig dwells, each once [rad/s]."""
-    dwells = [stage.speed_end for stage in rig.case.schedule.resolved() if stage.kind == "dwell"]
-    return tuple(dict.fromkeys([*(point.speed for point in held_points(rig)), *dwells]))
+    """Stated speeds of `dwell_stages` and that of the test, each once, those of held stages first [rad/s]."""
+    held = (stage.speed_end for stage in rig.case.schedule.held() if stage.speed_end > 0.0)
+    others = (stage.speed_end for stage in dwell_stages(rig))
+    return tuple(dict.fromkeys([*held, rig.case.schedule.test_speed, *others]))
 
 
 def state_at(rig: Rig, held: PointResult, speed: float, share: float = 1.0) -> LoopState:

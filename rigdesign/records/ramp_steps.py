@@ -28,7 +28,7 @@ from rigdesign.rig.model import Rig
 class RampLimits:
     """What the ramp follows from; speeds of the first pinion [rad/s].
 
-    near : the nearest resonance of every speed that a stage holds and whose response is computed
+    near : the nearest resonance of every speed at which the rig dwells and whose response is computed
     limit : None where the case states none; start : None where it is not computed
     up, down : worst of the time run under the start torque, None where the schedule does not turn under it
     """

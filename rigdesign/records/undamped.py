@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from rigdesign.base.errors import CaseError
 from rigdesign.records.curves import own_ratio
+from rigdesign.records.loop_states import dwell_stages
 from rigdesign.results.loads import DynamicLoads, ModeCrossing
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
@@ -47,8 +48,7 @@ class LightDwell:
 def light_dwells(rig: Rig, loads: DynamicLoads, limit: float) -> Iterator[LightDwell]:
     """Dwells on a mode that a mesh excites with a damping ratio below the limit."""
     meshes = {rig.mesh_labels[name]: mesh for mesh, name in enumerate(rig.mesh_names)}
-    stages = [s for s in rig.case.schedule.resolved() if (s.kind == "dwell" or s.held) and s.speed_end > 0.0]
-    for stage in stages:
+    for stage in dwell_stages(rig):
         for crossing in loads.loop_crossings:
             if crossing.kind != "mesh" or not crossing.excited or crossing.damping_ratio >= limit:
                 continue

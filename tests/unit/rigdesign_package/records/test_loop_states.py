@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case.loader import load_case
+from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.initial_state import initial_state
@@ -15,7 +16,7 @@ from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records import curves
 from rigdesign.records.contact_loss_maps import response_under
-from rigdesign.records.loop_states import state_at
+from rigdesign.records.loop_states import dwell_speeds, dwell_stages, state_at
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 
@@ -63,3 +64,27 @@ def test_a_map_of_contact_loss_has_bearings_under_its_own_torque(monkeypatch: py
     assert kwargs["settings"].methods == ("harmonic_balance",) and not kwargs["settings"].branches
     own = state_at(rig, point, point.point.speed, 0.05).system
     assert np.allclose(loop.at(top).stiffness, own.stiffness, rtol=1e-9)
+
+
+def stage(name: str, kind: Any, speeds: tuple[float, float], *, held: bool = False) -> StageValues:
+    return StageValues(
+        name=name, kind=kind, speed_start=speeds[0], speed_end=speeds[1], torque_start=10.0, torque_end=10.0,
+        duration=1.0, drive_torque=None, held=held,
+    )  # fmt: skip
+
+
+def test_the_rig_dwells_where_it_turns_at_one_speed_and_at_the_end_of_a_held_run_up() -> None:
+    """Loading at one speed is a dwell, a run-up and bracing at rest are none; the test speed is always one."""
+    stages = (
+        stage("bracing", "load", (0.0, 0.0)),
+        stage("up", "run_up", (0.0, 80.0)),
+        stage("half", "load", (80.0, 80.0)),
+        stage("test", "run_up", (80.0, 900.0), held=True),
+        stage("down", "run_down", (900.0, 0.0)),
+    )
+    schedule = SimpleNamespace(
+        resolved=lambda: stages, held=lambda: tuple(one for one in stages if one.held), test_speed=1000.0
+    )
+    rig: Any = SimpleNamespace(case=SimpleNamespace(schedule=schedule))
+    assert [one.name for one in dwell_stages(rig)] == ["half", "test"]
+    assert dwell_speeds(rig) == (900.0, 1000.0, 80.0)
