@@ -46,7 +46,9 @@ def loop_vibration(solved: SolvedRig) -> LoopVibration:
         diagram, maps, start = tasks.results()
     assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
     assert start is None or isinstance(start, StartResponse)
-    sources = DwellSources(loads=loads, torques=torques, diagram=diagram, start=start)
+    sources = DwellSources(
+        loads=loads, torques=torques, diagram=diagram, start=start, near=solved.near_dwells
+    )
     return LoopVibration(
         campbell=diagram,
         torques=torques,

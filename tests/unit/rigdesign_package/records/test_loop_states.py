@@ -13,9 +13,11 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop_over_speed import loop_over_speed
+from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records import curves
 from rigdesign.records.contact_loss_maps import response_under
+from rigdesign.records.loop_modes import held_modes, modes_at
 from rigdesign.records.loop_states import dwell_speeds, dwell_stages, state_at
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
@@ -88,3 +90,19 @@ def test_the_rig_dwells_where_it_turns_at_one_speed_and_at_the_end_of_a_held_run
     rig: Any = SimpleNamespace(case=SimpleNamespace(schedule=schedule))
     assert [one.name for one in dwell_stages(rig)] == ["half", "test"]
     assert dwell_speeds(rig) == (900.0, 1000.0, 80.0)
+
+
+def test_modes_of_a_slow_dwell_are_those_of_its_own_films() -> None:
+    """Films at a sixteenth of the test speed are stiffer: the shafts in them bend at other frequencies."""
+    rig, point = held()
+    models = mesh_models(rig, point.point, point.last.coupling_state)
+    warm: Any = SimpleNamespace(
+        point=point.point, last=SimpleNamespace(**vars(point.last) | {"models": models})
+    )
+    fast = held_modes(rig, warm)
+    assert [one.frequency for one in modes_at(rig, warm, point.point.speed)] == [
+        one.frequency for one in fast
+    ]
+    slow = modes_at(rig, warm, point.point.speed / 16.0)
+    own, other = ([mode.frequency for mode in modes if mode.frequency > 1.0][:20] for modes in (slow, fast))
+    assert not np.allclose(own, other, rtol=1e-3)
