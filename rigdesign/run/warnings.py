@@ -258,7 +258,7 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
 def _light_dwells(solved: SolvedRig) -> Iterator[str]:
     """Dwells on resonances whose damping no rig of steel has."""
     if solved.loads is not None:
-        for found in light_dwells(solved.rig, solved.loads, LIGHTLY):
+        for found in light_dwells(solved.rig, solved.loads.loop_crossings, LIGHTLY):
             yield f"{found.text(LIGHTLY)}, what steel shafts with joints have: {REMEDY}"
 
 
