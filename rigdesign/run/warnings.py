@@ -309,8 +309,10 @@ def not_modelled(solved: SolvedRig) -> list[str]:
         )
     for name, box in solved.case.gearboxes.items():
         if any(mesh.double_helical and mesh.sharing == 1 for mesh in box.meshes.values()):
+            bodies = [gear for gear, part in box.gears.items() if part.inertia is None]
+            whole = f"; inertia and weight of {', '.join(bodies)} are those of one half" if bodies else ""
             items.append(
-                f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
+                f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2{whole}"
             )
         elif any(mesh.double_helical for mesh in box.meshes.values()):
             items.append(
