@@ -49,7 +49,9 @@ def test_axial_forces_of_single_helical_gears_are_named(double: bool, named: boo
 @pytest.mark.parametrize("stated", [False, True])
 def test_bodies_of_one_half_are_named_where_no_inertia_is_stated(stated: bool) -> None:
     at = "gearboxes.reference"
-    inertias = {f"{at}.gears.{gear}.inertia": "1e-3 kg m2" if stated else None for gear in ("pinion", "wheel")}
+    inertias = {
+        f"{at}.gears.{gear}.inertia": "1e-3 kg m2" if stated else None for gear in ("pinion", "wheel")
+    }
     case = load_case(PROTOTYPE).with_values(inertias | {f"{at}.meshes.main.carrying_halves": 1})
     solved: Any = SimpleNamespace(case=case, rig=build_rig(case, "quick"), run=object(), points=())
     (item,) = (item for item in not_modelled(solved) if "one half of the double-helical" in item)

@@ -171,10 +171,6 @@ def test_the_torque_flange_is_held_in_the_events_and_in_the_stages(rig: SolvedRi
     stated = rig.rig.case.with_values({"limits.bought_parts.torque_flange.overload": "600 N m"})
     higher = replace(rig, rig=replace(rig.rig, case=stated))
     assert next(iter(overloads(higher))).limit == pytest.approx(600.0)
-    with pytest.raises(Exception, match="overload is below limit"):
-        rig.rig.case.with_values({"limits.bought_parts.torque_flange.overload": "300 N m"})
-    with pytest.raises(Exception, match="overload is given of another quantity"):
-        rig.rig.case.with_values({"limits.bought_parts.motor.overload": "300 N m"})
     quiet = replace(rig, events=())
     assert next(iter(overloads(quiet))).verdict == "not applicable"
 
