@@ -104,6 +104,10 @@ class Sampling:
         rate = self.sample_rate * self.substeps
         return max((n for n in divisors if FLAT * rate / n >= self.torque_band), default=1)
 
+    def torques_kept(self, duration: float) -> float:
+        """Kept torques of one mesh in a run of some duration [s]: up to ``substeps`` of them a sample."""
+        return duration * self.sample_rate * self.substeps / self.steps_kept
+
 
 def default_speed_control(
     system: LinearSystem, laws: Sequence[MeshLaw], torque_limit: float, *, bandwidth: float = 2.0

@@ -226,6 +226,10 @@ RESULT_KINDS: Mapping[ResultQuantity, str] = {
 """Kind of quantity of each result that a bought part may be held against."""
 
 
+PASSED = ("drivetrain.couplings.", "drivetrain.shafts.")
+"""Parts that the torque of the events passes through."""
+
+
 class BoughtPart(Part):
     """Limit of a bought part: a result or a given value held below what its maker allows."""
 
@@ -254,11 +258,30 @@ class BoughtPart(Part):
                     units.parse(text, RESULT_KINDS[self.quantity])
                 except units.QuantityError as error:
                     raise fault(f"{key}: {error.problem}", error.remedy) from None
-        if self.overload is not None and self.quantity != "torque_peak":
-            raise fault("overload is given of another quantity than torque_peak", "leave it out")
-        if self.overload_si < self.limit_si:
-            raise fault("overload is below limit", "exchange or correct them")
+        if self.overload is not None:
+            self._overload(self.overload)
         return self
+
+    def _overload(self, overload: str) -> None:
+        """An overload counts in the events alone, for the torque of parts that it passes through."""
+        if self.quantity != "torque_peak":
+            raise fault(
+                f"overload = {overload} is given of {self.quantity}: it counts for torque_peak only",
+                "leave it out",
+            )
+        if not self.part.startswith(PASSED):
+            raise fault(
+                f"overload = {overload} is given of {self.part}: it counts for couplings and shafts only, through "
+                "which the torque of the events passes",
+                f"leave it out, or write a part of {' or '.join(PASSED)}",
+            )
+        if self.given is not None:
+            raise fault(
+                f"overload = {overload} is given beside given = {self.given}, which no event changes",
+                "leave one out",
+            )
+        if self.overload_si < self.limit_si:
+            raise fault(f"overload = {overload} is below limit = {self.limit}", "exchange or correct them")
 
     @property
     def kind(self) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.base.units import display
-from rigdesign.case.limits import BoughtPart
+from rigdesign.case.limits import PASSED, BoughtPart
 from rigdesign.case.model import Case
 from rigdesign.checks.component_limits import GROUP, is_at
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
@@ -15,8 +15,6 @@ from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
 
 KEY = "bought_part_event"
-PASSED = ("drivetrain.couplings.", "drivetrain.shafts.")
-"""Parts that the torque of the events passes through."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule
-from rigdesign.records.near_dwell import SHAFT_SHARE, near_dwell
+from rigdesign.records.loop_states import dwell_stages
+from rigdesign.records.near_dwell import SHAFT_SHARE
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER, RPM
@@ -50,15 +51,14 @@ def checks(solved: SolvedRig) -> list[Check]:
 
 def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     """Of every stage that dwells within the computed speeds."""
-    rig, run = solved.rig, solved.run
-    if run is None or solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
+    rig = solved.rig
+    if solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
-    speeds = run.curves.response.speeds
-    for stage in rig.case.schedule.resolved():
+    for stage in dwell_stages(rig):
         speed = rig.pinion_speed(stage.speed_end)
-        if not (stage.kind == "dwell" or stage.held) or not speeds[0] <= speed <= speeds[-1]:
+        if speed not in solved.near_dwells:
             continue
-        near = near_dwell(rig, run, solved.loads.modes, speed)
+        near = solved.near_dwells[speed].nearest
         if near.resonance is None:
             yield near.distance, f"stage {stage.name}: none within {100.0 * near.distance:.0f} % of its speed"
         else:

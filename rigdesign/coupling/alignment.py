@@ -141,7 +141,9 @@ class CouplingEnd:
     x: float = 0.0
     """Of its end face in the model of that housing [m]."""
     outward: float = 1.0
-    """Direction along x in which the shaft leaves its machine there."""
+    """Direction along x of that model in which the shaft leaves its machine there."""
+    direction: float = 1.0
+    """1 where that gearbox stands in the rig front ahead, -1 the other way round, turned about z."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,16 +180,23 @@ def _end(rig: Rig, coupling: CouplingInput, side: int) -> CouplingEnd:
         for station in model.shafts:
             if station.name == shaft:
                 x, outward = (station.start, -1.0) if end == "start" else (station.end, 1.0)
-                return CouplingEnd(shaft=shaft, gearbox=name, x=x, outward=outward)
+                return CouplingEnd(
+                    shaft=shaft, gearbox=name, x=x, outward=outward, direction=rig.axes[shaft].direction
+                )
     return CouplingEnd(shaft=shaft, gearbox=None)
 
 
 def end_motion(end: CouplingEnd, axes: Mapping[str, Mapping[str, ShaftAxis]]) -> tuple[Across, Across]:
-    """Shift [m] and slope [rad] of a shaft end; axes : gearbox -> shaft -> hot axis."""
+    """Shift [m] and slope [rad] of a shaft end in the frame of the rig; axes : gearbox -> shaft -> hot axis, each in
+    the frame of its housing.
+
+    A gearbox that stands the other way round is turned about z: x and y change their sign.
+    """
     if end.gearbox is None or end.gearbox not in axes:
         return UNDEFORMED
-    axis = axes[end.gearbox][end.shaft]
-    return axis.shift(end.x), axis.slope
+    axis, turned = axes[end.gearbox][end.shaft], end.direction
+    lateral, vertical = axis.shift(end.x)
+    return (turned * lateral, vertical), (axis.slope[0], turned * axis.slope[1])
 
 
 def coupled_ends(place: CouplingPlace, axes: Mapping[str, Mapping[str, ShaftAxis]]) -> ShaftPair:

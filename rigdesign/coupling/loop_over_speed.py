@@ -9,6 +9,7 @@ from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_system import loop_system
+from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig
 
 WIDTH = 1.25
@@ -36,12 +37,16 @@ def loop_over_speed(
     systems = []
     for first, last in pairwise(edges):
         point = replace(warm.point, speed=high if last == high else math.sqrt(first * last))
-        share = torque_share(point.speed)
-        share = math.copysign(max(abs(share), LIGHTEST), share)
-        torque = {name: share * value for name, value in warm.coupling_state.mesh_torque.items()}
-        state = replace(warm.coupling_state, mesh_torque=torque)
+        state = under_share(warm.coupling_state, torque_share(point.speed))
         systems.append(loop_system(rig, point, state, solve_bearings(rig, point, state)))
     return SpeedBands(limits=band_limits(rig, speeds), systems=tuple(systems))
+
+
+def under_share(coupling_state: CouplingState, share: float) -> CouplingState:
+    """A coupling state whose mesh torques load the bearings with a share of theirs, `LIGHTEST` at least."""
+    share = math.copysign(max(abs(share), LIGHTEST), share)
+    torque = {name: share * value for name, value in coupling_state.mesh_torque.items()}
+    return replace(coupling_state, mesh_torque=torque)
 
 
 def band_limits(rig: Rig, speeds: tuple[float, float]) -> tuple[float, ...]:

@@ -50,14 +50,13 @@ def warm_misalignment(rig: Rig, shapes: Mapping[str, Expansion]) -> WarmMisalign
     axes = {box: shape.axes for box, shape in shapes.items()}
     for place in coupling_places(rig):
         coupling = power.couplings[place.name]
-        moved = [end_motion(end, axes) for end in (place.first, place.second)]
-        along = [rig.axes[end.shaft].direction for end in (place.first, place.second)]
+        first, second = (end_motion(end, axes) for end in (place.first, place.second))
         for i, way in enumerate(("lateral", "vertical")):
             key = f"{place.name}.{way}"
             if coupling.radial_stiffness:
-                offset[key] = moved[0][0][i] - moved[1][0][i]
+                offset[key] = first[0][i] - second[0][i]
             if coupling.angular_stiffness:
-                angle[key] = along[0] * moved[0][1][i] - along[1] * moved[1][1][i]
+                angle[key] = first[1][i] - second[1][i]
     return WarmMisalignment(offset=offset, angle=angle)
 
 

@@ -42,8 +42,8 @@ ELASTIC_CUTOFF, MESH_ORDERS = 20e3, 1.25
 """Highest mode of the time run of elastic shafts at least [Hz], and per mesh frequency of the test speed."""
 DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
-MOST_SAMPLES = 4e6
-"""Samples of the time run up to which the mesh torques are kept for their spectra; a longer run has none."""
+MOST_KEPT = 4e6
+"""Torques of one mesh up to which a time run keeps them for their spectra, 16 MB; a longer run has none."""
 SPECTRUM_ORDERS = 3.2
 """Mesh orders at the highest speed up to which they are kept: three with their sidebands."""
 RPM = np.pi / 30.0
@@ -92,6 +92,15 @@ def run_ramp(
     laws = shifted_laws(rig, warm.models, setting)
     top = max(stage.speed_end for stage in rig.case.schedule.resolved())
     loop = loop_over_speed(rig, warm, (0.0, top), partial(torque_share_at, rig, warm))
+    sampling = Sampling(
+        sample_rate=numerics.sample_rate,
+        substeps=numerics.internal_steps,
+        window=WINDOW,
+        torque_band=SPECTRUM_ORDERS * highest_mesh_frequency(rig, top) / (2.0 * np.pi),
+        keep_accounts=False,
+        cutoff=_cutoff(rig),
+        sections=lambda speed: twist_rows_of(rig, loop.at(0.0), speed / rig.pinion_speed(1.0)),
+    )
     response = run_schedule(
         loop,
         laws,
@@ -103,16 +112,7 @@ def run_ramp(
         ),
         drags=drag_curves(rig, warm, coupling_state),
         motor=MotorDrive(torque_limit=torque_limits(rig)[command.stage]),
-        sampling=Sampling(
-            sample_rate=numerics.sample_rate,
-            substeps=numerics.internal_steps,
-            window=WINDOW,
-            keep_channels=command.time[-1] * numerics.sample_rate <= MOST_SAMPLES,
-            torque_band=SPECTRUM_ORDERS * highest_mesh_frequency(rig, top) / (2.0 * np.pi),
-            keep_accounts=False,
-            cutoff=_cutoff(rig),
-            sections=lambda speed: twist_rows_of(rig, loop.at(0.0), speed / rig.pinion_speed(1.0)),
-        ),
+        sampling=replace(sampling, keep_channels=sampling.torques_kept(command.time[-1]) <= MOST_KEPT),
     )
     require_speeds(rig, schedule, response)
     return response

@@ -6,21 +6,14 @@ run: resonances are narrower than even steps of the speed.
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
 from dynamics.response.response_curve import ResponseCurve
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.braced_loop import signed_torque
-from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.records.curves import own_ratio, resolved
+from rigdesign.records.curves import own_ratio, resolved, response_solver
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_states import LoopState
 from rigdesign.results.contact_in_motion import ContactLossMap
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig
@@ -36,42 +29,27 @@ MOST_PEAKS = 10
 """Peaks of K_V on the curves that are speeds of the map, the highest."""
 
 
-def contact_loss_maps(
-    rig: Rig, run: DynamicRun, states: Sequence[LoopState], loads: DynamicLoads
-) -> tuple[ContactLossMap, ...]:
-    """Of every mesh, under the warm teeth of the governing held point; bearings as they run there.
+def contact_loss_maps(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> tuple[ContactLossMap, ...]:
+    """Of every mesh, under the warm teeth of the governing held point; bearings as they run at each torque.
 
     None at quick fidelity and where the response repeats after a revolution or more: its points cost too much.
     """
     if not resolved(rig):
         return ()
     speeds, torques = _speeds(rig, run, loads), _torques(rig)
-    curves = [response_under(rig, run, states, torque, speeds) for torque in torques]
+    curves = [response_under(rig, run, torque, speeds) for torque in torques]
     return tuple(_map(rig, mesh, torques, speeds, curves) for mesh in range(len(rig.mesh_names)))
 
 
-def response_under(
-    rig: Rig, run: DynamicRun, states: Sequence[LoopState], torque: float, speeds: Sequence[float]
-) -> ResponseCurve:
+def response_under(rig: Rig, run: DynamicRun, torque: float, speeds: Sequence[float]) -> ResponseCurve:
     """Stable states that repeat in every mesh, by harmonic balance; none at speeds where there are none.
 
     torque : stated [N m]; speeds : of the first pinion, rising [rad/s]
     """
     warm = run.test.last
     held = signed_torque(rig, warm.point)
-    return periodic_response(
-        _bands(rig, states),
-        periodic_laws(rig, laws_of(warm.models)),
-        speeds,
-        LoopLoad(torque=math.copysign(torque * abs(held / warm.point.torque), held)),
-        drag_torques=warm.drags,
-        settings=SweepSettings(
-            period=rig.case.numerics.response_period,
-            cutoff=rig.highest_mode,
-            methods=("harmonic_balance",),
-            branches=False,
-        ),
-    )
+    signed = math.copysign(torque * abs(held / warm.point.torque), held)
+    return response_solver(rig, warm, signed, (min(speeds), max(speeds)), stable_only=True)(speeds)
 
 
 def _map(
@@ -128,12 +106,3 @@ def _peaks(rig: Rig, run: DynamicRun) -> Iterator[tuple[float, float]]:
             factor = curve.dynamic_factor(mesh)
             for i in np.flatnonzero((factor[1:-1] > factor[:-2]) & (factor[1:-1] >= factor[2:])) + 1:
                 yield float(factor[i]), float(curve.speeds[i])
-
-
-def _bands(rig: Rig, states: Sequence[LoopState]) -> DrivetrainOverSpeed:
-    """The nearest state at every speed."""
-    speeds = [rig.pinion_speed(state.speed) for state in states]
-    if len({id(state.system) for state in states}) == 1:
-        return states[0].system
-    limits = tuple(math.sqrt(a * b) for a, b in pairwise(speeds))
-    return SpeedBands(limits=limits, systems=tuple(state.system for state in states))

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
 
@@ -169,18 +169,25 @@ def response_solver(
     torque: float,
     limits: tuple[float, float],
     laws: Sequence[MeshLaw] | None = None,
+    *,
+    stable_only: bool = False,
 ) -> Callable[[Sequence[float]], ResponseCurve]:
     """Finds the periodic response at speeds of the first pinion [rad/s] at one torque [N m, at the control mesh].
 
+    Bearings run under that torque.
+
     limits : lowest and highest of these speeds; laws : of the meshes, those of ``warm`` when left out
+    stable_only : stable states that repeat in every mesh, by harmonic balance; none at speeds where there are none
     """
+    settings = SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode)
+    if stable_only:
+        settings = replace(settings, methods=("harmonic_balance",), branches=False)
     share = torque / signed_torque(rig, warm.point)
     ends = [speed / rig.pinion_speed(1.0) for speed in limits]
     drivetrain = loop_over_speed(rig, warm, (ends[0], ends[1]), lambda _: share)
     return partial(
         periodic_response, drivetrain, periodic_laws(rig, laws or laws_of(warm.models)), load=LoopLoad(torque=torque),
-        drag_torques=warm.drags,
-        settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
+        drag_torques=warm.drags, settings=settings,
     )  # fmt: skip
 
 

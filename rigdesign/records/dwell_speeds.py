@@ -1,19 +1,20 @@
 """At which speeds the rig may dwell: bands of the response to avoid, stages in them, the ramp that follows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from rigdesign.case.schedule import StageValues
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loop_states import dwell_stages
 from rigdesign.records.near_dwell import (
     SHAFT_SHARE,
     Bounds,
+    NearDwell,
     bounds_of,
-    held_orders,
     mesh_shares,
-    near_dwell,
     order_resonances,
     shaft_shares,
 )
@@ -42,6 +43,8 @@ class DwellSources:
     torques: SectionTorqueRecord
     diagram: CampbellRecord
     start: StartResponse | None
+    near: Mapping[float, NearDwell]
+    """By the speed of the first pinion [rad/s]."""
 
 
 def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
@@ -54,15 +57,13 @@ def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
         *shaft_shares(rig, speeds, found.torques.curves),
     ]
     low, high = speeds[0], speeds[-1]
-    dwells = {speed for _, _, speed in _held_speeds(rig) if low <= speed <= high}
-    near = {speed: near_dwell(rig, run, found.loads.modes, speed) for speed in sorted(dwells)}
-    avoided = bands([*bounds.resonances(shares), *_orders(rig, found, bounds, list(near))])
+    avoided = bands([*bounds.resonances(shares), *_orders(found, bounds)])
     safe = safe_windows(avoided, low, high if limit is None else min(high, limit.speed))
     limits = RampLimits(
         run=run,
         bands=avoided,
         safe=safe,
-        near=near,
+        near={speed: one.nearest for speed, one in found.near.items()},
         limit=limit,
         start=found.start,
         up=worst_start(rig, found.loads, 1),
@@ -85,17 +86,22 @@ def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
     )
 
 
-def _orders(
-    rig: Rig, found: DwellSources, bounds: Bounds, dwells: Sequence[float]
-) -> Iterator[AvoidedResonance]:
-    """Crossings of shaft orders over speed; around the dwell speeds those with the modes of the held point."""
+def _orders(found: DwellSources, bounds: Bounds) -> Iterator[AvoidedResonance]:
+    """Crossings of shaft orders over speed; around a dwell speed those with the modes at the nearest one."""
     names = {mode.number: mode.name for mode in found.diagram.modes}
     for one in order_resonances(found.diagram.crossings, names, bounds.margin):
-        if not any(is_around(one.speed, dwell) for dwell in dwells):
+        if _around(one.speed, found.near) is None:
             yield one
-    for one in held_orders(rig, found.loads.modes, bounds.margin):
-        if any(is_around(one.speed, dwell) for dwell in dwells):
-            yield one
+    for dwell, near in found.near.items():
+        for one in near.orders:
+            if _around(one.speed, found.near) == dwell:
+                yield one
+
+
+def _around(speed: float, dwells: Iterable[float]) -> float | None:
+    """The nearest of the dwell speeds around which a speed lies; None if there is none."""
+    near = (dwell for dwell in dwells if is_around(speed, dwell))
+    return min(near, key=lambda dwell: abs(dwell - speed), default=None)
 
 
 def _highest(
@@ -121,20 +127,14 @@ def _root_shares(rig: Rig, loads: DynamicLoads) -> Iterator[DynamicShare]:
                 yield DynamicShare("root stress", f"{label} {gear}", speed, values)
 
 
-def _held_speeds(rig: Rig) -> Iterator[tuple[str, str, float]]:
-    """Stage, kind and speed of the first pinion of every stage that turns at one speed [rad/s]."""
-    for stage in rig.case.schedule.resolved():
-        if stage.speed_end > 0.0 and stage.speed_start == stage.speed_end:
-            yield stage.name, stage.kind, rig.pinion_speed(stage.speed_end)
-
-
 def _stages(rig: Rig, found: RampLimits) -> Iterator[DwellStage]:
-    """Every stage that turns at one speed."""
-    for stage, kind, speed in _held_speeds(rig):
+    """Every stage in which the rig dwells."""
+    for stage in dwell_stages(rig):
+        speed = rig.pinion_speed(stage.speed_end)
         band = found.band_at(speed)
         yield DwellStage(
-            stage=stage,
-            kind=kind,
+            stage=stage.name,
+            kind=stage.kind,
             speed=speed,
             computed=speed in found.near,
             near=found.near.get(speed),
@@ -145,7 +145,8 @@ def _stages(rig: Rig, found: RampLimits) -> Iterator[DwellStage]:
         )
 
 
-def _light(rig: Rig, stage: str) -> bool:
-    """Whether a stage begins or ends under the start torque."""
-    own = next(one for one in rig.case.schedule.resolved() if one.name == stage)
-    return min(abs(own.torque_start), abs(own.torque_end)) <= start_torque(rig)
+def _light(rig: Rig, stage: StageValues) -> bool:
+    """Whether a stage stands at its speed under the start torque, when it begins or ends."""
+    turns = stage.speed_start == stage.speed_end
+    torques = (stage.torque_start, stage.torque_end) if turns else (stage.torque_end,)
+    return min(abs(torque) for torque in torques) <= start_torque(rig)

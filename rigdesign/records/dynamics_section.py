@@ -118,7 +118,7 @@ def _mesh_section(solved: SolvedRig, run: DynamicRun, mesh: int, loads: MeshLoad
         unsolved=[rows.unsolved_row(speed) for speed in loads.unsolved],
         root_stress=[rows.root_stress_row(path) for path in loads.root_stress],
         root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
-        geometry=rows.geometry_row(rig.pairs[name], run.test.last.models[mesh]),
+        geometry=rows.geometry_row(rig.pairs[name], solved.test.last.models[mesh]),
         flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, solved.points, mesh)],
         loaded_contact=None if contact is None else loaded_contact_row(contact),
     )

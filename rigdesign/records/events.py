@@ -29,8 +29,9 @@ from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
 
-OVERSPEED_TIME = 0.02
-"""Time of the steady rotation at overspeed in which peaks are sought [s]."""
+OVERSPEED_TIME, OVERSPEED_TURNS = 0.02, 2.0
+"""Time of the steady rotation at overspeed in which peaks are sought [s], and turns of the slowest shaft; the longer
+of both."""
 ORDERS = 3
 """Orders of a mesh frequency whose crossings with a mode count as resonances."""
 RPM = math.pi / 30.0
@@ -136,7 +137,7 @@ def _overspeed(place: EventPlace, test: PointResult) -> EventRecord:
     factors = {name: float(p.dynamic_factor[m]) for p in at for m, name in enumerate(rig.mesh_names)}
     resonance, distance = _nearest_resonance(place, test)
     what = f"{place.point.speed / RPM:.0f} rpm, {place.point.speed / rig.case.schedule.test_speed:.3f} of the test"
-    record = place.record(what, place.march().run(OVERSPEED_TIME))
+    record = place.record(what, place.march().run(overspeed_time(rig, place.point.speed)))
     return replace(
         record,
         dynamic_factor=factors,
@@ -144,6 +145,14 @@ def _overspeed(place: EventPlace, test: PointResult) -> EventRecord:
         resonance_distance=distance,
         notes=(*record.notes, *notes, "bursting of discs and rotors is not modelled"),
     )
+
+
+def overspeed_time(rig: Rig, speed: float) -> float:
+    """How long the steady rotation at a stated speed [rad/s] is marched [s]: what shakes once a turn of any shaft has
+    shown its peak."""
+    assert rig.drivetrain is not None
+    slowest = min(abs(rig.shaft_speed(shaft.name, speed)) for shaft in rig.drivetrain.shafts)
+    return max(OVERSPEED_TIME, OVERSPEED_TURNS * 2.0 * math.pi / slowest)
 
 
 def _nearest_resonance(place: EventPlace, test: PointResult) -> tuple[str, float | None]:

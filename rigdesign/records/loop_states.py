@@ -1,4 +1,4 @@
-"""The linear loop at a few speeds, bearings as they run there under the torque of the governing held point."""
+"""The linear loop at a few speeds, bearings as they run there under the torque of a held point or a share of it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,10 +7,11 @@ import numpy as np
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.running_state import RunningState
+from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.loop_over_speed import under_share
 from rigdesign.coupling.loop_system import running_state
-from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig
 
 COUNT = 6
@@ -30,9 +31,10 @@ class LoopState:
     state: RunningState | None
 
 
-def loop_states(rig: Rig, held: PointResult, top: float) -> tuple[LoopState, ...]:
+def loop_states(rig: Rig, held: PointResult, top: float, share: float = 1.0) -> tuple[LoopState, ...]:
     """States up to a stated speed [rad/s], rising.
 
+    share : mesh torques that load the bearings, per those of the held point
     Shafts that only twist have one loop for all speeds, its lowest and highest, but for splines with a loss factor.
     """
     at_held = [speed for speed in dwell_speeds(rig) if 0.0 < speed <= top]
@@ -41,25 +43,41 @@ def loop_states(rig: Rig, held: PointResult, top: float) -> tuple[LoopState, ...
         speeds = {*grid, *at_held} if rig.twisting.follows_speed else {grid[0], *at_held, top}
         return tuple(LoopState(speed, rig.twisting.at(speed), None) for speed in sorted(speeds))
     free = [speed for speed in grid if all(abs(speed - own) > SAME * own for own in at_held)]
-    return tuple(state_at(rig, held, speed) for speed in sorted({*free, *at_held}))
+    return tuple(state_at(rig, held, speed, share) for speed in sorted({*free, *at_held}))
+
+
+def dwell_stages(rig: Rig) -> tuple[StageValues, ...]:
+    """Stages with a speed at which the rig dwells, that at their end: those that turn at one speed, whatever the torque
+    does meanwhile, for a resonance rises within a fraction of a second; and held ones, whose temperatures settle there.
+    """
+    held = {stage.name for stage in rig.case.schedule.held()}
+    return tuple(
+        stage
+        for stage in rig.case.schedule.resolved()
+        if stage.speed_end > 0.0
+        and (stage.kind == "dwell" or stage.name in held or stage.speed_start == stage.speed_end)
+    )
 
 
 def dwell_speeds(rig: Rig) -> tuple[float, ...]:
-    """Stated speeds at which the rig dwells, each once [rad/s]."""
-    dwells = [stage.speed_end for stage in rig.case.schedule.resolved() if stage.kind == "dwell"]
-    return tuple(dict.fromkeys([*(point.speed for point in held_points(rig)), *dwells]))
+    """Stated speeds of `dwell_stages` and that of the test, each once, those of held stages first [rad/s]."""
+    held = (stage.speed_end for stage in rig.case.schedule.held() if stage.speed_end > 0.0)
+    others = (stage.speed_end for stage in dwell_stages(rig))
+    return tuple(dict.fromkeys([*held, rig.case.schedule.test_speed, *others]))
 
 
-def state_at(rig: Rig, held: PointResult, speed: float) -> LoopState:
-    """The loop at one stated speed [rad/s], gears as warm as at the held point."""
+def state_at(rig: Rig, held: PointResult, speed: float, share: float = 1.0) -> LoopState:
+    """The loop at one stated speed [rad/s], gears as warm as at the held point; share : as of `loop_states`."""
     if rig.shaft_model == "torsional":
         return LoopState(speed, rig.twisting.at(speed), None)
     last = held.last
     point = replace(last.point, speed=speed)
-    bearings = last.bearings if speed == last.point.speed else solve_bearings(rig, point, last.coupling_state)
-    state = running_state(rig, point, last.coupling_state, bearings)
-    system = last.system if speed == last.point.speed else None
-    return LoopState(speed, system or rig.elastic.seen.system(state), state)
+    if speed == last.point.speed and share == 1.0:
+        state = running_state(rig, point, last.coupling_state, last.bearings)
+        return LoopState(speed, last.system or rig.elastic.seen.system(state), state)
+    loaded = under_share(last.coupling_state, share)
+    state = running_state(rig, point, loaded, solve_bearings(rig, point, loaded))
+    return LoopState(speed, rig.elastic.seen.system(state), state)
 
 
 def nearest(states: Sequence[LoopState], speed: float) -> LoopState:

@@ -9,7 +9,8 @@ import numpy as np
 from dynamics.drivetrain.modes import LoopMode
 from rigdesign.records.campbell import excitation_orders
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_states import state_at
+from rigdesign.records.loop_modes import modes_at
+from rigdesign.records.loop_states import dwell_speeds, state_at
 from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
 from rigdesign.records.torques_over_speed import AROUND, LoopOverSpeed, is_around, torques_over_speed
 from rigdesign.results.campbell import CampbellCrossing
@@ -49,17 +50,37 @@ def bounds_of(rig: Rig) -> Bounds:
     return Bounds(limits.dangerous_force_share, limits.resonance_distance_minimum or USUAL_MARGIN)
 
 
-def near_dwell(rig: Rig, run: DynamicRun, modes: Sequence[LoopMode], speed: float) -> NearResonance:
+@dataclass(frozen=True)
+class NearDwell:
+    """What lies near a dwell: the nearest resonance, and all shaft orders that meet a lively mode of the loop there."""
+
+    nearest: NearResonance
+    orders: tuple[AvoidedResonance, ...]
+
+
+def near_dwells(rig: Rig, run: DynamicRun) -> dict[float, NearDwell]:
+    """Of every dwell whose response is computed, by the speed of the first pinion [rad/s], rising."""
+    low, high = run.curves.response.speeds[0], run.curves.response.speeds[-1]
+    stated = {rig.pinion_speed(speed): speed for speed in dwell_speeds(rig)}
+    margin = bounds_of(rig).margin
+    found = {}
+    for speed in sorted(own for own in stated if low <= own <= high):
+        orders = tuple(held_orders(rig, modes_at(rig, run.test, stated[speed]), margin))
+        found[speed] = NearDwell(near_dwell(rig, run, orders, speed), orders)
+    return found
+
+
+def near_dwell(rig: Rig, run: DynamicRun, orders: Iterable[AvoidedResonance], speed: float) -> NearResonance:
     """The resonance nearest to a dwell.
 
-    modes : of the closed loop at the governing held point; speed : of the first pinion [rad/s]
+    orders : that meet a lively mode of the closed loop as it runs there; speed : of the first pinion [rad/s]
     """
     bounds = bounds_of(rig)
     reach = min(REACH * bounds.margin, AROUND)
     found = [
         *bounds.resonances(mesh_shares(rig, run)),
         *bounds.resonances(_near_shafts(rig, run, speed)),
-        *held_orders(rig, modes, bounds.margin),
+        *orders,
     ]
     nearest = min(found, key=lambda one: one.distance(speed, bounds.margin), default=None)
     if nearest is None or nearest.distance(speed, bounds.margin) > reach:
@@ -102,7 +123,7 @@ def _near_shafts(rig: Rig, run: DynamicRun, speed: float) -> Iterator[DynamicSha
 
 
 def held_orders(rig: Rig, modes: Sequence[LoopMode], margin: float) -> Iterator[AvoidedResonance]:
-    """Turning and coupling orders that meet a lively mode of the governing held point, wherever that lies."""
+    """Turning and coupling orders that meet a lively mode of these, wherever that lies."""
     swinging = [mode for mode in modes if mode.frequency > 0.0]
     names = {number: mode.name for number, mode in enumerate(swinging, start=1)}
     crossings = [

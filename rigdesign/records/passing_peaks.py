@@ -34,7 +34,8 @@ def passing_peaks(
         return (), ("torques on the way down are not known: no periodic response was found below its speed",)
     ends = known[0].speed, known[-1].speed
     solve = response_solver(rig, run.test.last, torque, ends) if resolved(rig) else None
-    loop = LoopOverSpeed(rig, run.test.last, loop_states(rig, run.test, stop.speed))
+    share = torque / signed_torque(rig, run.test.point)
+    loop = LoopOverSpeed(rig, run.test.last, loop_states(rig, run.test, stop.speed, share))
     points, curves = torques_over_speed(loop, known, solve)
     low, high = (speed / rig.pinion_speed(1.0) * RPM for speed in ends)
     notes = [

@@ -28,7 +28,7 @@ from rigdesign.rig.model import Rig
 class RampLimits:
     """What the ramp follows from; speeds of the first pinion [rad/s].
 
-    near : the nearest resonance of every speed that a stage holds and whose response is computed
+    near : the nearest resonance of every speed at which the rig dwells and whose response is computed
     limit : None where the case states none; start : None where it is not computed
     up, down : worst of the time run under the start torque, None where the schedule does not turn under it
     """
@@ -111,28 +111,30 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
 
 def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
     """Speed at which the torque is first raised, and why: moved up to where the start torque keeps the flanks in
-    contact, then out of an avoided band."""
+    contact, then out of an avoided band, never back to where they part."""
     floating = rig.case.limits.ramp.transition_speed
     wanted = first_speed(rig)
     why = "the bearings float from here on" if floating else "first speed of the schedule"
     if wanted >= test:
         return wanted, why
+    raised = False
     if found.start is not None and not found.start.holds_at(wanted):
-        held = found.start.next_held(wanted)
-        if held is None or held >= test:
+        contact = found.start.next_held(wanted)
+        if contact is None or contact >= test:
             why += "; flanks part here under the start torque, and up to the highest speed looked at"
         else:
             why = (
                 f"{'the bearings float from' if floating else 'the schedule first stops at'} {_rpm(wanted)} on, where "
                 f"flanks part under the start torque: raised here, where they stay in contact"
             )
-            wanted = held
+            wanted, raised = contact, True
     band = found.band_at(wanted)
     if band is None:
         return wanted, why
-    least = wanted if floating else 0.0
-    windows = [(max(low, least), high) for low, high in found.safe if low <= test and high > least]
-    safe = nearest_safe(windows, wanted)
+    least = wanted if floating or raised else 0.0
+    windows = [(max(low, least), high) for low, high in found.safe if high > least]
+    held = windows if found.start is None else found.start.held(windows)
+    safe = nearest_safe([(low, high) for low, high in held if low <= test], wanted)
     if safe is None:
         return wanted, f"{why}; no speed from there to the test speed lies outside the avoided bands"
     return safe, f"{why}; moved from {_rpm(wanted)}, which lies in the band {_span(band)}"

@@ -12,6 +12,7 @@ from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.held_torques import held_torques
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
+from rigdesign.records.near_dwell import NearDwell, near_dwells
 from rigdesign.records.part_torques import PartTorque, part_torques
 from rigdesign.records.press_fits import press_fits
 from rigdesign.records.spline_capacity import spline_stresses
@@ -72,8 +73,16 @@ class SolvedRig:
 
     @cached_property
     def held_torques(self) -> tuple[HeldTorque, ...]:
-        """Torque of every section and joint in the periodic responses of the held stages."""
-        return tuple(torque for point in self.points for torque in held_torques(self.rig, point))
+        """Torque of every section and joint in the periodic responses of the held stages, with the teeth that these
+        were found with: those of ``points`` are warmed on the final mesh and stand at another approach."""
+        points = self.points if self.run is None else self.run.points
+        return tuple(torque for point in points for torque in held_torques(self.rig, point))
+
+    @cached_property
+    def near_dwells(self) -> Mapping[float, NearDwell]:
+        """What lies near every dwell whose response is computed, by the speed of the first pinion [rad/s]; empty
+        without a dynamic run."""
+        return {} if self.run is None else near_dwells(self.rig, self.run)
 
     @cached_property
     def part_torques(self) -> tuple[PartTorque, ...]:

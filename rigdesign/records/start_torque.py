@@ -4,7 +4,7 @@ A tenth of the test torque and less does not close the deviations of the teeth: 
 passes unnoticed let flanks part.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from rigdesign.records.contact_loss_maps import response_under
 from rigdesign.records.curves import own_ratio, resolved
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_states import LoopState
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig
 
@@ -78,10 +77,28 @@ class StartResponse:
         ]
 
     def holds_at(self, speed: float) -> bool:
-        """Whether the flanks stay in contact at the computed speeds on both sides of one; True outside them."""
-        place = int(np.searchsorted(self.speed, speed))
-        inside = 0 < place < self.speed.size
-        return not inside or not bool(self.lost[place - 1] or self.lost[place])
+        """Whether the flanks stay in contact at a computed speed, between two of them at both; True outside them."""
+        below = int(np.searchsorted(self.speed, speed, side="right")) - 1
+        above = int(np.searchsorted(self.speed, speed))
+        inside = below >= 0 and above < self.speed.size
+        return not inside or not bool(self.lost[below] or self.lost[above])
+
+    def held(self, windows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        """What is left of rising windows of speeds (low, high) without those at which flanks part."""
+        left = list(windows)
+        for low, high in self._parting():
+            pieces = [piece for a, b in left for piece in ((a, min(b, low)), (max(a, high), b))]
+            left = [(a, b) for a, b in pieces if a < b]
+        return left
+
+    def _parting(self) -> Iterator[tuple[float, float]]:
+        """Computed speeds next to every interval of `spans` on both sides, between which `holds_at` says no."""
+        for first, last in self.spans():
+            below, above = self.speed[self.speed < first], self.speed[self.speed > last]
+            yield (
+                float(below[-1]) if below.size else float(np.nextafter(first, 0.0)),
+                float(above[0]) if above.size else float(np.nextafter(last, np.inf)),
+            )
 
     def next_held(self, speed: float) -> float | None:
         """Least computed speed from one on at which the flanks stay in contact there and at the next; None if none."""
@@ -89,12 +106,12 @@ class StartResponse:
         return float(self.speed[:-1][free][0]) if free.any() else None
 
 
-def start_response(rig: Rig, run: DynamicRun, states: Sequence[LoopState]) -> StartResponse | None:
+def start_response(rig: Rig, run: DynamicRun) -> StartResponse | None:
     """Around the speed at which the torque is first raised; None where maps of contact loss are not computed."""
     if not resolved(rig):
         return None
     speeds = np.linspace(BELOW, ABOVE, SPEEDS) * first_speed(rig)
-    curve = response_under(rig, run, states, start_torque(rig), speeds.tolist())
+    curve = response_under(rig, run, start_torque(rig), speeds.tolist())
     factor = np.full(speeds.size, np.nan)
     lost: Flags = np.isin(speeds, curve.unstable)
     for point in curve.points:
@@ -112,7 +129,8 @@ def worst_start(rig: Rig, loads: DynamicLoads, sense: Literal[1, -1]) -> StagePe
     own = {
         stage.name
         for stage in rig.case.schedule.resolved()
-        if abs(stage.torque_end) <= light and sense * (stage.speed_end - stage.speed_start) > 0.0
+        if max(abs(stage.torque_start), abs(stage.torque_end)) <= light
+        and sense * (stage.speed_end - stage.speed_start) > 0.0
     }
     found = [
         StagePeak(load.stage, load.dynamic_factor, load.speed / own_ratio(rig, mesh), load.least_share <= 0.0)

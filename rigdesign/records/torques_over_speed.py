@@ -7,6 +7,7 @@ the speeds of a curve were chosen: around their peaks the response is solved at 
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +50,8 @@ class LoopOverSpeed:
     def swings(self, point: CurvePoint) -> Swings:
         """Of every place."""
         stated = point.speed / self.rig.pinion_speed(1.0)
-        around = next((dwell for dwell in dwell_speeds(self.rig) if is_around(stated, dwell)), stated)
+        near = (dwell for dwell in self._dwells if is_around(stated, dwell))
+        around = min(near, key=lambda dwell: abs(dwell - stated), default=stated)
         system = nearest(self.states, around).system
         rows = twist_rows_of(self.rig, self.states[0].system) if not self._loops else self._any.rows
         if id(system) not in self._loops:
@@ -59,6 +61,10 @@ class LoopOverSpeed:
         for mesh, name in enumerate(self.rig.mesh_names):
             found[TorquePlace(kind="mesh", part=self.rig.mesh_labels[name])] = mesh_swing(point, mesh)
         return found
+
+    @cached_property
+    def _dwells(self) -> tuple[float, ...]:
+        return dwell_speeds(self.rig)
 
     @property
     def shear_per_torque(self) -> Mapping[str, float]:

@@ -1,28 +1,41 @@
-"""Dwells on a resonance that no damper reaches: they have no steady state that any result could be taken from."""
+"""Dwells on a resonance that no damper reaches, or on a mode that grows by itself: they have no steady state that any
+result could be taken from.
+"""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from rigdesign.base.errors import CaseError
+from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import own_ratio
-from rigdesign.results.loads import DynamicLoads, ModeCrossing
+from rigdesign.records.dynamics import mode_crossings
+from rigdesign.records.loop_modes import held_modes
+from rigdesign.records.loop_states import dwell_speeds, dwell_stages
+from rigdesign.results.loads import ModeCrossing
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 
 UNDAMPED, LIGHTLY = 1e-4, 1e-3
 """Damping ratios below which a mode has no steady state at its resonance, and below which no rig of steel with joints
 and bearings is; its own material damps with 5e-4 and more."""
+GROWS = -1e-9
+"""Damping ratio below which a mode grows by itself; between this and zero stand rounding errors."""
 ON = 0.01
 """Distance of a dwell from a resonance, as a share of its speed, up to which it stands on it."""
 REMEDY = (
     "state the damping of what moves (damping of the meshes, torsional_damping of splines and couplings, of bearings), "
     "or dwell elsewhere"
 )
+STABILISE = (
+    "correct what drives it (internal damping of shafts and splines, films under too little load for their speed), "
+    "or dwell at a lower speed"
+)
 
 
 @dataclass(frozen=True)
 class LightDwell:
-    """A stage that dwells where a mesh order meets a mode of next to no damping; speed : of the pinion [rad/s]."""
+    """A stage that dwells where a mesh order meets a mode of next to no damping, or one that grows; speed : of the
+    pinion [rad/s]."""
 
     stage: str
     speed: float
@@ -33,23 +46,30 @@ class LightDwell:
         """Of the resonance, as a share of the speed [-]."""
         return abs(self.crossing.speed - self.speed) / self.speed
 
+    @property
+    def grows(self) -> bool:
+        """Whether the mode is unstable."""
+        return self.crossing.damping_ratio < GROWS
+
     def text(self, limit: float) -> str:
         """What, where, how much against which limit."""
         one = self.crossing
+        what = "a mode that grows by itself" if self.grows else "a resonance without damping"
+        ratio = one.damping_ratio if self.grows else abs(one.damping_ratio)
         return (
-            f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on a resonance without damping: order "
+            f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on {what}: order "
             f"{one.harmonic} of mesh {one.order_of} meets mode {one.mode} ({one.shape}), {one.frequency:.4g} Hz, at "
             f"{one.speed * RPM:.1f} rpm, {100.0 * self.distance:.1f} % away; its damping ratio is "
-            f"{abs(one.damping_ratio):.2g}, limit {limit:g}"
+            f"{ratio:.2g}, limit {limit:g}"
         )
 
 
-def light_dwells(rig: Rig, loads: DynamicLoads, limit: float) -> Iterator[LightDwell]:
-    """Dwells on a mode that a mesh excites with a damping ratio below the limit."""
+def light_dwells(rig: Rig, crossings: Iterable[ModeCrossing], limit: float) -> Iterator[LightDwell]:
+    """Dwells on a mode that a mesh excites with a damping ratio below the limit; crossings : of the closed loop."""
+    listed = tuple(crossings)
     meshes = {rig.mesh_labels[name]: mesh for mesh, name in enumerate(rig.mesh_names)}
-    stages = [s for s in rig.case.schedule.resolved() if (s.kind == "dwell" or s.held) and s.speed_end > 0.0]
-    for stage in stages:
-        for crossing in loads.loop_crossings:
+    for stage in dwell_stages(rig):
+        for crossing in listed:
             if crossing.kind != "mesh" or not crossing.excited or crossing.damping_ratio >= limit:
                 continue
             own = own_ratio(rig, meshes[crossing.order_of]) * rig.pinion_speed(stage.speed_end)
@@ -58,11 +78,25 @@ def light_dwells(rig: Rig, loads: DynamicLoads, limit: float) -> Iterator[LightD
                 yield found
 
 
-def require_damping(rig: Rig, loads: DynamicLoads) -> None:
-    """Raise CaseError for a dwell on an undamped resonance: torques there are limited by loss of contact alone."""
-    found = min(light_dwells(rig, loads, UNDAMPED), key=lambda one: one.distance, default=None)
+def held_crossings(rig: Rig, held: PointResult) -> tuple[ModeCrossing, ...]:
+    """Crossings of the modes at a held point up to the highest speed at which the rig dwells."""
+    top = rig.pinion_speed(max(dwell_speeds(rig)))
+    return tuple(mode_crossings(rig, held_modes(rig, held), (1.0 + 2.0 * ON) * top))
+
+
+def require_damping(rig: Rig, crossings: Iterable[ModeCrossing]) -> None:
+    """Raise CaseError for a dwell on an undamped resonance, where torques are limited by loss of contact alone, or on
+    an unstable mode."""
+    found = min(
+        light_dwells(rig, crossings, UNDAMPED), key=lambda one: (not one.grows, one.distance), default=None
+    )
     if found is not None:
+        then, remedy = (
+            ("its vibration grows whatever excites it", STABILISE)
+            if found.grows
+            else ("the torque grows until the flanks part", REMEDY)
+        )
         raise CaseError(
-            f"{found.text(UNDAMPED)}: no steady state exists, the torque grows until the flanks part; {REMEDY}",
+            f"{found.text(UNDAMPED)}: no steady state exists, {then}; {remedy}",
             str(rig.case.path),
         )

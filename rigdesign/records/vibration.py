@@ -38,15 +38,17 @@ def loop_vibration(solved: SolvedRig) -> LoopVibration:
     states = loop_states(rig, run.test, float(top))
     works: list[Callable[[], CampbellRecord | Maps | StartResponse | None]] = [
         partial(campbell, rig, run.test, states, loads.modes),
-        partial(contact_loss_maps, rig, run, states, loads),
-        partial(start_response, rig, run, states),
+        partial(contact_loss_maps, rig, run, loads),
+        partial(start_response, rig, run),
     ]
     with BackgroundTasks(works) as tasks:
         torques = section_torque_record(solved, states)
         diagram, maps, start = tasks.results()
     assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
     assert start is None or isinstance(start, StartResponse)
-    sources = DwellSources(loads=loads, torques=torques, diagram=diagram, start=start)
+    sources = DwellSources(
+        loads=loads, torques=torques, diagram=diagram, start=start, near=solved.near_dwells
+    )
     return LoopVibration(
         campbell=diagram,
         torques=torques,

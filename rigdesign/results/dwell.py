@@ -56,7 +56,7 @@ class AvoidedBand:
 
 @dataclass(frozen=True, kw_only=True)
 class DwellStage:
-    """A stage of the schedule that turns at one speed."""
+    """A stage of the schedule that turns at one speed, or is held at its end."""
 
     stage: str
     kind: str

@@ -32,7 +32,7 @@ from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, fields_of
 from rigdesign.records.rolling_bearings import rolling_bearings
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
-from rigdesign.records.undamped import require_damping
+from rigdesign.records.undamped import held_crossings, require_damping
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
@@ -106,6 +106,8 @@ def solve_case(
         rigs = meshing.rigs()
         lap("other_meshes")
     wanted = rigs[-1]
+    if rig.drivetrain is not None:
+        require_damping(rig, held_crossings(rig, governing_point(converged)))
     say("response over speed, time run over the schedule")
     with DynamicWork(rig, converged) as dynamics:
         points = converged
@@ -124,8 +126,6 @@ def solve_case(
         run = dynamics.result()
         lap("dynamics")
     loads = None if run is None else dynamic_loads(wanted, run)
-    if loads is not None:
-        require_damping(wanted, loads)
     solved = replace(
         solved_rig(wanted, points, temperatures, run=run, loads=loads),
         discretisation=meshes.rows,

@@ -280,7 +280,7 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
 def _light_dwells(solved: SolvedRig) -> Iterator[str]:
     """Dwells on resonances whose damping no rig of steel has."""
     if solved.loads is not None:
-        for found in light_dwells(solved.rig, solved.loads, LIGHTLY):
+        for found in light_dwells(solved.rig, solved.loads.loop_crossings, LIGHTLY):
             yield f"{found.text(LIGHTLY)}, what steel shafts with joints have: {REMEDY}"
 
 
@@ -331,8 +331,10 @@ def not_modelled(solved: SolvedRig) -> list[str]:
         )
     for name, box in solved.case.gearboxes.items():
         if any(mesh.double_helical and mesh.sharing == 1 for mesh in box.meshes.values()):
+            bodies = [gear for gear, part in box.gears.items() if part.inertia is None]
+            whole = f"; inertia and weight of {', '.join(bodies)} are those of one half" if bodies else ""
             items.append(
-                f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
+                f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2{whole}"
             )
         elif any(mesh.double_helical for mesh in box.meshes.values()):
             items.append(

@@ -32,6 +32,7 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
         for mesh_name, mesh in box.meshes.items():
             yield from _mesh(f"{at}.meshes.{mesh_name}", mesh, box)
         yield from hand_faults(at, box)
+        yield from halves_faults(at, box)
         for gear_name, gear in box.gears.items():
             if gear_name not in meshed:
                 yield Fault(
@@ -184,6 +185,28 @@ def _hands(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator
                 "the gear is double-helical" if mesh.double_helical else "the gear has spur teeth",
                 "leave it out",
             )  # fmt: skip
+
+
+def halves_faults(at: str, box: "Gearbox") -> Iterator[Fault]:
+    """All meshes of a gear see the same body: double-helical in all of them or in none, as many halves carrying."""
+    first = box.first_meshes()
+    for name, mesh in box.meshes.items():
+        for gear in (mesh.pinion, mesh.wheel):
+            other = first[gear][0]
+            for key in ("double_helical", "carrying_halves"):
+                own, expected = getattr(mesh, key), getattr(box.meshes[other], key)
+                if own != expected and (key == "double_helical" or mesh.double_helical):
+                    yield Fault(
+                        f"{at}.meshes.{name}.{key}", _written(own),
+                        f"gear {gear} is in mesh {other} as well, where it is {_written(expected)}: it has one body",
+                        f"write {_written(expected)} in both meshes, or change that of {other}",
+                    )  # fmt: skip
+                    break
+
+
+def _written(value: bool | int) -> str:
+    """As the case file has it."""
+    return str(value).lower()
 
 
 def hand_faults(at: str, box: "Gearbox") -> Iterator[Fault]:

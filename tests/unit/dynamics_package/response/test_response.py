@@ -216,3 +216,10 @@ def test_sample_rate_is_no_integration_step() -> None:
             motor=MotorDrive(torque_limit=10.0),
             sampling=Sampling(substeps=2),
         )
+
+
+def test_a_run_keeps_more_torques_than_samples_where_their_band_asks_for_it() -> None:
+    """A band up to 60 kHz needs 160 kHz of 40 kHz samples with eight steps each: four a sample."""
+    dense, coarse = (Sampling(sample_rate=40e3, substeps=8, torque_band=band) for band in (60e3, 0.0))
+    assert dense.steps_kept == 2 and dense.torques_kept(10.0) == pytest.approx(4.0 * 40e3 * 10.0)
+    assert coarse.torques_kept(10.0) == pytest.approx(40e3 * 10.0)

@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import Case, load_case
-from rigdesign.case.rules.gears import hand_faults
+from rigdesign.case.rules.gears import halves_faults, hand_faults
 from rigdesign.rig.drivetrain import gear_inertia
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.tooth_influence import gear_model
@@ -117,6 +117,28 @@ def test_hands_that_contradict_each_other_through_an_idler_are_refused() -> None
     assert all(f"{HELICAL}.gears.{name}.helix_hand" in said for name in "pw")
     (direct,) = faults(p="right", i="right")
     assert (direct.path, direct.problem) == (f"{HELICAL}.gears.i.helix_hand", "is that of its partner p")
+
+
+def test_all_meshes_of_an_idler_have_its_body_alike() -> None:
+    """Its inertia is one number: that of one half and that of two do not fit together."""
+    box = load_case(CASES / "uhcf_prototype").gearboxes["reference"]
+    mesh, gear = box.meshes["main"], box.gears["pinion"]
+    gears = dict.fromkeys("piw", gear)
+
+    def faults(**changed: object) -> list[Fault]:
+        second = mesh.model_copy(update={"pinion": "i", "wheel": "w", **changed})
+        meshes = {"first": mesh.model_copy(update={"pinion": "p", "wheel": "i"}), "second": second}
+        return list(halves_faults(HELICAL, box.model_copy(update={"gears": gears, "meshes": meshes})))
+
+    assert not faults()
+    other = 3 - mesh.carrying_halves
+    (found,) = faults(carrying_halves=other)
+    assert (found.path, found.given) == (f"{HELICAL}.meshes.second.carrying_halves", str(other))
+    assert found.problem.startswith(f"gear i is in mesh first as well, where it is {mesh.carrying_halves}")
+    assert found.remedy.startswith(f"write {mesh.carrying_halves} in both meshes")
+    (single,) = faults(double_helical=False)
+    assert (single.path, single.given) == (f"{HELICAL}.meshes.second.double_helical", "false")
+    assert not list(halves_faults(HELICAL, box))
 
 
 def test_partners_of_one_hand_are_refused() -> None:

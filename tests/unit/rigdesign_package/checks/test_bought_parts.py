@@ -180,3 +180,28 @@ def test_what_the_schedule_commands_is_told_from_what_is_computed(
     part: str, quantity: str, stated: bool
 ) -> None:
     assert held(part, quantity).by_definition is stated
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"overload": "300 N m"}, "overload = 300 N m is below limit = 400 N m"),
+        (
+            {"part": "gearboxes.test", "overload": "600 N m"},
+            "overload = 600 N m is given of gearboxes.test: it counts for couplings and shafts only",
+        ),
+        (
+            {"part": "gearboxes.test.meshes.main", "overload": "600 N m"},
+            "is given of gearboxes.test.meshes.main",
+        ),
+        ({"quantity": "torque_mean", "overload": "600 N m"}, "overload = 600 N m is given of torque_mean"),
+        ({"given": "100 N m", "overload": "600 N m"}, "overload = 600 N m is given beside given = 100 N m"),
+    ],
+)
+def test_an_overload_that_no_check_would_hold_is_refused(values: dict[str, str], message: str) -> None:
+    case = load_case(PROTOTYPE)
+    at = "limits.bought_parts.torque_flange"
+    assert case.with_value(f"{at}.overload", "600 N m")
+    with pytest.raises(CaseError) as error:
+        case.with_values({f"{at}.{key}": value for key, value in values.items()})
+    assert message in str(error.value)

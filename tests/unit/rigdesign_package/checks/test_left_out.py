@@ -44,3 +44,15 @@ def test_axial_forces_of_single_helical_gears_are_named(double: bool, named: boo
     items = not_modelled(solved)
     assert any("axial force of main on the thrust faces" in item for item in items) == named
     assert any("gearboxes.*.meshes.*.phase" in item for item in items)
+
+
+@pytest.mark.parametrize("stated", [False, True])
+def test_bodies_of_one_half_are_named_where_no_inertia_is_stated(stated: bool) -> None:
+    at = "gearboxes.reference"
+    inertias = {
+        f"{at}.gears.{gear}.inertia": "1e-3 kg m2" if stated else None for gear in ("pinion", "wheel")
+    }
+    case = load_case(PROTOTYPE).with_values(inertias | {f"{at}.meshes.main.carrying_halves": 1})
+    solved: Any = SimpleNamespace(case=case, rig=build_rig(case, "quick"), run=object(), points=())
+    (item,) = (item for item in not_modelled(solved) if "one half of the double-helical" in item)
+    assert ("inertia and weight of pinion, wheel are those of one half" in item) == (not stated)

@@ -2,11 +2,14 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rigdesign.case.loader import load_case
+from rigdesign.coupling.alignment import coupled_ends, coupling_places
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.misalignment import reactions, standing_load, warm_misalignment
@@ -15,6 +18,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.elastic_rig import REFERENCE_STIFFNESS
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
+from thermal.expansion.alignment import ShaftAxis
 from thermal.expansion.expansion import expand
 
 COUPLING = "drivetrain.couplings.wheel_side"
@@ -106,3 +110,26 @@ def test_a_heated_housing_lifts_its_shafts_out_of_line() -> None:
         assert lift == pytest.approx(height * strain, rel=2e-3), coupling
         assert abs(found.angle[f"{coupling}.vertical"]) < 1e-6 * lift / np.ptp(points[:, 0])
     assert not any(warm_misalignment(own, {}).offset.values())
+
+
+def test_a_gearbox_that_stands_the_other_way_round_moves_its_shafts_as_turned_about_z() -> None:
+    """x and y of its housing change their sign in the rig, z does not: so do the lateral shift and the vertical slope;
+    the record of the alignment has the same."""
+    ends = {f"drivetrain.couplings.{name}.ends": ["end", "end"] for name in ("pinion_side", "wheel_side")}
+    values = {"drivetrain.torque_at": "reference.pinion"} | STIFF | ends
+    own = build_rig(load_case(CASES / "uhcf_prototype").with_values(values), "standard")
+    (place,) = (one for one in coupling_places(own) if one.name == "wheel_side")
+    turned = place.first if place.first.gearbox else place.second
+    assert own.axes[turned.shaft].direction == -1.0
+    axis = ShaftAxis(name=turned.shaft, at=turned.x - 0.1, offset=(1e-4, 2e-4), slope=(1e-3, 3e-3))
+    axes = {turned.shaft: axis, "test_pinion": replace(axis, name="test_pinion")}
+    shape: Any = SimpleNamespace(axes=axes)
+    found = warm_misalignment(own, {"test": shape})
+    side = 1.0 if turned is place.first else -1.0
+    assert side * found.offset["wheel_side.lateral"] == pytest.approx(-2e-4)
+    assert side * found.offset["wheel_side.vertical"] == pytest.approx(5e-4)
+    assert side * found.angle["wheel_side.lateral"] == pytest.approx(1e-3)
+    assert side * found.angle["wheel_side.vertical"] == pytest.approx(-3e-3)
+    record = coupled_ends(replace(place, offset=(0.0, 0.0)), {"test": axes})
+    assert record.offset == (found.offset["wheel_side.lateral"], found.offset["wheel_side.vertical"])
+    assert record.angle == (found.angle["wheel_side.lateral"], found.angle["wheel_side.vertical"])

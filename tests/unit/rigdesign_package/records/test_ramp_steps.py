@@ -1,6 +1,7 @@
 """The recommended ramp: what the start torque does, limits of the rig, what the reasons say."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
+from rigdesign.records import start_torque as module
 from rigdesign.records.ramp_steps import RampLimits, ramp_steps
 from rigdesign.records.resonance_bands import bands, safe_windows
 from rigdesign.records.speed_limits import SpeedLimit, speed_limit
@@ -51,6 +53,7 @@ def steps(
     start: StartResponse | None = None,
     limit: SpeedLimit | None = None,
     up: StagePeak | None = None,
+    own: Rig | None = None,
 ) -> dict[str, RampStep]:
     found = [peak(rpm) for rpm in peaks]
     avoided = bands(found)
@@ -67,7 +70,7 @@ def steps(
         run=run, bands=avoided, safe=safe_windows(avoided, 500.0 * RAD, high), near={rig().pinion_speed(TEST): near},
         limit=limit, start=start, up=up, down=None,
     )  # fmt: skip
-    return {step.action: step for step in ramp_steps(rig(), limits)}
+    return {step.action: step for step in ramp_steps(own or rig(), limits)}
 
 
 def test_the_torque_is_raised_at_the_transition_speed_where_contact_holds_there() -> None:
@@ -126,3 +129,40 @@ def test_part_of_the_torque_stays_below_the_test_torque_at_the_peaks_passed() ->
     assert "K_V up to 1.40" in found["raise the torque in part"].reason
     assert found["raise to the test torque"].torque == 180.0
     assert found["relieve and stop"].speed == 0.0
+
+
+def test_a_speed_raised_to_where_contact_holds_is_not_moved_back_to_where_it_parts() -> None:
+    """Flanks part at 725 to 775 rpm, so that the torque is raised at 800, in a band of 738 to 902: its lower end lies
+    where they part, its upper end is free, or is not where they part again up to 950."""
+    case = load_case(CASES / "uhcf_prototype").with_value("limits.ramp.transition_speed", None)
+    film_less = build_rig(case, "quick")
+    for own in (film_less, rig()):
+        found = steps([820.0], start=response([(725.0, 775.0)]), own=own)["run up"]
+        assert found.speed == pytest.approx(902.0 * RAD)
+        assert "moved from 800 rpm" in found.reason
+        again = steps([820.0], start=response([(725.0, 775.0), (900.0, 950.0)]), own=own)["run up"]
+        assert again.speed == pytest.approx(975.0 * RAD)
+
+
+def test_windows_without_the_speeds_at_which_flanks_part() -> None:
+    found = response([(725.0, 775.0), (825.0, 825.0), (1200.0, 1200.0)])
+    windows = found.held([(600.0 * RAD, 710.0 * RAD), (760.0 * RAD, 1400.0 * RAD)])
+    assert [(round(low / RAD, 3), round(high / RAD, 3)) for low, high in windows] == [
+        (600.0, 700.0), (850.0, 1175.0), (1200.0, 1400.0)
+    ]  # fmt: skip
+    assert found.holds_at(800.0 * RAD) and not found.holds_at(790.0 * RAD) and not found.holds_at(825.0 * RAD)
+
+
+def test_a_stage_that_relieves_while_it_turns_is_none_under_the_start_torque(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It ends under the start torque, but its resonances are passed under more."""
+    stage = SimpleNamespace(name="down", torque_start=180.0, torque_end=10.0, speed_start=TEST, speed_end=0.0)
+    monkeypatch.setattr(module, "start_torque", lambda rig: 10.0)
+    case: Any = SimpleNamespace(schedule=SimpleNamespace(resolved=lambda: (stage,)))
+    load = SimpleNamespace(stage="down", dynamic_factor=3.0, speed=TEST, least_share=0.5)
+    loads: Any = SimpleNamespace(
+        meshes={label: SimpleNamespace(stage_loads=[load]) for label in rig().mesh_labels.values()}
+    )
+    own = replace(rig(), case=case)
+    assert worst_start(own, loads, -1) is None

@@ -11,7 +11,7 @@ import pytest
 from rigdesign.checks.dwell_speeds import checks
 from rigdesign.records.contact_in_motion import pair_shares
 from rigdesign.records.dynamic_root import dynamic_root
-from rigdesign.records.near_dwell import near_dwell
+from rigdesign.records.near_dwell import near_dwells
 from rigdesign.records.spectra import held_spectra, waterfalls
 from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.dwell import DwellRecord
@@ -146,7 +146,8 @@ def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
     found = solved()
     limits = found.case.with_value("limits.dynamics.dangerous_force_share", 0.02)
     rig = replace(found.rig, case=limits)
-    near = near_dwell(rig, found.run, found.loads.modes, TEST_SPEED)
+    assert found.run is not None
+    (near,) = (one.nearest for one in near_dwells(rig, found.run).values())
     assert near.resonance is not None
     (check,) = checks(replace(found, rig=rig))
     vibration = loop_vibration(replace(found, rig=rig))

@@ -1,5 +1,6 @@
 """Torques of sections, joints and meshes of the settled prototype at quick fidelity, as one record."""
 
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -90,3 +91,15 @@ def test_few_speeds_are_chosen_with_every_peak_of_a_mesh() -> None:
     found = [point.speed for point in chosen(points, 11)]
     assert 37.0 in found and found[0] == 0.0 and found[-1] == 100.0 and found == sorted(found)
     assert chosen(points, 200) == points
+
+
+def test_held_torques_are_those_of_the_teeth_that_the_response_was_found_with() -> None:
+    """Teeth warmed anew on another mesh stand at another approach: temperatures count from them, torques do not."""
+    rig, point = base()
+    (model, *others) = point.last.models
+    moved = replace(model, law=model.law._replace(gap=model.law.gap + 5e-6))
+    warmed = replace(point, last=replace(point.last, models=(moved, *others)))
+    own = SolvedRig(rig=rig, points=(point,), run=made_run(rig, [point], None))
+    final = SolvedRig(rig=rig, points=(warmed,), run=made_run(rig, [point], None))
+    assert final.held_torques == own.held_torques
+    assert SolvedRig(rig=rig, points=(warmed,)).held_torques != own.held_torques

@@ -4,8 +4,10 @@ from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from rigdesign.records import torques_over_speed as module
 from rigdesign.records.torques_over_speed import torques_over_speed
 from rigdesign.results.section_torques import TorquePlace, TorqueSwing
 
@@ -66,3 +68,24 @@ def test_without_a_solver_the_curve_is_what_it_is() -> None:
 def test_no_points_give_no_curves() -> None:
     loop: Any = Loop()
     assert torques_over_speed(loop, [], None) == ((), ())
+
+
+def test_of_two_dwells_around_a_speed_the_nearer_gives_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """930 rad/s lies within a fifth of dwells at 800 and 1000 rad/s: its loop is that of 1000."""
+    asked: list[str] = []
+
+    def swings_of(system: str, *_: object) -> Any:
+        asked.append(system)
+        return SimpleNamespace(rows=None, over_period=lambda point, drags: np.zeros((0, 1)))
+
+    monkeypatch.setattr(module, "section_torques", swings_of)
+    monkeypatch.setattr(module, "twist_rows_of", lambda *_: None)
+    monkeypatch.setattr(module, "section_swings", lambda *_: ())
+    monkeypatch.setattr(module, "dwell_speeds", lambda rig: (800.0, 1000.0))
+    monkeypatch.setattr(module.LoopOverSpeed, "_laws", lambda self: ())
+    rig: Any = SimpleNamespace(pinion_speed=lambda speed: speed, mesh_names=())
+    states: Any = [SimpleNamespace(speed=speed, system=f"at {speed:.0f}") for speed in (800.0, 1000.0)]
+    loop = module.LoopOverSpeed(rig, SimpleNamespace(drags={}), states)  # type: ignore[arg-type]
+    for speed in (930.0, 830.0):
+        loop.swings(points([speed])[0])
+    assert asked == ["at 1000", "at 800"]

@@ -5,15 +5,17 @@ from dataclasses import replace
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.records.undamped import LIGHTLY, UNDAMPED, light_dwells, require_damping
-from rigdesign.results.loads import DynamicLoads, ModeCrossing
+from rigdesign.records.undamped import LIGHTLY, UNDAMPED, held_crossings, light_dwells, require_damping
+from rigdesign.results.loads import ModeCrossing
 from tests.builders.solved_loop import solved
 
 RPM = 3500.0 * 3.141592653589793 / 30.0
 
 
-def loads(damping: float, off: float = 0.0, *, excited: bool = True, kind: str = "mesh") -> DynamicLoads:
-    """Those of the loop with one crossing near its test speed."""
+def crossings(
+    damping: float, off: float = 0.0, *, excited: bool = True, kind: str = "mesh"
+) -> tuple[ModeCrossing, ...]:
+    """One of the loop near its test speed."""
     found = solved().loads
     assert found is not None
     crossing: ModeCrossing = replace(
@@ -25,17 +27,34 @@ def loads(damping: float, off: float = 0.0, *, excited: bool = True, kind: str =
         damping_ratio=damping,
         excited=excited,
     )
-    return replace(found, loop_crossings=(crossing,))
+    return (crossing,)
 
 
 def test_a_dwell_on_an_undamped_resonance_is_refused_with_mode_value_limit_and_remedy() -> None:
     with pytest.raises(CaseError) as error:
-        require_damping(solved().rig, loads(-0.0, 0.002))
+        require_damping(solved().rig, crossings(-0.0, 0.002))
     for part in (
         "stage test dwells at 3500 rpm", "order 2 of mesh test meets mode", "0.2 % away",
         "damping ratio is 0, limit 0.0001", "torsional_damping of splines",
     ):  # fmt: skip
         assert part in str(error.value)
+
+
+def test_a_mode_that_grows_is_no_resonance_without_damping() -> None:
+    """Its damping ratio keeps its sign, and more damping of the meshes is no remedy."""
+    with pytest.raises(CaseError) as error:
+        require_damping(solved().rig, (*crossings(0.0), *crossings(-0.012, 0.005)))
+    text = str(error.value)
+    assert "on a mode that grows by itself" in text and "damping ratio is -0.012" in text
+    assert "internal damping of shafts" in text and "damping of the meshes" not in text
+
+
+def test_crossings_before_the_dynamic_work_are_those_of_the_loads_up_to_the_highest_dwell() -> None:
+    found = solved()
+    assert found.run is not None and found.loads is not None
+    early = held_crossings(found.rig, found.run.test)
+    assert early and set(early) <= set(found.loads.loop_crossings)
+    assert max(one.speed for one in early) <= 1.02 * RPM
 
 
 @pytest.mark.parametrize(
@@ -50,12 +69,12 @@ def test_a_dwell_on_an_undamped_resonance_is_refused_with_mode_value_limit_and_r
 def test_a_little_damping_distance_or_a_mode_that_no_mesh_excites_is_no_fault(
     damping: float, off: float, excited: bool, kind: str
 ) -> None:
-    require_damping(solved().rig, loads(damping, off, excited=excited, kind=kind))
+    require_damping(solved().rig, crossings(damping, off, excited=excited, kind=kind))
 
 
 def test_next_to_no_damping_is_found_and_that_of_the_shipped_rig_is_not() -> None:
-    (found,) = light_dwells(solved().rig, loads(0.5 * LIGHTLY), LIGHTLY)
+    (found,) = light_dwells(solved().rig, crossings(0.5 * LIGHTLY), LIGHTLY)
     assert found.stage == "test" and found.distance == pytest.approx(0.0, abs=1e-12)
-    assert not list(light_dwells(solved().rig, loads(2.0 * LIGHTLY), LIGHTLY))
+    assert not list(light_dwells(solved().rig, crossings(2.0 * LIGHTLY), LIGHTLY))
     shipped = solved().loads
-    assert shipped is not None and not list(light_dwells(solved().rig, shipped, LIGHTLY))
+    assert shipped is not None and not list(light_dwells(solved().rig, shipped.loop_crossings, LIGHTLY))
