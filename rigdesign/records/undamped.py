@@ -1,4 +1,4 @@
-"""Dwells on a resonance that no damper reaches: they have no steady state that any result could be taken from."""
+"""Dwells on an undamped resonance: they have no steady state that any result could be taken from."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ and bearings is; its own material damps with 5e-4 and more."""
 ON = 0.01
 """Distance of a dwell from a resonance, as a share of its speed, up to which it stands on it."""
 REMEDY = (
-    "state the damping of what moves (damping of the meshes, torsional_damping of splines and couplings, of bearings), "
-    "or dwell elsewhere"
+    "state the damping of the parts that vibrate (damping of the meshes, torsional_damping of splines and "
+    "couplings, of bearings), or dwell elsewhere"
 )
 
 
@@ -37,7 +37,7 @@ class LightDwell:
         """What, where, how much against which limit."""
         one = self.crossing
         return (
-            f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on a resonance without damping: order "
+            f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on an undamped resonance: order "
             f"{one.harmonic} of mesh {one.order_of} meets mode {one.mode} ({one.shape}), {one.frequency:.4g} Hz, at "
             f"{one.speed * RPM:.1f} rpm, {100.0 * self.distance:.1f} % away; its damping ratio is "
             f"{abs(one.damping_ratio):.2g}, limit {limit:g}"
@@ -63,6 +63,6 @@ def require_damping(rig: Rig, loads: DynamicLoads) -> None:
     found = min(light_dwells(rig, loads, UNDAMPED), key=lambda one: one.distance, default=None)
     if found is not None:
         raise CaseError(
-            f"{found.text(UNDAMPED)}: no steady state exists, the torque grows until the flanks part; {REMEDY}",
+            f"{found.text(UNDAMPED)}: no steady state exists, the torque grows until contact is lost; {REMEDY}",
             str(rig.case.path),
         )
