@@ -173,7 +173,7 @@ def test_the_torque_flange_is_held_in_the_events_and_in_the_stages(rig: SolvedRi
     assert next(iter(overloads(higher))).limit == pytest.approx(600.0)
     with pytest.raises(Exception, match="overload is below limit"):
         rig.rig.case.with_values({"limits.bought_parts.torque_flange.overload": "300 N m"})
-    with pytest.raises(Exception, match="overload is given of another quantity"):
+    with pytest.raises(Exception, match="overload is given for a quantity other than torque_peak"):
         rig.rig.case.with_values({"limits.bought_parts.motor.overload": "300 N m"})
     quiet = replace(rig, events=())
     assert next(iter(overloads(quiet))).verdict == "not applicable"
