@@ -8,8 +8,8 @@ The same law from contact tables, for the march: ``contact_nodes`` sums the slic
 ``hold_path`` and ``hold_phase`` contract a flank at its place on the path (``knots``), ``press_rows`` sums what is
 held, ``table_reactions`` evaluates at given states. ``linear_step`` takes the modes over one step (``mode_pass``),
 ``held_flanks``, ``mesh_solve`` and ``meet_meshes`` the meshes, ``drag`` the drag torques, ``wrench`` tooth forces
-beside the ports, ``march`` joins them and ``march_accounts`` adds up their work; ``mesh_workspace`` is the state of the meshes
-that they share.
+beside the ports, ``march`` joins them and ``march_accounts`` adds up their work; ``mesh_workspace`` is the state of the
+meshes that they share.
 
 The disk cache of a compiled function is keyed by the content of its own file: a hash of all sources in each file that
 takes from another goes with it (``tests/unit/dynamics_package/kernels/test_kernel_cache.py`` says what to write).

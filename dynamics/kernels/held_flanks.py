@@ -34,7 +34,7 @@ from dynamics.kernels.mesh_workspace import (
     UPPER,
 )
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import sliding_direction
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -23,7 +23,7 @@ from dynamics.kernels.looped_contact import (
     press_phase,
 )
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
@@ -53,6 +53,8 @@ class LoopedMesh(NamedTuple):
     back_phase: float
     damp_time: float
     """Damping of the mesh over its stiffness [s]."""
+    halves: float
+    """Equal contacts side by side, of which the table holds one [-]."""
     friction: float
     reversal_speed: float
     mean_force: float
@@ -97,6 +99,8 @@ class LoopedState(NamedTuple):
     """(3, n_rows) of the last instants, latest first."""
     work: Array
     """(3,) work of the meshes on the drivetrain, of friction and of dampers [J]."""
+    power: Array
+    """(3,) the powers of the last instant [W]; NaN before the first step."""
 
 
 @njit(cache=True)
@@ -146,18 +150,19 @@ def _look(
         damped_moment = mesh.damp_time * (found.by_tilt * rate + found.tilting * swing)
         if found.force + damped < 0.0:
             damped, damped_moment = -found.force, -found.moment
-        moment = found.moment + damped_moment - (mesh.mean_moment if carries else 0.0)
-        answer[first] = -(found.force + damped)
+        halves, friction = mesh.halves, mesh.halves * mesh.friction
+        moment = halves * (found.moment + damped_moment) - (mesh.mean_moment if carries else 0.0)
+        answer[first] = -halves * (found.force + damped)
         answer[first + 1] = -mirrored * moment
-        answer[SLIDE] -= mesh.friction * found.rubbed
-        answer[TURN_1] -= side * (mesh.base_radius_1 * found.per_path + mesh.friction * found.lever_1)
-        answer[TURN_2] += side * mesh.friction * found.lever_2
-        stiff[flank, 0], stiff[flank, 1] = found.stiffness, mirrored * found.by_tilt
-        stiff[flank, 2], stiff[flank, 3] = found.tilting, found.force
-        shares[0] += found.energy
-        shares[1] += mesh.friction * (found.lever_1 * omega_1 - found.lever_2 * omega_2)
-        shares[1] += mesh.friction * found.rubbed * speeds[SLIDE]
-        shares[2] += damped * rate + damped_moment * swing
+        answer[SLIDE] -= friction * found.rubbed
+        answer[TURN_1] -= side * (halves * mesh.base_radius_1 * found.per_path + friction * found.lever_1)
+        answer[TURN_2] += side * friction * found.lever_2
+        stiff[flank, 0], stiff[flank, 1] = halves * found.stiffness, halves * mirrored * found.by_tilt
+        stiff[flank, 2], stiff[flank, 3] = halves * found.tilting, halves * found.force
+        shares[0] += halves * found.energy
+        shares[1] += friction * (found.lever_1 * omega_1 - found.lever_2 * omega_2)
+        shares[1] += friction * found.rubbed * speeds[SLIDE]
+        shares[2] += halves * (damped * rate + damped_moment * swing)
     return ended
 
 
@@ -241,7 +246,10 @@ def looped_march(
     meshes: tuple[LoopedMesh, ...], tables: tuple[PhaseTable, ...], modes: HeldModes, state: LoopedState, step: float,
     record: Array,
 ) -> int:  # fmt: skip
-    """March ``record.shape[2]`` steps; ``record`` (n_meshes, N_RECORD, n_steps). Return how many did not converge."""
+    """March ``record.shape[2]`` steps; ``record`` (n_meshes, N_RECORD, n_steps). Return how many did not converge.
+
+    A motion that leaves the finite numbers ends the march; the record is NaN from there on.
+    """
     n_meshes, n_rows = len(meshes), len(state.motion)
     works = [(contact_work(tables[m]), contact_work(tables[m])) for m in range(n_meshes)]
     gaps = [np.zeros(tables[m].gap.shape[2]) for m in range(n_meshes)]
@@ -250,7 +258,7 @@ def looped_march(
     stiff, shares = np.zeros((n_meshes, 2, 4)), np.zeros((n_meshes, 3))
     old, new = np.ascontiguousarray(modes.given[:, :n_rows]), np.ascontiguousarray(modes.given[:, n_rows:])
     unconverged = 0
-    power, before = np.zeros(3), np.full(3, np.nan)
+    power = np.zeros(3)
     for now in range(record.shape[2]):
         last = state.forces[0]
         led = modes.seen @ state.modes + old @ last + modes.given_constant
@@ -259,6 +267,9 @@ def looped_march(
         converged, looks = False, 0
         while not converged and looks < MOST_LOOKS:
             moved = led + new @ force
+            if not np.all(np.isfinite(moved)):
+                record[:, :, now:] = np.nan
+                return unconverged
             converged = True
             for m in range(n_meshes):
                 rows = slice(N_ROWS * m, N_ROWS * (m + 1))
@@ -291,8 +302,8 @@ def looped_march(
         power[0] = np.dot(force, moved[n_rows:])
         power[1], power[2] = np.sum(shares[:, 1]), np.sum(shares[:, 2])
         for i in range(3):
-            state.work[i] += 0.0 if math.isnan(before[i]) else 0.5 * step * (before[i] + power[i])
-            before[i] = power[i]
+            state.work[i] += 0.0 if math.isnan(state.power[i]) else 0.5 * step * (state.power[i] + power[i])
+            state.power[i] = power[i]
         _keep(meshes, force, moved, shares, record, now)
         state.motion[:] = moved[:n_rows]
         state.forces[2], state.forces[1] = state.forces[1], state.forces[0]

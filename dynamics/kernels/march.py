@@ -79,7 +79,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 8
 """Numbers in a vector."""

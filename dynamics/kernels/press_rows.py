@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 
 

@@ -39,7 +39,7 @@ from dynamics.kernels.mesh_workspace import (
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import dot_modes, push_modes
 
-# compiled from sources aff6da86
+# compiled from sources 65b043e7
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -151,7 +151,7 @@ def wrench_motion(
         total += wrench.by_torque[1, port, row] * space[at + TAU]
     for d in range(forces.shape[0]):
         total += wrench.by_force[d, row] * forces[d]
-    return total
+    return float(total)
 
 
 @inlined
@@ -238,4 +238,4 @@ def rubbed_beside(
     power += torque_2 * wrench_motion(wrench, blocks, bank, space, forces, 2 * m + 1)
     if across != 0.0:
         power += across * wrench_motion(wrench, blocks, bank, space, forces, 2 * n_meshes + m)
-    return -power
+    return float(-power)

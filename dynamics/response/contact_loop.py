@@ -54,14 +54,16 @@ TILTS = (1, 6)
 class MeshInLoop:
     """A mesh whose contact is solved in the loop.
 
-    contact : the flanks that carry, all teeth alike
+    contact : the flanks that carry, all teeth alike; of one half of a double-helical mesh
     law : radii, phase, backlash, damping, friction and deviations of single teeth are taken from it
-    force : mean transverse mesh force, positive on the front flanks [N]
+    force : mean transverse mesh force of all halves, positive on the front flanks [N]
+    halves : equal contacts that share it, taken at the middle of the mesh
     """
 
     contact: LoadedMesh
     law: MeshLaw
     force: float
+    halves: int = 1
 
     def __post_init__(self) -> None:
         if not abs(self.force) > 0.0:
@@ -70,12 +72,13 @@ class MeshInLoop:
             )
 
     def table(self, phases: int = PHASES) -> tuple[PhaseTable, float]:
-        """Points over the phase, and the mean moment of the mesh force over the face [N m]."""
-        cycle = self.contact.cycle(abs(self.force))
+        """Points of a half over the phase, and the mean moment of the mesh force over the face [N m]."""
+        own = abs(self.force) / self.halves
+        cycle = self.contact.cycle(own)
         reach = max(REACH * float(cycle.approach.max()), LEAST_REACH)
         load = cycle.points.weight * cycle.force
         moment = float((load * self.contact.grid.position).sum(axis=(1, 2)).mean())
-        return phase_table(self.contact, abs(self.force), reach, phases), moment
+        return phase_table(self.contact, own, reach, phases), self.halves * moment
 
     def numbers(self, mean_moment: float) -> LoopedMesh:
         """What the kernel asks."""
@@ -85,7 +88,7 @@ class MeshInLoop:
             base_radius_1=law.base_radius_1, base_radius_2=law.base_radius_2, offset=law.offset, backlash=law.backlash,
             phase=law.phase, back_phase=law.back_phase, damp_time=law.damping / law.mean_stiffness,
             friction=law.friction, reversal_speed=max(law.friction_reversal_speed, 1e-9), mean_force=abs(self.force),
-            mean_moment=mean_moment, side=side, deviations_1=first, deviations_2=second,
+            halves=float(self.halves), mean_moment=mean_moment, side=side, deviations_1=first, deviations_2=second,
         )  # fmt: skip
 
     def _deviations(self, side: float) -> tuple[Array, Array]:
@@ -184,6 +187,7 @@ class ContactLoop:
             motion=motion,
             forces=np.tile(forces, (3, 1)),
             work=np.zeros(3),
+            power=np.full(3, np.nan),
         )
 
     @property

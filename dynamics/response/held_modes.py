@@ -1,10 +1,9 @@
-"""Modes of a drivetrain over one step, under forces on some of its rows that are held over it.
+"""Modes of a drivetrain over one step, under forces on some of its rows that are linear in it.
 
-The modes of the linear part are taken over the step exactly, forces as `dynamics.response.step_hold` holds them; modes
-above a cutoff follow their forces at once and with their delay (`dynamics.kernels.looped_march`).
+The modes of the linear part are taken over the step exactly; those above a cutoff follow their forces at once and with
+their delay (`dynamics.kernels.looped_march`). The straight line is the hold here: the speeds at the ends of a step are
+then exactly those of its forces, so that their power closes the books of the contact.
 """
-
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import ModalForm
 from dynamics.kernels.looped_march import HeldModes
-from dynamics.response.step_hold import HeldInput, numerov, phi
+from dynamics.response.step_hold import phi, straight_line
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -24,19 +23,11 @@ SLOW = 1.0
 class ModesOverStep:
     """Complex modes, one of each conjugate pair, and what forces on the rows do to them and to the rows in one step."""
 
-    def __init__(
-        self,
-        form: ModalForm,
-        rows: Array,
-        step: float,
-        cutoff: float,
-        hold: Callable[[Complex], HeldInput] = numerov,
-    ) -> None:
+    def __init__(self, form: ModalForm, rows: Array, step: float, cutoff: float) -> None:
         """Prepare.
 
         rows : (n_rows, n) on the freedoms of the form; step : [s]
         cutoff : modes above this frequency [Hz] are not marched
-        hold : weights of the forces at the end of a step, by poles times step
         """
         upper = form.poles.imag >= 0.0
         poles = form.poles[upper]
@@ -44,7 +35,7 @@ class ModesOverStep:
         self._loads, self._poles, self._seen, self._step = form.loads[upper], poles, seen, step
         self._kept = kept = np.abs(poles) <= 2.0 * np.pi * cutoff
         scaled = poles[kept] * step
-        self._phi_1, self._phi_2, self._hold = phi(1, scaled), phi(2, scaled), hold(scaled)
+        self._phi_1, self._phi_2, self._hold = phi(1, scaled), phi(2, scaled), straight_line(scaled)
         self._decay = np.exp(scaled)
         pushed = self._loads @ rows.T
         old, new = self._pushes(pushed[kept])

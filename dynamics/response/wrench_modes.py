@@ -1,5 +1,7 @@
 """Tables of the tooth forces beside the ports for the compiled march (``dynamics.kernels.wrench``)."""
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,7 @@ from dynamics.response.step_hold import phi, straight_line
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+Scalar = TypeVar("Scalar", np.float64, np.complex128)
 
 
 def n_friction_rows(model: ModalModel) -> int:
@@ -18,7 +21,7 @@ def n_friction_rows(model: ModalModel) -> int:
     return -(-2 * len(model.wrench_numbers) // FOUR) * FOUR
 
 
-def wrench_columns(model: ModalModel, table: NDArray[np.generic]) -> NDArray[np.generic]:
+def wrench_columns(model: ModalModel, table: NDArray[Scalar]) -> NDArray[Scalar]:
     """Columns of a table (..., n_inputs) for the forces beside the ports, in the order of the march (..., n)."""
     n_meshes = len(model.wrench_numbers)
     own = table[..., table.shape[-1] - 3 * n_meshes :]

@@ -1,6 +1,6 @@
 """Which assumed inputs a check depends on: those its family declares (`registry.RuleFamily`) and its own limit."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from rigdesign.case.model import Case
@@ -13,26 +13,46 @@ def with_assumptions(case: Case, check: Check) -> Check:
     """The check with the paths of the assumed inputs it depends on; none where it does not apply."""
     if check.verdict == "not applicable":
         return check
-    found = tuple(record.path for record in case.assumptions if depends(case, check, record.path))
+    basis = _Basis.of(case, check)
+    found = tuple(record.path for record in case.assumptions if basis.holds(record.path))
     return replace(check, assumptions=found)
 
 
 def depends(case: Case, check: Check, path: str) -> bool:
     """Whether the value or limit of a check depends on an input."""
-    if any(is_under(path, part) for part in MOVE_NO_CHECK):
-        return False
-    group, _, name = check.id.partition(".")
-    own = [
-        *PATH.findall(check.source),
-        *([f"limits.bought_parts.{name}"] if group.startswith("bought_part") else []),
-    ]
-    if any(is_under(path, part) for part in own):
-        return True
-    family = REGISTRY.family_of(case, check)
-    if family.only_inputs is not None:
-        return any(is_under(path, part) for part in family.only_inputs)
-    influences = influences_of(case, path)
-    return influences is None or any(_moves(influence, family, check, path) for influence in influences)
+    return _Basis.of(case, check).holds(path)
+
+
+@dataclass(frozen=True)
+class _Basis:
+    """What a check depends on in a case: its family, and the inputs it names itself."""
+
+    check: Check
+    family: RuleFamily
+    own: tuple[str, ...]
+    kind: "_CaseKind"
+
+    @classmethod
+    def of(cls, case: Case, check: Check) -> "_Basis":
+        group, _, name = check.id.partition(".")
+        own = [
+            *PATH.findall(check.source),
+            *([f"limits.bought_parts.{name}"] if group.startswith("bought_part") else []),
+        ]
+        return cls(check, REGISTRY.family_of(case, check), tuple(own), _CaseKind.of(case))
+
+    def holds(self, path: str) -> bool:
+        """Whether an input is part of it."""
+        if any(is_under(path, part) for part in MOVE_NO_CHECK):
+            return False
+        if any(is_under(path, part) for part in self.own):
+            return True
+        if self.family.only_inputs is not None:
+            return any(is_under(path, part) for part in self.family.only_inputs)
+        influences = _influences(self.kind, path)
+        return influences is None or any(
+            _moves(influence, self.family, self.check, path) for influence in influences
+        )
 
 
 def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) -> bool:
@@ -46,41 +66,69 @@ def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) ->
 
 def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
     """What an input moves; None for all checks."""
-    if any(is_under(path, part) for part in MOVE_NO_CHECK):
-        return ()
-    for inputs, influences in INPUTS.items():
-        for part in inputs:
-            if any(is_under(path, one) for one in _filled(case, part)):
-                return influences
-    return None
+    return _influences(_CaseKind.of(case), path)
 
 
-def _filled(case: Case, part: str) -> list[str]:
-    """Paths that an entry of `INPUTS` means in a case."""
-    if "{dry}" in part:
-        wet = any(machine.coolant in case.oil_circuits for machine in case.rig_heat.machines.values())
-        return [] if wet else [part.replace("{dry}", "")]
-    if "{torsional}" in part:
-        bends = case.drivetrain is not None and case.drivetrain.shaft_model == "elastic"
-        return [] if bends else _filled(case, part.replace("{torsional}", ""))
-    if "{film}" in part:
-        return [part.replace("{film}", name) for name in _computed_films(case)]
-    if "{bare}" in part:
-        return [part.replace("{bare}", name) for name, box in case.gearboxes.items() if box.housing is None]
-    return [part]
+@dataclass(frozen=True)
+class _CaseKind:
+    """What entries of `INPUTS` ask of a case.
+
+    wet : a machine is cooled by an oil circuit; bends : the shafts do
+    films : plain bearings whose lateral coefficients the case does not take as stated, as ``gearbox.bearings.name``
+    bare : gearboxes without a housing
+    """
+
+    wet: bool
+    bends: bool
+    films: tuple[str, ...]
+    bare: tuple[str, ...]
+
+    @classmethod
+    def of(cls, case: Case) -> "_CaseKind":
+        train = case.drivetrain
+        bends = train is not None and train.shaft_model == "elastic"
+        return cls(
+            wet=any(machine.coolant in case.oil_circuits for machine in case.rig_heat.machines.values()),
+            bends=bends,
+            films=()
+            if bends and train is not None and train.bearing_coefficients == "stated"
+            else _films(case),
+            bare=tuple(name for name, box in case.gearboxes.items() if box.housing is None),
+        )
+
+    def filled(self, part: str) -> list[str]:
+        """Paths that an entry of `INPUTS` means in the case."""
+        if "{dry}" in part:
+            return [] if self.wet else [part.replace("{dry}", "")]
+        if "{torsional}" in part:
+            return [] if self.bends else self.filled(part.replace("{torsional}", ""))
+        if "{film}" in part:
+            return [part.replace("{film}", name) for name in self.films]
+        if "{bare}" in part:
+            return [part.replace("{bare}", name) for name in self.bare]
+        return [part]
 
 
-def _computed_films(case: Case) -> list[str]:
-    """Plain bearings whose lateral coefficients the case does not take as stated, as ``gearbox.bearings.name``."""
-    train = case.drivetrain
-    if train is not None and train.shaft_model == "elastic" and train.bearing_coefficients == "stated":
-        return []
-    return [
+def _films(case: Case) -> tuple[str, ...]:
+    """Plain bearings that carry on a film."""
+    return tuple(
         f"{box_name}.bearings.{name}"
         for box_name, box in case.gearboxes.items()
         for name, bearing in box.bearings.items()
         if bearing.has_film
-    ]
+    )
+
+
+@lru_cache(maxsize=1 << 13)
+def _influences(kind: _CaseKind, path: str) -> tuple[Influence, ...] | None:
+    """What an input moves in a case of this kind; None for all checks."""
+    if any(is_under(path, part) for part in MOVE_NO_CHECK):
+        return ()
+    for inputs, influences in INPUTS.items():
+        for part in inputs:
+            if any(is_under(path, one) for one in kind.filled(part)):
+                return influences
+    return None
 
 
 @lru_cache(maxsize=1 << 16)

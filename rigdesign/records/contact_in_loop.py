@@ -17,7 +17,7 @@ from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.elastic_rig.wrench_rows import wrench_rows
-from dynamics.errors import DynamicsNotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.contact_loop import MeshInLoop
@@ -33,7 +33,8 @@ from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import drags_at
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import held_contact
-from rigdesign.results.contact_in_loop import LoopedContact
+from rigdesign.results.contact_in_loop import ContactInLoop, LoopedContact
+from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
@@ -56,6 +57,12 @@ class _Place:
     speed: float
     peaks: tuple[int, ...] = ()
 
+    @property
+    def name(self) -> str:
+        """In messages."""
+        where = f"stage {self.stage}" if self.stage else "the highest K_V over speed"
+        return f"{where}, {self.speed * RPM:.0f} rpm"
+
 
 @dataclass(frozen=True)
 class _Both:
@@ -65,22 +72,22 @@ class _Both:
     in_loop: LoopedResponse
 
 
-def contact_in_loop(rig: Rig, run: DynamicRun) -> tuple[LoopedContact, ...]:
-    """Of every mesh at every place; empty below fidelity reference, for analytic teeth and shafts that only twist.
-
-    A place at which one of the models finds no response is left out.
-    """
+def contact_in_loop(rig: Rig, run: DynamicRun) -> ContactInLoop:
+    """Of every mesh at every place; empty below fidelity reference, for analytic teeth and shafts that only twist."""
     if (
         rig.fidelity != "reference"
         or rig.mesh_stiffness != "influence_numbers"
         or rig.shaft_model == "torsional"
     ):
-        return ()
+        return ContactInLoop()
     places = _places(rig, run)
     with BackgroundTasks([partial(_both, rig, place) for place in places]) as tasks:
-        found = tasks.results()
-    return tuple(
-        row for place, both in zip(places, found, strict=True) if both for row in _rows(rig, place, both)
+        found = list(zip(places, tasks.results(), strict=True))
+    return ContactInLoop(
+        meshes=tuple(
+            row for place, both in found if isinstance(both, _Both) for row in _rows(rig, place, both)
+        ),
+        missing=tuple(f"{place.name}: {both}" for place, both in found if isinstance(both, str)),
     )
 
 
@@ -103,11 +110,11 @@ def _same(place: _Place, speed: float, run: DynamicRun) -> bool:
     return place.held is run.test and abs(speed - place.speed) <= SAME_SPEED * max(speed, place.speed)
 
 
-def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoint, LoopedProblem] | None:
+def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoint, LoopedProblem]:
     """The response on contact tables at a stated speed [rad/s], gears as warm as at the held point, and what the march
     with the contact in the loop starts from: the same matrices, drag torques and bracing twist.
 
-    None where there is no response.
+    Raises DynamicsNotConverged where there is no response, DynamicsInputError where a mesh carries no torque.
     """
     last, state = held.last, held.last.coupling_state
     point = replace(held.point, speed=speed)
@@ -123,7 +130,7 @@ def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoi
         settings=SweepSettings(cutoff=rig.highest_mode),
     )
     if not curve.points:
-        return None
+        raise DynamicsNotConverged(f"no response on contact tables: {curve.failed[0][1]}")
     (by_table,) = curve.points
     rows = np.vstack([wrench_rows(rig.elastic.model, name) for name in rig.mesh_names])
     return by_table, LoopedProblem(
@@ -138,22 +145,25 @@ def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoi
     )
 
 
-def _both(rig: Rig, place: _Place) -> _Both | None:
+def _both(rig: Rig, place: _Place) -> _Both | str:
+    """Both responses, or why there are none."""
     try:
-        found = problem_in_loop(rig, place.held, place.speed)
-        return None if found is None else _Both(found[0], looped_response(found[1]))
-    except DynamicsNotConverged:
-        return None
+        by_table, problem = problem_in_loop(rig, place.held, place.speed)
+        return _Both(by_table, looped_response(problem))
+    except (DynamicsNotConverged, DynamicsInputError) as error:
+        return str(error)
 
 
 def _meshes(rig: Rig, held: PointResult, laws: list[MeshLaw], flank: Array) -> list[MeshInLoop]:
     found = []
     for number, law in enumerate(laws):
-        contact = held_contact(rig, held, number)
-        assert contact is not None
-        found.append(
-            MeshInLoop(contact=_coarser(contact.mesh), law=law, force=float(flank[number]) * contact.force)
-        )
+        contact, halves = held_contact(rig, held, number), held.last.models[number].halves
+        if contact is None:
+            raise DynamicsInputError(
+                f"mesh {rig.mesh_names[number]} carries no torque: there is no contact to solve"
+            )
+        force = float(flank[number]) * halves * contact.force
+        found.append(MeshInLoop(contact=_coarser(contact.mesh), law=law, force=force, halves=halves))
     return found
 
 
@@ -172,6 +182,7 @@ def _rows(rig: Rig, place: _Place, both: _Both) -> Iterator[LoopedContact]:
             mesh=rig.mesh_labels[name],
             stage=place.stage,
             peak=mesh in place.peaks,
+            stated=(place.speed, place.held.point.torque),
             speed=rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, place.speed),
             torque=float(loop.mean_force[mesh]) * place.held.last.models[mesh].pair.base_radii[0],
             dynamic_factor=float(loop.dynamic_factor[mesh]),

@@ -77,7 +77,7 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         campbell=campbell_row(vibration.campbell),
         section_torques=section_torque_rows(vibration.torques),
         dwell=dwell_row(vibration.dwell),
-        contact_in_loop=[contact_in_loop_row(found) for found in solved.contact_in_loop],
+        contact_in_loop=[contact_in_loop_row(found) for found in solved.contact_in_loop.meshes],
         press_fits=[press_fit_row(found) for found in solved.press_fits],
         splines=[spline_stress_row(found) for found in solved.splines],
         contact_loss_maps=[contact_loss_row(found) for found in vibration.maps],

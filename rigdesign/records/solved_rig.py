@@ -1,7 +1,7 @@
 """The solved rig: the case, the solved points and their SI records. Checks and rows of the result read nothing else."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from rigdesign.base.finite import finite
@@ -17,7 +17,7 @@ from rigdesign.records.press_fits import press_fits
 from rigdesign.records.spline_capacity import spline_stresses
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
-from rigdesign.results.contact_in_loop import LoopedContact
+from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.events import EventRecord
 from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
@@ -51,8 +51,7 @@ class SolvedRig:
     """None where no thermal history was asked for."""
     events: Sequence[EventRecord] = ()
     """Of a rig with a drivetrain."""
-    contact_in_loop: Sequence[LoopedContact] = ()
-    """At fidelity reference."""
+    contact_in_loop: ContactInLoop = field(default_factory=ContactInLoop)
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
 

@@ -4,6 +4,15 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
+class ContactInLoop:
+    """At fidelity reference, of all places; empty below it, for analytic teeth and shafts that only twist."""
+
+    meshes: tuple["LoopedContact", ...] = ()
+    missing: tuple[str, ...] = ()
+    """Places without a comparison, each with its reason."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class LoopedContact:
     """One mesh at a held stage or at the peak of its K_V over speed; all teeth alike, no loads once a turn.
 
@@ -15,6 +24,8 @@ class LoopedContact:
     """Empty for a peak of K_V over speed."""
     peak: bool
     """Whether it is the highest K_V of this mesh over speed."""
+    stated: tuple[float, float]
+    """Speed [rad/s] and torque [N m] as the schedule states them."""
     speed: float
     torque: float
     dynamic_factor: float

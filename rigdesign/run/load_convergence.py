@@ -7,7 +7,8 @@ least as fast, for static shapes stand for those left out: a third of the change
 `rig.resolution` decide; slices or elements that the case states may be too few for any order: there the whole change
 counts. Peaks and least torques of the time run take the error of the periodic response at the speed and torque at which
 they occur: the run itself is not marched again. At fidelity reference the difference to the contact solved in the loop
-(`rigdesign.records.contact_in_loop`) is added whole, of its places that with the nearest speed.
+(`rigdesign.records.contact_in_loop`) is added in full, taken at the place with the
+nearest speed and torque.
 Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123.
 """
 
@@ -185,11 +186,15 @@ def _row(solved: SolvedRig, wanted: _Wanted, responses: tuple[CurvePoint, ...]) 
 
 
 def _looped(solved: SolvedRig, wanted: _Wanted) -> LoopedContact | None:
-    """The contact in the loop at the speed next to that of a check; None below fidelity reference."""
-    own = [looped for looped in solved.contact_in_loop if looped.mesh == solved.label(wanted.mesh)]
-    shaft = solved.rig.mesh_gear(wanted.mesh, 0).shaft
-    speed = solved.rig.shaft_speed(shaft, wanted.loaded.point.speed)
-    return min(own, key=lambda looped: abs(math.log(looped.speed / speed)), default=None)
+    """The contact in the loop at the speed and torque next to those of a check; None below fidelity reference."""
+    own = [looped for looped in solved.contact_in_loop.meshes if looped.mesh == solved.label(wanted.mesh)]
+    point = wanted.loaded.point
+
+    def distance(looped: LoopedContact) -> float:
+        speed, torque = looped.stated
+        return abs(math.log(speed / point.speed)) + abs(math.log(abs(torque / point.torque)))
+
+    return min(own, key=distance, default=None)
 
 
 def _left_out(wanted: _Wanted, looped: LoopedContact) -> float:

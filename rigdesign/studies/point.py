@@ -1,6 +1,7 @@
 """One point of a study in a worker: the case with its values, computed, and what is kept of it."""
 
 import pickle
+import sys
 import threading
 import traceback
 from collections.abc import Callable, Mapping
@@ -8,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, Protocol
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from rigdesign.base.errors import MissingLibraryError, RigdesignError
 from rigdesign.base.fidelity import Fidelity
@@ -84,7 +85,7 @@ def compute_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
 
 def _computed(changes: Mapping[str, str], setup: bytes) -> PointOutcome:
     try:
-        with _ONE_POINT, one_core(), threadpool_limits(limits=1):
+        with _ONE_POINT, one_core(), _libraries(len(sys.modules)).limit(limits=1):
             case, fidelity, run = _unpacked(setup)
             return PointOutcome("done", record_of(run(case.with_values(changes), fidelity=fidelity)))
     except MissingLibraryError as error:
@@ -97,6 +98,12 @@ def _computed(changes: Mapping[str, str], setup: bytes) -> PointOutcome:
         return PointOutcome(
             "defect", {"error": f"{type(error).__name__}: {error}", "traceback": traceback.format_exc()}
         )
+
+
+@lru_cache(maxsize=1)
+def _libraries(modules: int) -> ThreadpoolController:
+    """Libraries with threads in this process; looked for again where more Python modules are loaded than before."""
+    return ThreadpoolController()
 
 
 @lru_cache(maxsize=1)

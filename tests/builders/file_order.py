@@ -15,8 +15,24 @@ LONGEST = (
     "regression/test_cases.py",
     "verification/test_rolling_bearing_rig.py",
     "regression/test_frozen_sets.py",
+    "unit/rigdesign_package/studies/test_study.py",
+    "unit/rigdesign_package/studies/test_cluster.py",
+    "regression/test_readme_recipe.py",
+    "verification/test_coupling_arrows.py",
+    "regression/test_readme.py",
+    "unit/rigdesign_package/run/test_transient_run.py",
+    "unit/rigdesign_package/uncertainty/test_ranges_solve.py",
+    "regression/test_tutorial.py",
+    "unit/rigdesign_package/studies/test_study_command.py",
+    "verification/test_ranges_plan.py",
+    "verification/test_mesh_errors.py",
+    "unit/rigdesign_package/prediction/test_predictor.py",
+    "verification/test_contact_in_the_loop.py",
+    "unit/rigdesign_package/run/test_step_case.py",
+    "verification/test_seat_condensation.py",
+    "unit/rigdesign_package/validation/test_validation.py",
 )
-"""Files of the tests folder, those that take longest first."""
+"""Files of the tests folder that take more than 20 s of a processor, the longest first but for the second."""
 
 
 def longest_first(items: list[pytest.Item]) -> None:

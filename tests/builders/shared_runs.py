@@ -20,7 +20,7 @@ from rigdesign.base.cache_folder import cache_folder
 from rigdesign.reanalysis.flips import with_flips
 from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.contact_in_loop import LoopedContact
+from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
@@ -72,7 +72,7 @@ class ShippedRun:
     """A shipped case as `rigdesign check` computes it, and what fidelity reference adds to its loads."""
 
     result: RunResult
-    contact_in_loop: tuple[LoopedContact, ...]
+    contact_in_loop: ContactInLoop
 
 
 def shipped_run(name: str) -> RunResult:
@@ -87,16 +87,16 @@ def shipped(name: str) -> ShippedRun:
 
 def _shipped(name: str) -> ShippedRun:
     expected = json.loads((CASES / name / "expected.json").read_text(encoding="utf-8"))
-    looped: list[LoopedContact] = []
+    looped = [ContactInLoop()]
 
     def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
         if solved.run is not None and solved.rig.fidelity == "standard":
-            looped.extend(contact_in_loop(replace(solved.rig, fidelity="reference"), solved.run))
+            looped.append(contact_in_loop(replace(solved.rig, fidelity="reference"), solved.run))
         return result
 
     follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}
     result = run_case(load_case(CASES / name), expected["fidelity"], follow_ups=follow_ups)
-    return ShippedRun(result, tuple(looped))
+    return ShippedRun(result, looped[-1])
 
 
 def quick_run(name: str, file: str = "case.toml") -> RunResult:

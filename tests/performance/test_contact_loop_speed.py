@@ -36,9 +36,7 @@ def test_contact_in_the_loop_of_the_prototype(
 ) -> None:
     monkeypatch.setattr(contact_in_loop, "FEWER_POSITIONS", fewer)
     rig, point = solved
-    found = contact_in_loop.problem_in_loop(rig, point, point.point.speed)
-    assert found is not None
-    by_table, problem = found
+    by_table, problem = contact_in_loop.problem_in_loop(rig, point, point.point.speed)
     looped_response(problem, longest=0.0)  # compiles
     before = process_time()
     looped = looped_response(problem)

@@ -45,4 +45,6 @@ def test_unbalance_is_left_out_of_the_periodic_response_alone() -> None:
 def test_couplings_out_of_line_lack_their_alternating_forces_alone() -> None:
     assert not any("misaligned couplings" in item for item in items())
     bent = items(drivetrain__couplings__pinion_side__cold_offset_lateral="0.1 mm")
-    assert any("alternating forces of misaligned couplings" in item and "constant force" in item for item in bent)
+    assert any(
+        "alternating forces of misaligned couplings" in item and "constant force" in item for item in bent
+    )
