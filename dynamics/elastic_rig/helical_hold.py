@@ -1,10 +1,10 @@
-"""Do helical meshes hold what floats along x? One that stands alone between two shafts never does.
+"""Axial restraint of floating shafts by helical meshes.
 
-A helical mesh ties a shift to a rotation: under load a floating shaft screws along its partner until the flanks no
-longer press. What holds it must resist the shift while the torque of the loop is given, that is with the bracing
-coupling free to turn. Then shafts joined by two meshes of different lead (a pair of opposite hands side by side) are
-held; a helical and a spur gear at the two ends of a shaft are not: position and twist go together, and no force along x
-balances that of the helical teeth.
+A single-helical mesh alone gives none: it ties axial motion to rotation, so that under load a floating shaft moves
+axially as it turns until the flanks lose contact. A restraint must resist the shift while the torque of the loop is
+given, that is with the bracing coupling free to turn. Then shafts joined by two meshes of different lead (a pair of
+opposite hands side by side) are held; a helical and a spur gear at the two ends of a shaft are not: position and twist
+go together, and no force along x balances that of the helical teeth.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence

@@ -77,7 +77,8 @@ def check_location(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[Elastic
     for bodies in not_held(_turning(rig), _floating(rig), list(_ties(rig))):
         helical = [mesh.name for mesh in rig.drivetrain.meshes if _thrust(rig, mesh)]
         screws = (
-            f" (mesh {', '.join(map(repr, helical))}, single-helical, turns it as it shifts)"
+            f" (single-helical mesh {', '.join(map(repr, helical))} gives no axial restraint: the shaft can move "
+            "axially as it turns)"
             if helical
             else ""
         )

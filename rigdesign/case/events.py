@@ -8,18 +8,18 @@ from rigdesign.case.fields import Force, Part, Share, Speed, Text, Time, Torque,
 from rigdesign.case.kinds import kind_from
 
 
-class FeltLoads(Part):
-    """Limits of what parts of the rig feel in an event."""
+class EventLoadLimits(Part):
+    """Load limits of parts in an event."""
 
     coupling_torque_maximum: Torque | None = None
-    """Most torque that the couplings and their flanges may feel."""
+    """Highest torque that the couplings and their flanges may carry."""
     shaft_torque_maximum: Torque | None = None
-    """Most torque that a section of a shaft may feel."""
+    """Highest torque that a section of a shaft may carry."""
     bearing_force_maximum: Force | None = None
-    """Most radial force that a bearing may feel."""
+    """Highest radial force that a bearing may carry."""
 
 
-class LoadedEvent(FeltLoads):
+class LoadedEvent(EventLoadLimits):
     """What every event on the ramp states."""
 
     speed: Speed | None = None
@@ -40,19 +40,19 @@ class ToothLoss(LoadedEvent):
     teeth: Literal[1, 2] = 1
     """Adjacent teeth that are lost."""
     monitor: Text | None = None
-    """Path of the part that is watched, a coupling (``trip_torque``) or a bearing (``trip_velocity``)."""
+    """Path of the monitored part, a coupling (``trip_torque``) or a bearing (``trip_velocity``)."""
     trip_torque: Torque | None = None
-    """Amount of the torque in the coupling watched that stops the rig."""
+    """Absolute torque in the monitored coupling that stops the rig."""
     trip_velocity: Velocity | None = None
-    """Velocity of the journal in the bearing watched, across the shaft, that stops the rig."""
+    """Lateral velocity of the journal in the monitored bearing that stops the rig."""
     trip_delay: Time = 0.01
     """From the crossing of that limit until the motor is off and the brake begins."""
     brake_torque: Torque = 0.0
     """Torque of motor or brake against the rotation, after the trip."""
     duration: Time = 0.03
-    """Time that is followed after the loss; teeth meet the gap once in every turn."""
+    """Time computed after the loss; the gap comes into mesh once in every turn."""
     trip_time_maximum: Time | None = None
-    """Most time from the loss until the limit is crossed."""
+    """Longest time from the loss until the limit is crossed."""
 
     @model_validator(mode="after")
     def _one_limit(self) -> "ToothLoss":
@@ -61,13 +61,13 @@ class ToothLoss(LoadedEvent):
             raise fault("monitor is given without one limit", "give trip_torque or trip_velocity")
         if self.monitor is None and any(limit is not None for limit in (*limits, self.trip_time_maximum)):
             raise fault(
-                "a limit of a trip is given without a monitor", "name the coupling or bearing watched"
+                "a limit of a trip is given without a monitor", "name the monitored coupling or bearing"
             )
         return self
 
 
 class EmergencyStop(LoadedEvent):
-    """The motor brakes the rig to standstill under the torque that is braced in."""
+    """The motor brakes the rig to standstill under the braced torque."""
 
     kind: Literal["emergency_stop"]
     """Selects the emergency stop."""
@@ -78,9 +78,9 @@ class EmergencyStop(LoadedEvent):
     brake_onset: Time = 0.02
     """Time in which the brake torque rises."""
     duration: Time = 0.1
-    """Time that is followed from the stop on."""
+    """Time computed from the stop on."""
     standstill_time_maximum: Time | None = None
-    """Most time until the rig stands."""
+    """Longest time to standstill."""
 
     @model_validator(mode="after")
     def _one_brake(self) -> "EmergencyStop":
@@ -89,8 +89,8 @@ class EmergencyStop(LoadedEvent):
         return self
 
 
-class Overspeed(FeltLoads):
-    """The rig runs faster than the schedule asks for, under the torque of the test."""
+class Overspeed(EventLoadLimits):
+    """The rig runs faster than the schedule, under the test torque."""
 
     kind: Literal["overspeed"]
     """Selects the overspeed."""

@@ -1,4 +1,4 @@
-"""Seats of gears on their shafts: splines with what they resist, and the teeth that limit what they carry."""
+"""Seats of gears on their shafts: splines with their stiffness and damping, and the toothing that limits their load."""
 
 from math import radians
 from typing import Annotated
@@ -27,7 +27,7 @@ WORKING_DEPTH = 0.9
 
 
 class SplineToothing(Part):
-    """Teeth of a spline-hub connection and what they may carry; each stress is held where its allowable is stated."""
+    """Toothing of a spline and its strength; each stress is checked where its allowable value is stated."""
 
     teeth: Count = Field(ge=4, le=500)
     """Number of teeth."""
@@ -38,25 +38,25 @@ class SplineToothing(Part):
     pressure_angle: SplineAngle = radians(30.0)
     """Pressure angle of the flanks; 30 deg by DIN 5480."""
     length: Length
-    """Axial length over which the teeth carry."""
+    """Axial length of contact."""
     working_depth: Length | None = None
     """Radial height over which the flanks touch; 0.9 modules when left out, as of a spline to DIN 5480."""
     load_distribution_factor: float = Field(default=1.0, ge=1.0, le=5.0)
-    """K_m of Dudley: uneven load over length and teeth by tilted axes, 1 to 3."""
+    """K_m of Dudley: load distribution over length and teeth with tilted axes, 1 to 3."""
     shaft_root_diameter: Length | None = None
-    """Root circle of the teeth of the shaft; without it the shear of the shaft under them is not held."""
+    """Root circle of the teeth of the shaft; without it the shear of the shaft under them is not checked."""
     hub_root_diameter: Length | None = None
-    """Root circle of the teeth of the hub, its largest bore; without it the tension of the hub is not held."""
+    """Root circle of the teeth of the hub, its largest bore; without it the tension of the hub is not checked."""
     hub_diameter: Length | None = None
-    """Outside of the hub; the root circle of the gear when left out."""
+    """Outside diameter of the hub; the root circle of the gear when left out."""
     allowable_pressure: Stress | None = None
-    """Pressure that the flanks may have under the dynamic torque, life included. Dudley: 35 MPa for straight teeth of
+    """Allowable flank pressure under the dynamic torque, life factor included. Dudley: 35 MPa for straight teeth of
     case-hardened steel that slide, nine times as much where they are fixed."""
     allowable_shear: Stress | None = None
-    """Shear stress that teeth and shaft may have under it. Dudley: 345 MPa for case-hardened steel, times its life
+    """Allowable shear stress of teeth and shaft. Dudley: 345 MPa for case-hardened steel, times its life
     factor, 0.5 to 0.2 for 1e5 to 1e7 cycles of the torque."""
     allowable_tension: Stress | None = None
-    """Tension that the hub may have under it, at speed."""
+    """Allowable tensile stress of the hub at speed."""
 
     @model_validator(mode="after")
     def _geometry(self) -> "SplineToothing":
@@ -95,9 +95,9 @@ class Spline(Part):
     torsional_damping: TorsionalDamping = 0.0
     """Torque per speed of twist between gear and shaft."""
     loss_factor: Share = 0.0
-    """Friction between the teeth, instead of ``torsional_damping``: a cycle of twist loses pi times this factor times
-    ``torsional_stiffness`` times the square of its amplitude, at any rate. The loop has a damper that loses as much at
-    the mesh frequency of the gear at every speed; other frequencies lose in proportion to theirs."""
+    """Friction between the teeth, instead of ``torsional_damping``: a cycle of twist dissipates pi times this factor
+    times ``torsional_stiffness`` times the square of its amplitude, at any frequency. The loop has a viscous damper
+    with the same loss at the mesh frequency of the gear at every speed."""
     radial_stiffness: LinearStiffness | None = None
     """Force per radial offset between gear and shaft, of shafts that bend; with ``axial_stiffness`` and
     ``angular_stiffness``, or none of the three for a gear that only twists against its shaft."""
@@ -108,7 +108,7 @@ class Spline(Part):
     lateral_damping_time: float = Field(default=0.0, ge=0.0, le=1e-3)
     """Damping over stiffness of these three [s]."""
     toothing: SplineToothing | None = None
-    """Teeth of the connection: what its capacity is held with."""
+    """Toothing of the spline, for the checks of its strength."""
 
     @model_validator(mode="after")
     def _one_damper(self) -> "Spline":
@@ -130,12 +130,12 @@ class Spline(Part):
         missing = [key for key, value in stated.items() if value is None]
         if missing and len(missing) < len(stated):
             raise fault(
-                f"{' and '.join(missing)} of the seat missing: a gear that gives in one direction gives in all",
-                "write all three, or none for a gear that is rigid with its shaft but for its twist",
+                f"{' and '.join(missing)} of the seat missing: an elastic seat needs all three",
+                "write all three, or none for a seat that is elastic in torsion only",
             )
         if self.lateral_damping_time and missing:
             raise fault(
-                f"lateral_damping_time = {self.lateral_damping_time:g} has no stiffness to belong to",
+                f"lateral_damping_time = {self.lateral_damping_time:g} is given without stiffness",
                 "write radial_stiffness, axial_stiffness and angular_stiffness, or leave it out",
             )
         return self

@@ -194,8 +194,8 @@ class Gear(Part):
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
     seat_offset: Deviation = 0.0
-    """How far the middle of the face stands from the middle of its seat on the shaft, positive towards the end of the
-    shaft; the shaft is twisted and bent at the seat, shafts that bend feel the lever."""
+    """Distance of the middle of the face from the middle of its seat on the shaft, positive towards the end of the
+    shaft; the load acts on the shaft at the seat, on bending shafts with the moment of the offset."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
     """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh. For both gears they
     have to agree with the centre distance."""

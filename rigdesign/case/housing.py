@@ -89,9 +89,8 @@ class Housing(Part):
     foot_contact: FootContact | None = None
     """Joint between foot and field; perfect contact when left out, which the report lists as an assumption."""
     bearing_seats: Literal["rigid", "elastic"] = "rigid"
-    """elastic: the seats yield under shafts that bend, across the axis and along it, with stiffness and mass condensed
-    from the mesh of the housing, bolted down at its foot; rigid: they yield only where a bearing states its
-    ``support_stiffness``."""
+    """elastic: bearing seats of bending shafts have the radial and axial stiffness and mass condensed from the mesh of
+    the housing, bolted down at its foot; rigid: only a ``support_stiffness`` stated for a bearing is elastic."""
     mesh: HousingMesh = HousingMesh()
     """Element sizes by zone where the usual ones do not do."""
     mesh_file: Text | None = None

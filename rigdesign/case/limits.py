@@ -136,10 +136,10 @@ class StrengthLimits(Part):
     root_safety_minimum: Positive | None = None
     """Least safety S_F against tooth breakage, ISO 6336-3."""
     press_fit_safety_minimum: Positive = 1.2
-    """Least safety of the press fits of gears against slip, hot and at speed: 1.2 as is usual with DIN 7190-1, whose
-    text was not at hand."""
+    """Least safety of the press fits of gears against slip, hot and at speed: 1.2 as is usual with DIN 7190-1; not
+    verified against its text."""
     shaft_shear_maximum: Stress | None = None
-    """Most nominal torsional stress at the surface of a shaft section, in stages and events; without notch factors."""
+    """Highest nominal torsional stress of a shaft section at its surface in stages and events, without notch factor."""
     spline_safety_minimum: Positive = 1.0
     """Least allowable stress of a spline over its stress; the allowable stresses of the case carry the safety."""
 
@@ -244,8 +244,8 @@ class BoughtPart(Part):
     limit: str
     """Limit of its maker, a quantity with unit of the kind of ``quantity``."""
     overload: str | None = None
-    """Of a coupling, torque flange or shaft with ``torque_peak``: most torque that it survives in an event, as a loss
-    of teeth; ``limit`` when left out."""
+    """Of a coupling, torque flange or shaft with ``torque_peak``: highest torque it withstands in an event such
+    as a tooth loss; ``limit`` when left out."""
     source: Text
     """Where the limit is printed, e.g. the data sheet."""
 
@@ -281,7 +281,7 @@ class BoughtPart(Part):
                 "leave one out",
             )
         if self.overload_si < self.limit_si:
-            raise fault(f"overload = {overload} is below limit = {self.limit}", "exchange or correct them")
+            raise fault(f"overload = {overload} is below limit = {self.limit}", "correct one of them")
 
     @property
     def kind(self) -> str:
@@ -295,7 +295,7 @@ class BoughtPart(Part):
 
     @property
     def overload_si(self) -> float:
-        """What it survives in an event in SI: ``overload``, or the limit."""
+        """What it withstands in an event in SI: ``overload``, or the limit."""
         return self.limit_si if self.overload is None else units.parse(self.overload, self.kind)
 
     @property

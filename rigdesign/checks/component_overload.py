@@ -35,9 +35,9 @@ FAMILY = OverloadFamily(
     key=KEY,
     title="highest dynamic torque in the events",
     procedure=(
-        "March in time through every event: largest torque of a coupling or of the sections of a shaft; in a stop also "
-        "that of the periodic responses which it passes on its way down. Held against overload of the part, or its "
-        "limit where none is stated."
+        "Time integration through every event: largest torque of a coupling or of the sections of a shaft; in a stop "
+        "also the periodic responses passed during run-down. Compared with overload of the part, or with its limit "
+        "where none is stated."
     ),
     unit=NUMBER,
     group=GROUP,
@@ -74,7 +74,7 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
         torque for torque in solved.part_torques if torque.event is not None and is_at(torque, part.part)
     ]
     if not found:
-        return not_applicable(rule, "no event tells the torque of this part")
+        return not_applicable(rule, "no event gives a torque for this part")
     value, where = worst((torque.torque, f"{torque.place}, {torque.where}") for torque in found)
     return hold(rule, display(value, part.kind), where)
 

@@ -28,9 +28,9 @@ DWELL = DwellRule(
     procedure=(
         "Periodic response over speed: a peak counts where K_V exceeds one by more than dangerous_force_share, or "
         f"where half the peak-to-peak torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the "
-        "mean torque of the loop; so does a turning or coupling order that meets a mode of low damping. The "
+        "mean torque of the loop; so does a shaft or coupling order that meets a lightly damped mode. The "
         "value is the distance of the nearest one from a dwell, as a share of its speed, 0 where the dwell itself is "
-        "above such a share; where there is none, as far as was looked."
+        "above such a share; where there is none, the range searched."
     ),
     unit=NUMBER,
     group="dynamics",

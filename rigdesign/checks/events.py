@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from rigdesign.case.events import EmergencyStop, FeltLoads, Overspeed, ToothLoss
+from rigdesign.case.events import EmergencyStop, EventLoadLimits, Overspeed, ToothLoss
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
@@ -14,11 +14,11 @@ from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
 GROUP = "events"
 NEWTON, SECOND = DisplayUnit("N"), DisplayUnit("s")
 MARCH = (
-    "March in time from the steady state at speed and torque of the event, the twist of the bracing held, gears and "
-    "films as warm as at the test"
+    "Time integration from the steady state at speed and torque of the event with constant twist of the bracing; gears "
+    "and films at the temperatures of the test"
 )
-PASSED = "; in a stop also in the periodic responses that it passes on its way down"
-Part = type[FeltLoads] | type[ToothLoss] | type[EmergencyStop] | type[Overspeed]
+PASSED = "; in a stop also the periodic responses passed during run-down"
+Part = type[EventLoadLimits] | type[ToothLoss] | type[EmergencyStop] | type[Overspeed]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +37,7 @@ def _of(part: Part) -> Callable[[Case], Iterator[str]]:
 
 
 def _peaks(quantity: Quantity) -> Callable[[EventRecord], Values]:
-    """Within the time marched, and in a stop on the way down."""
+    """Within the time marched, and in a stop during run-down."""
 
     def values(record: EventRecord) -> Values:
         for peak in record.peaks:
@@ -45,7 +45,7 @@ def _peaks(quantity: Quantity) -> Callable[[EventRecord], Values]:
                 yield peak.peak, f"{peak.place} after {1e3 * peak.time:.2f} ms"
         for passed in record.passing:
             if passed.quantity == quantity:
-                yield passed.peak, f"{passed.place} on the way down at {RPM * passed.speed:.0f} rpm"
+                yield passed.peak, f"{passed.place} during run-down at {RPM * passed.speed:.0f} rpm"
 
     return values
 
@@ -77,33 +77,33 @@ def _family(
         key=f"event.{name}", title=f"{title} in the event {{place}}", unit=unit, group=GROUP,
         source=f"events.{{place}}.{name}", procedure=procedure, places=_of(part), part=part, limit_key=name,
         found=found, moved_by=frozenset({"events", "housing"}), comparison=">=" if name.endswith("minimum") else "<=",
-        absent="the event does not come to it: " + title,
+        absent="the event gives no value: " + title,
     )  # fmt: skip
 
 
 FAMILIES = (
     _family(
-        "coupling_torque_maximum", "largest torque in a coupling and its flanges", NEWTON_METRE, FeltLoads,
-        _peaks("coupling torque"), f"{MARCH}: largest amount of the torque in a coupling{PASSED}.",
+        "coupling_torque_maximum", "largest torque in a coupling and its flanges", NEWTON_METRE, EventLoadLimits,
+        _peaks("coupling torque"), f"{MARCH}: largest absolute torque in a coupling{PASSED}.",
     ),
     _family(
-        "shaft_torque_maximum", "largest torque in a section of a shaft", NEWTON_METRE, FeltLoads,
-        _peaks("shaft torque"), f"{MARCH}: largest amount of the torque in an element of a shaft{PASSED}.",
+        "shaft_torque_maximum", "largest torque in a section of a shaft", NEWTON_METRE, EventLoadLimits,
+        _peaks("shaft torque"), f"{MARCH}: largest absolute torque in an element of a shaft{PASSED}.",
     ),
     _family(
-        "bearing_force_maximum", "largest radial force on a bearing", NEWTON, FeltLoads,
-        _peaks("bearing force"), f"{MARCH}: stiffness and damping of the bearing on the motion of its journal, weight "
-        "left out; of shafts that only twist the static force times peak over mean of the mesh torque.",
+        "bearing_force_maximum", "largest radial force on a bearing", NEWTON, EventLoadLimits,
+        _peaks("bearing force"), f"{MARCH}: force of the stiffness and damping of the bearing, without weight; with "
+        "torsional shafts the static force times peak over mean of the mesh torque.",
     ),
     _family(
         "trip_time_maximum", "time until the monitor trips", SECOND, ToothLoss,
         _trip,
-        f"{MARCH}: first crossing of the limit by the channel watched.",
+        f"{MARCH}: first crossing of the limit by the monitored channel.",
     ),
     _family(
-        "standstill_time_maximum", "time until the rig stands", SECOND, EmergencyStop,
-        _one(lambda record: record.standstill, "rigid rotation under brake and drags"),
-        "Inertia of the rig over brake torque and drags at every speed, from the stop on.",
+        "standstill_time_maximum", "time to standstill", SECOND, EmergencyStop,
+        _one(lambda record: record.standstill, "rigid rotation under brake and drag torques"),
+        "Inertia of the rig decelerated by brake torque and drag torques at every speed, from the stop on.",
     ),
     _family(
         "dynamic_factor_maximum", "dynamic factor K_V", NUMBER, Overspeed,

@@ -67,9 +67,9 @@ PRESS_FIT = _RULE(
     key="strength.press_fit_slip",
     title="least safety of the press fits of gears against slip",
     procedure=(
-        "Pressure of the least interference by thick rings after Lame, less what the gear grows over its shaft by heat "
-        f"and centrifugal load; slip torque at a friction coefficient of {FRICTION:g} over the "
-        f"{TORQUE}. The least counts. Stages that are not held have the temperatures of the governing held stage."
+        "Pressure of the least interference by thick rings after Lame, less the interference lost by thermal and "
+        f"centrifugal expansion; slip torque at a friction coefficient of {FRICTION:g} over the "
+        f"{TORQUE}. The lowest governs. Stages that are not held have the temperatures of the governing held stage."
     ),
     source="limits.strength.press_fit_safety_minimum; DIN 7190-1:2017, elastic fit",
     limit_keys=("limits.strength.press_fit_safety_minimum",),
@@ -83,7 +83,7 @@ SHAFT_SHEAR = RigRule(
     procedure=(
         "Torque over the polar section modulus of the outer and inner diameter, at the largest torque of the section "
         "in the periodic responses of the held stages, at the samples of the time run over the schedule and in the "
-        "events; bending and notches not counted."
+        "events; bending and notch effects neglected."
     ),
     source="limits.strength.shaft_shear_maximum",
     unit=MEGAPASCAL,
@@ -102,7 +102,7 @@ RULES = (
         title="least safety of the splines of gears against flank pressure",
         procedure=(
             f"Pressure on the flanks 2 T K_m / (D N F h) at the {TORQUE}; allowable_pressure of the spline over it. "
-            "The least counts."
+            "The lowest governs."
         ),
         values=lambda solved: _spline(solved, "flank pressure"),
     ),
@@ -111,7 +111,7 @@ RULES = (
         title="least safety of the splines of gears against shear",
         procedure=(
             f"Shear of the teeth on the pitch circle, half of them carrying, and of the shaft under its teeth, at the "
-            f"{TORQUE}; allowable_shear of the spline over it. The least counts."
+            f"{TORQUE}; allowable_shear of the spline over it. The lowest governs."
         ),
         values=lambda solved: _spline(solved, "shear of the teeth", "shear of the shaft"),
     ),
@@ -121,7 +121,7 @@ RULES = (
         procedure=(
             "Hoop stress of the gear at its spline by the radial part of the tooth forces, their bending, rotation and "
             f"a press fit, hot and at speed, at the {TORQUE}; of the press fit alone at rest and cold. "
-            "allowable_tension of the spline over it. The least counts."
+            "allowable_tension of the spline over it. The lowest governs."
         ),
         values=lambda solved: _spline(solved, "tension of the hub"),
     ),

@@ -32,7 +32,7 @@ DRIVETRAIN_STATIONS: Mapping[str, tuple[Station, ...]] = {
     },
     **{
         f"drivetrain.couplings.*.cold_angle_{key}": stations_at(
-            rig__rotating_parts="moment on two shafts by axes that stand at an angle",
+            rig__rotating_parts="moment on two shafts by an angle between their axes",
             rig__drivetrain="torque twice a turn of a cross joint",
             coupling__misalignment="moment of a cross joint on the bearings of its shafts",
         )

@@ -8,7 +8,7 @@ _LIMIT = "limit that a result is held against"
 
 RUN_STATIONS: Mapping[str, tuple[Station, ...]] = {
     "": stations_at(run__main="names the case in results and report"),
-    "schema_version": stations_at(case__model="tells the reader which keys to expect"),
+    "schema_version": stations_at(case__model="selects the keys that are expected"),
     **{
         f"oil_circuits.*{table}": stations_at(
             case__oil_circuits="part of the circuit that feeds its consumers",

@@ -50,7 +50,7 @@ def modified_rig(
         loads = dynamic_loads(rig, run, checks_only=True)
     elif loads is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
         loads = replace(loads, bracing=tuple(stage_bracing(rig, point) for point in points))
-    # events are not marched again: what they are behind keeps its value
+    # events are not marched again: checks based on them keep their value
     return replace(with_records(rig, points, run, loads), events=stated.events), solved
 
 

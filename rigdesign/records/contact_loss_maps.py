@@ -1,4 +1,4 @@
-"""Where on speed and torque the flanks part: periodic response on a grid, stable states alone.
+"""Speeds and torques at which contact is lost: periodic response on a grid, stable states only.
 
 The grid holds the torques and speeds of the schedule, and those speeds at which K_V peaks on a curve or in the time
 run: resonances are narrower than even steps of the speed.

@@ -1,7 +1,7 @@
 """Journals in an event: do their films still hold where the linear coefficients send them?
 
 A march has every film as stiffness and damping about the place of the journal under the load before the event. Where
-the load vanishes or turns round, a film is softer than that on the way to the middle of the bore and far stiffer near
+the load vanishes or turns round, a film is softer than that towards the bore centre and far stiffer near
 its wall; the forces of such an event are those of the linear film. How far the journal goes is compared with its
 clearance.
 """
@@ -22,8 +22,8 @@ from rigdesign.rig.model import Rig
 Array = NDArray[np.float64]
 
 LINEAR_FILMS = (
-    "films of plain bearings are stiffness and damping about the place of the journal before the event; where its load "
-    "vanishes or turns round they are too stiff on the way to the middle of the bore and too soft near its wall"
+    "films of plain bearings are linearised about the journal position before the event; where the load vanishes or "
+    "reverses they are too stiff near the bore centre and too soft near the bore wall"
 )
 """What of films an event leaves out, for its notes."""
 
@@ -62,7 +62,7 @@ def largest_travels(
 
 
 def travel_warnings(rig: Rig, travels: Mapping[str, float], clearances: Mapping[str, float]) -> Iterator[str]:
-    """Of every journal that would pass its clearance: the film cannot be as soft as the march has it.
+    """Of every journal that would pass its clearance: the film is stiffer than the linear one.
 
     clearances : on the diameter as they run, by ``gearbox.bearing`` [m]
     """
@@ -70,7 +70,7 @@ def travel_warnings(rig: Rig, travels: Mapping[str, float], clearances: Mapping[
         limit = 0.5 * clearances[name]
         if rig.bearing(name).has_film and travel > limit and math.isfinite(travel):
             yield (
-                f"bearing {name}: its journal goes {1e6 * travel:.0f} um from the middle of the bore, limit "
-                f"{1e6 * limit:.0f} um, its radial clearance: the linear film is too soft there and the force on it a "
-                "lower bound; take it as one, or lower the torque of the event"
+                f"bearing {name}: journal displacement {1e6 * travel:.0f} um exceeds the radial clearance "
+                f"{1e6 * limit:.0f} um: the linear film is too soft there; treat the force as a lower bound, or lower "
+                "the torque of the event"
             )

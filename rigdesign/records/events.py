@@ -40,7 +40,7 @@ RPM = math.pi / 30.0
 def solve_events(rig: Rig, run: DynamicRun) -> tuple[EventRecord, ...]:
     """Every event of the case, with the gears and films of the test as warm as they are there.
 
-    run : with the responses over speed that a stop passes on its way down
+    run : with the responses over speed that a stop passes during run-down
     Raises DynamicsNotConverged if a march leaves the finite numbers.
     """
     return tuple(_solved(rig, run, name, event) for name, event in rig.case.events.items())

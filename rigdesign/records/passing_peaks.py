@@ -1,4 +1,4 @@
-"""Torques on the way down of a stop, through the resonances of the loop, from the periodic responses over speed.
+"""Torques during the run-down of a stop, through the resonances of the loop, from the periodic responses over speed.
 
 A resonance that is passed has less time to rise than one that is held: its periodic response is the upper bound where
 the loop is linear. The bracing keeps its twist, so that the torque of the loop stays; what the brake adds stands
@@ -31,7 +31,9 @@ def passing_peaks(
     torque = torque_key(signed_torque(rig, stop))
     known, failed = _responses(rig, run, torque, stop.speed)
     if not known:
-        return (), ("torques on the way down are not known: no periodic response was found below its speed",)
+        return (), (
+            "torques during run-down are not known: no periodic response was found below the speed of the event",
+        )
     ends = known[0].speed, known[-1].speed
     solve = response_solver(rig, run.test.last, torque, ends) if resolved(rig) else None
     share = torque / signed_torque(rig, run.test.point)
@@ -39,13 +41,13 @@ def passing_peaks(
     points, curves = torques_over_speed(loop, known, solve)
     low, high = (speed / rig.pinion_speed(1.0) * RPM for speed in ends)
     notes = [
-        f"on the way down torques are those of periodic responses from {high:.0f} to {low:.0f} rpm, the torque of the "
-        "brake and forces of bearings left out; slower than that nothing is computed"
+        f"torques during run-down are those of periodic responses from {high:.0f} to {low:.0f} rpm, without brake "
+        "torque; bearing forces and lower speeds are not computed"
     ]
     if not resolved(rig):
-        notes.append(f"resonances between its {len(points)} speeds are missed")
+        notes.append(f"resonances between its {len(points)} speeds are not captured")
     if failed:
-        notes.append(f"{failed} speeds on the way down have no periodic response")
+        notes.append(f"{failed} speeds during run-down have no periodic response")
     found = [_peak(rig, curve, points) for curve in curves if curve.place.kind in QUANTITIES]
     order = list(QUANTITIES.values())
     return tuple(sorted(found, key=lambda peak: order.index(peak.quantity))), tuple(notes)

@@ -1,8 +1,8 @@
 """Torque that the press fits of the gears carry, hot and at speed, against the largest torque of their seats.
 
 Elastic fit of a gear without web (DIN 7190-1:2017, thick rings after Lame; `dynamics.rating.mean_stress`): the bore
-opens by the centrifugal load, and by the heat of the gear over that of the shaft. The shaft is taken as cold as the oil
-that leaves its bearings, which is on the safe side. The interference is the least that the case states.
+opens by the centrifugal load, and by the heat of the gear over that of the shaft. The shaft is taken at the outlet
+temperature of its bearing oil, which is on the safe side. The interference is the least that the case states.
 """
 
 import math

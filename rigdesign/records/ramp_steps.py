@@ -57,7 +57,7 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
         action="brace at rest",
         speed=0.0,
         torque=start,
-        reason="closes the flanks before the rig turns; bearings without a film carry no more than this",
+        reason="closes the backlash before the rig turns; highest load of bearings without a film",
     )
     first, reason = _first_speed(rig, found, test)
     yield RampStep(
@@ -73,8 +73,8 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
             action="raise the torque in part",
             speed=first,
             torque=share * torque,
-            reason=f"K_V up to {passed:.2f} is passed from here to the test speed under the torques of the curves: "
-            f"{share:.2f} of the test torque stays below {share * passed:.2f} of it at its peak",
+            reason=f"K_V reaches {passed:.2f} between here and the test speed at the torques of the curves: "
+            f"{share:.2f} of the test torque peaks at no more than {share * passed:.2f} of it",
         )
         yield RampStep(
             action="run up without a stop",
@@ -91,20 +91,20 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
             action="relieve",
             speed=test,
             torque=share * torque,
-            reason="the resonances are passed again on the way down",
+            reason="the resonances are passed again during run-down",
         )
         yield RampStep(
             action="run down without a stop",
             speed=first,
             torque=share * torque,
-            reason="as on the way up",
+            reason="as during run-up",
         )
     yield RampStep(
         action="relieve and stop",
         speed=0.0,
         torque=start,
         reason="; ".join(
-            ["no more than the start torque while the bearings lose their film", *_passed(found.down)]
+            ["at most the start torque while the bearings lose their film", *_passed(found.down)]
         ),
     )
 
@@ -121,11 +121,12 @@ def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
     if found.start is not None and not found.start.holds_at(wanted):
         contact = found.start.next_held(wanted)
         if contact is None or contact >= test:
-            why += "; flanks part here under the start torque, and up to the highest speed looked at"
+            why += "; contact is lost here under the start torque, and at all higher speeds computed"
         else:
+            place = f"the bearings float from {_rpm(wanted)} on" if floating else f"{why}, {_rpm(wanted)}"
             why = (
-                f"{'the bearings float from' if floating else 'the schedule first stops at'} {_rpm(wanted)} on, where "
-                f"flanks part under the start torque: raised here, where they stay in contact"
+                f"{place}, at which contact is lost under the start torque; raised to the next speed without contact "
+                "loss"
             )
             wanted, raised = contact, True
     band = found.band_at(wanted)
@@ -136,7 +137,7 @@ def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
     held = windows if found.start is None else found.start.held(windows)
     safe = nearest_safe([(low, high) for low, high in held if low <= test], wanted)
     if safe is None:
-        return wanted, f"{why}; no speed from there to the test speed lies outside the avoided bands"
+        return wanted, f"{why}; no speed up to the test speed lies outside the avoided bands"
     return safe, f"{why}; moved from {_rpm(wanted)}, which lies in the band {_span(band)}"
 
 
@@ -145,19 +146,19 @@ def _passed(worst: StagePeak | None) -> Iterator[str]:
     if worst is not None:
         stage = worst.stage.replace("_", " ")
         yield (
-            f"under the start torque the time run passes K_V {worst.factor:.2f} at {_rpm(worst.speed)} in stage "
-            f"{stage}, flanks {'part' if worst.lost else 'stay in contact'}"
+            f"under the start torque the time run reaches K_V {worst.factor:.2f} at {_rpm(worst.speed)} in stage "
+            f"{stage}, contact is {'lost' if worst.lost else 'kept'}"
         )
 
 
 def _lost(found: RampLimits) -> Iterator[str]:
-    """Where flanks part under the start torque."""
+    """Where contact is lost under the start torque."""
     spans = [] if found.start is None else found.start.spans()
     if spans:
         where = ", ".join(
             f"{low * RPM:.0f} to {_rpm(high)}" if high > low else f"near {_rpm(low)}" for low, high in spans
         )
-        yield f"no stop where flanks part in the periodic response: {where}"
+        yield f"hold no speed at which contact is lost in the periodic response: {where}"
 
 
 def _factors(found: RampLimits, first: float, test: float) -> Iterator[float]:
@@ -177,9 +178,9 @@ def _highest_resonance(found: RampLimits) -> float | None:
 def _passing(found: RampLimits, first: float, test: float) -> str:
     passed = [band for band in found.bands if band.high > first and band.low < test]
     if not passed:
-        return "no band is to be avoided on the way"
+        return "no avoided band is passed"
     spans = (f"{max(band.low, first) * RPM:.0f} to {min(band.high, test) * RPM:.0f} rpm" for band in passed)
-    return f"avoided bands on the way: {'; '.join(spans)}"
+    return f"avoided bands passed: {'; '.join(spans)}"
 
 
 def _full(found: RampLimits, top: float | None, test: float) -> str:
@@ -193,7 +194,7 @@ def _full(found: RampLimits, top: float | None, test: float) -> str:
         )
     return (
         f"the highest main resonance of a mesh, {top * RPM:.0f} rpm, lies above the test speed and is not reached: the "
-        "torque is raised where the rig dwells, after all resonances below have been passed in part load"
+        "torque is raised at the dwell speed, after all lower resonances have been passed at part load"
     )
 
 

@@ -1,7 +1,7 @@
 """The rig under its start torque around the speed at which the torque is first raised: K_V and contact.
 
-A tenth of the test torque and less does not close the deviations of the teeth: slow resonances that the loaded rig
-passes unnoticed let flanks part.
+At a tenth of the test torque or less the tooth deviations are not closed; slow resonances that are harmless under
+load cause contact loss.
 """
 
 from collections.abc import Iterator, Sequence
@@ -47,7 +47,7 @@ def first_speed(rig: Rig) -> float:
 class StagePeak:
     """Highest K_V of a mesh in a stage of the time run, and at which speed of the first pinion [rad/s].
 
-    lost : whether flanks part in the stage
+    lost : whether contact is lost in the stage
     """
 
     stage: str
@@ -61,7 +61,7 @@ class StartResponse:
     """Periodic response under the start torque; speeds of the first pinion, rising [rad/s].
 
     speed : (n,); factor : (n,) highest K_V of a mesh, NaN where no stable state repeats in every mesh; lost : (n,) True
-    where flanks part
+    where contact is lost
     """
 
     speed: Array
@@ -69,7 +69,7 @@ class StartResponse:
     lost: Flags
 
     def spans(self) -> list[tuple[float, float]]:
-        """Lowest and highest computed speed of every interval in which flanks part, rising."""
+        """Lowest and highest computed speed of every interval in which contact is lost, rising."""
         edges = np.flatnonzero(np.diff(np.concatenate(([0], self.lost.astype(int), [0]))))
         return [
             (float(self.speed[first]), float(self.speed[end - 1]))

@@ -1,5 +1,5 @@
-"""Dwells on a resonance that no damper reaches, or on a mode that grows by itself: they have no steady state that any
-result could be taken from.
+"""Dwells on an undamped resonance, or on an unstable mode: they have no steady state that any result could be taken
+from.
 """
 
 from collections.abc import Iterable, Iterator
@@ -23,8 +23,8 @@ GROWS = -1e-9
 ON = 0.01
 """Distance of a dwell from a resonance, as a share of its speed, up to which it stands on it."""
 REMEDY = (
-    "state the damping of what moves (damping of the meshes, torsional_damping of splines and couplings, of bearings), "
-    "or dwell elsewhere"
+    "state the damping of the parts that vibrate (damping of the meshes, torsional_damping of splines and "
+    "couplings, of bearings), or dwell elsewhere"
 )
 STABILISE = (
     "correct what drives it (internal damping of shafts and splines, films under too little load for their speed), "
@@ -54,7 +54,7 @@ class LightDwell:
     def text(self, limit: float) -> str:
         """What, where, how much against which limit."""
         one = self.crossing
-        what = "a mode that grows by itself" if self.grows else "a resonance without damping"
+        what = "an unstable mode" if self.grows else "an undamped resonance"
         ratio = one.damping_ratio if self.grows else abs(one.damping_ratio)
         return (
             f"stage {self.stage} dwells at {self.speed * RPM:.0f} rpm on {what}: order "
@@ -94,7 +94,7 @@ def require_damping(rig: Rig, crossings: Iterable[ModeCrossing]) -> None:
         then, remedy = (
             ("its vibration grows whatever excites it", STABILISE)
             if found.grows
-            else ("the torque grows until the flanks part", REMEDY)
+            else ("the torque grows until contact is lost", REMEDY)
         )
         raise CaseError(
             f"{found.text(UNDAMPED)}: no steady state exists, {then}; {remedy}",

@@ -40,7 +40,7 @@ class LoopedContact:
     tilt: float
     """Of the gears against each other about their mean, peak to peak [rad]."""
     still_changing: float
-    """Change of K_V that was still to come when the march ended, as estimated [-]."""
+    """Estimated remaining change of K_V when the march ended [-]."""
     settled: bool
     time: float
     """That was marched [s]."""

@@ -40,7 +40,7 @@ class ContactLossMap:
     torque: Row
     """(t,) stated [N m]"""
     least_share: tuple[tuple[float | None, ...], ...]
-    """(t, s) [-]; 0 or less where flanks part."""
+    """(t, s) [-]; 0 or less where contact is lost."""
     lift_off: tuple[tuple[float | None, ...], ...]
     """(t, s) share of the time without contact [-]."""
     unstable: tuple[tuple[bool, ...], ...]

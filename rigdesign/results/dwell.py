@@ -39,7 +39,7 @@ class NearResonance:
     """The resonance nearest to a dwell."""
 
     distance: float
-    """As a share of the speed of the dwell; as far as was looked where none is near [-]."""
+    """As a share of the speed of the dwell; the range searched where none is near [-]."""
     resonance: AvoidedResonance | None
 
 
@@ -73,7 +73,7 @@ class DwellStage:
     above_limit: bool
     """Whether it turns faster than the rig may."""
     loses_contact: bool
-    """Whether flanks part at its speed under the start torque, with which it begins or ends."""
+    """Whether contact is lost at its speed under the start torque, with which it begins or ends."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""What the rig feels in an event: SI records."""
+"""Loads of the rig in an event: SI records."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -27,7 +27,7 @@ class EventPeak:
 
 @dataclass(frozen=True, kw_only=True)
 class PassingPeak:
-    """Largest amount of a torque at one place on the way down through the resonances [N m]."""
+    """Largest amount of a torque at one place during run-down through the resonances [N m]."""
 
     place: str
     part: str
@@ -81,7 +81,7 @@ class EventRecord:
     untripped: float | None = None
     """Time for which a monitor was watched that never tripped [s]."""
     standstill: float | None = None
-    """Time until the rig stands, from the trip or the stop on [s]."""
+    """Time to standstill, from the trip or the stop on [s]."""
     dynamic_factor: dict[str, float] = field(default_factory=dict)
     """K_V by mesh, of an overspeed."""
     resonance: str = ""

@@ -29,13 +29,13 @@ ELEMENTS_PER_WAVE = 16
 FOLLOWED = 2.5
 """Highest mode that is followed, per counted frequency."""
 BENDING_FOLLOWED = 1.25
-"""The same of the modes of shafts that bend: above it static shapes of all ports are in their place."""
+"""The same for the modes of bending shafts; above it they are replaced by the static shapes of all ports."""
 
 
 class Coarsening(NamedTuple):
     """How many times coarser than the rules, or the case, the loop is divided: for estimates of their errors.
 
-    modes : of shafts that bend, how many times lower the highest one that is kept
+    modes : factor by which the highest bending mode kept is lowered
     """
 
     slices: int = 1

@@ -1,8 +1,8 @@
-"""Ramps that pass the speed band of a resonance before its bearings have moved the gears: what the time run says there.
+"""Ramps that pass a resonance faster than the time run updates the bearing positions.
 
-From one band of speed to the next the time run brings in over `FADE` what other bearings change in the mean place of
-the gears, hence in the approach of their flanks (`dynamics.response.band_change`). A band that is passed in less is
-left before that has come.
+From one speed band to the next the time run changes the mean position of the gears in their bearings, hence the
+approach of their flanks, over the time `FADE` (`dynamics.response.band_change`). A band that is passed in less is left
+before the change is complete.
 """
 
 from collections.abc import Iterator, Sequence
@@ -59,9 +59,9 @@ def fast_ramps(solved: SolvedRig) -> Iterator[str]:
         longer = stage.duration * FADE / band.duration
         yield (
             f"stage {stage.name}: time in the band of {band.low * RPM:.0f} to {band.high * RPM:.0f} rpm with the "
-            f"resonance of {mesh} at {speed * RPM:.0f} rpm = {band.duration:.3g} s, limit {FADE:g} s, over which the "
-            "time run brings in where the bearings of that band hold the gears: its torques there lie between those "
-            f"of two bands; give the stage {longer:.2g} s or more, or read the periodic response"
+            f"resonance of {mesh} at {speed * RPM:.0f} rpm = {band.duration:.3g} s, limit {FADE:g} s, in which the "
+            "time run updates the bearing positions: its torques there lie between those of two bands; give the stage "
+            f"{longer:.2g} s or more, or use the periodic response"
         )
 
 

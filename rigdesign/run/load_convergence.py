@@ -180,7 +180,7 @@ def _row(solved: SolvedRig, wanted: _Wanted, responses: tuple[CurvePoint, ...]) 
         method=f"periodic response at {responses[0].speed / RPM:.0f} rpm of the first pinion, half the slices "
         f"{halved[0]:.4f}, elements twice as long {halved[1]:.4f}"
         + (f", modes up to half the frequency {halved[2]:.4f}" if bends else "")
-        + ("" if all(ruled) else "; whole change where the case states slices or element length")
+        + ("" if all(ruled) else "; full change where the case states slices or element length")
         + (f"; contact in the loop, {looped.speed / RPM:.0f} rpm of the pinion: {parts[-1]:.4f}" if looped else ""),
     )  # fmt: skip
 

@@ -139,7 +139,7 @@ def solve_case(
         say("contact in the loop")
         solved = replace(solved, contact_in_loop=contact_in_loop(wanted, run))
         lap("contact_in_loop")
-    say("errors of slices and shaft elements")
+    say("discretisation errors of the loads")
     solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
     lap("load_errors")
     say("assembling the result")

@@ -40,7 +40,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="shaft", text=t.finding) for t in solved.rig.shaft_torsions if t.finding),
         *(Finding(id="response", text=text) for text in _response(solved)),
         *(Finding(id="damping", text=text) for text in _light_dwells(solved)),
-        *(Finding(id="unlike_teeth", text=text) for text in _deviating_teeth(solved)),
+        *(Finding(id="tooth_deviations", text=text) for text in _deviating_teeth(solved)),
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="time_run", text=text) for text in fast_ramps(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
@@ -225,7 +225,7 @@ def _damping(solved: SolvedRig) -> Iterator[str]:
 def _contact_in_loop(found: ContactInLoop) -> Iterator[str]:
     """Where fidelity reference has no comparison with the contact solved in the loop, or a poor one."""
     for place in found.missing:
-        yield f"contact in the loop: none at {place}; the errors of the loads there are without it"
+        yield f"contact in the loop: not solved at {place}; the errors of the loads there do not include it"
     for mesh in found.meshes:
         where = f"contact in the loop: gearbox {mesh.mesh}, {mesh.speed * RPM:.0f} rpm"
         if not mesh.settled:
@@ -236,7 +236,7 @@ def _contact_in_loop(found: ContactInLoop) -> Iterator[str]:
         if mesh.unconverged > MOST_UNCONVERGED:
             yield (
                 f"{where}: in {mesh.unconverged} steps the contact was not solved to its tolerance, limit "
-                f"{MOST_UNCONVERGED}; its K_V is doubtful"
+                f"{MOST_UNCONVERGED}; its K_V is uncertain"
             )
 
 
@@ -281,29 +281,29 @@ def _light_dwells(solved: SolvedRig) -> Iterator[str]:
     """Dwells on resonances whose damping no rig of steel has."""
     if solved.loads is not None:
         for found in light_dwells(solved.rig, solved.loads.loop_crossings, LIGHTLY):
-            yield f"{found.text(LIGHTLY)}, what steel shafts with joints have: {REMEDY}"
+            yield f"{found.text(LIGHTLY)}, typical of steel shafts with joints: {REMEDY}"
 
 
 def _left_out_once_a_turn(solved: SolvedRig) -> Iterator[str]:
-    """What shakes bending shafts with their turns and is not in every result."""
+    """Once-per-revolution loads of bending shafts that are not in every result."""
     if solved.run is not None:
         last = solved.points[-1].last
         lines = lines_left_out(solved.rig, laws_of(last.models), last.system)
         if lines:
             yield (
                 f"unbalance, bow and run-out of {', '.join(lines)} in the periodic response (K_V over speed, dynamic "
-                "torques and root stress, contact loss): it repeats in every mesh; the time run, the events and the "
-                'lateral vibration have them; write numerics.response_period = "revolution" where a turn holds them'
+                "torques and root stress, contact loss): it has the period of the mesh; the time run, the events "
+                'and the lateral vibration include them; write numerics.response_period = "revolution" to include them'
             )
     if solved.rig.elastic.rig.misalignments:
         yield (
-            "alternating forces of couplings whose axes stand out of line: their standing force is in the loads of the "
-            "bearings, orders are those that couplings.*.excitation states and those of cross joints"
+            "alternating forces of misaligned couplings: their constant force is in the bearing loads; alternating "
+            "orders are those of couplings.*.excitation and of cross joints"
         )
 
 
 def not_modelled(solved: SolvedRig) -> list[str]:
-    """What the verdict knows nothing of."""
+    """Effects not modelled."""
     items = [
         *_left_out_of_the_shafts(solved),
         "helix slope deviations of manufacture in tooth contact and K_Hbeta"

@@ -166,7 +166,8 @@ def _screws(meshes: Sequence[str]) -> str:
     if not meshes:
         return ""
     return (
-        f"; a single-helical mesh ({', '.join(meshes)}) lets a shaft screw along its partner and locates none"
+        f"; a single-helical mesh ({', '.join(meshes)}) gives no axial restraint: the shaft can move axially as it "
+        "turns"
     )
 
 

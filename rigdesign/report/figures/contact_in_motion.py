@@ -62,7 +62,7 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
 
 
 def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
-    """A panel for each gearbox: least torque over the mean by speed and torque; crosses where flanks part."""
+    """A panel for each gearbox: least torque over the mean by speed and torque; crosses at contact loss."""
     figure = new_figure(3.3)
     panels = figure.subplots(1, len(rows), squeeze=False, sharey=True)[0]
     for axes, row in zip(panels, rows, strict=True):
@@ -80,7 +80,7 @@ def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure
                 unstable,
                 "+",
                 VERDICT_COLOURS["fail"],
-                "contact is lost, the motion does not repeat in every mesh",
+                "contact is lost, motion not periodic with the mesh",
             ),
             (np.isnan(values) & ~unstable, ".", MUTED, "no response found"),
         ):
@@ -100,7 +100,7 @@ def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure
     if handles:
         figure.legend(handles.values(), handles.keys(), loc="lower left", bbox_to_anchor=(0.07, 0.0), ncols=3)
     bar = figure.colorbar(image, ax=list(panels), pad=0.015, fraction=0.05)
-    bar.set_label("least torque over the mean [–]")
+    bar.set_label("minimum torque over mean [–]")
     figure.subplots_adjust(left=0.075, right=0.87, top=0.89, bottom=0.28, wspace=0.08)
     bar.ax.set_position((0.895, 0.28, 0.014, 0.61))
     return figure

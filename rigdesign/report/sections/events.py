@@ -1,4 +1,4 @@
-"""Events: what parts feel when teeth break, in an emergency stop, at overspeed."""
+"""Events: loads of parts when teeth break, in an emergency stop, at overspeed."""
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult

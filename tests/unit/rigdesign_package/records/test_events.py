@@ -118,7 +118,7 @@ def test_on_the_way_down_the_stop_passes_the_torques_of_the_periodic_responses(r
         == pytest.approx(float(test.last.response.maximum[0]), rel=1e-3)
     )  # type: ignore[union-attr]
     assert any("12000 to 4000 rpm" in note for note in stop.notes)
-    assert any("between its 17 speeds are missed" in note for note in stop.notes)
+    assert any("between its 17 speeds are not captured" in note for note in stop.notes)
 
 
 def test_a_torque_without_a_curve_is_solved(rig: SolvedRig) -> None:
@@ -223,7 +223,7 @@ def test_the_report_shows_what_a_stop_passes(rig: SolvedRig) -> None:
     assert passing["pinion_side", "coupling torque"]["peak"] == peak.peak
     assert passing["pinion_side", "coupling torque"]["speed_rpm"] == pytest.approx(peak.speed / RPM)
     page = report_html(replace(make_result(), events=[row]))
-    assert "Highest torque on the way down" in page
+    assert "Highest torque during run-down" in page
 
 
 def test_limits_of_a_stop_count_what_it_passes(rig: SolvedRig) -> None:
@@ -234,7 +234,7 @@ def test_limits_of_a_stop_count_what_it_passes(rig: SolvedRig) -> None:
     marched = max(peak.peak for peak in stop.peaks if peak.quantity == "shaft torque")
     passed = max(peak.peak for peak in stop.passing if peak.quantity == "shaft torque")
     assert check.value == pytest.approx(max(marched, passed)) and passed > marched
-    assert "on the way down at" in check.reason
+    assert "during run-down at" in check.reason
 
 
 def test_overspeed_is_marched_for_two_turns_of_the_slowest_shaft(rig: SolvedRig) -> None:

@@ -40,7 +40,7 @@ def peak(rpm: float) -> AvoidedResonance:
 
 
 def response(lost: Sequence[tuple[float, float]]) -> StartResponse:
-    """Under the start torque at 525 to 1200 rpm, every 25; flanks part in these ranges [rpm]."""
+    """Under the start torque at 525 to 1200 rpm, every 25; contact is lost in these ranges [rpm]."""
     speed = np.arange(525.0, 1201.0, 25.0)
     parts = np.zeros(speed.size, bool)
     for low, high in lost:
@@ -86,12 +86,12 @@ def test_the_torque_is_raised_above_the_speeds_at_which_the_start_torque_loses_c
     assert found["run up"].speed == found["raise the torque in part"].speed == pytest.approx(800.0 * RAD)
     assert "725 to 775 rpm, near 900 rpm" in found["run up"].reason
     everywhere = steps(start=response([(525.0, 1200.0)]))["run up"]
-    assert everywhere.speed == pytest.approx(750.0 * RAD) and "flanks part here" in everywhere.reason
+    assert everywhere.speed == pytest.approx(750.0 * RAD) and "contact is lost here" in everywhere.reason
 
 
 def test_the_time_run_under_the_start_torque_is_in_the_reason() -> None:
     reason = steps(up=StagePeak("to_transition_speed", 2.78, 736.0 * RAD, lost=True))["run up"].reason
-    assert "K_V 2.78 at 736 rpm in stage to transition speed, flanks part" in reason
+    assert "K_V 2.78 at 736 rpm in stage to transition speed, contact is lost" in reason
 
 
 def test_peaks_of_the_time_run_are_those_of_stages_under_the_start_torque_in_their_sense() -> None:
@@ -126,7 +126,7 @@ def test_no_safe_speed_is_advised_beyond_the_limit_of_the_rig() -> None:
 def test_part_of_the_torque_stays_below_the_test_torque_at_the_peaks_passed() -> None:
     found = steps()
     assert found["raise the torque in part"].torque == pytest.approx(90.0)
-    assert "K_V up to 1.40" in found["raise the torque in part"].reason
+    assert "K_V reaches 1.40" in found["raise the torque in part"].reason
     assert found["raise to the test torque"].torque == 180.0
     assert found["relieve and stop"].speed == 0.0
 

@@ -1,4 +1,4 @@
-"""Dwells on resonances that no damper reaches: what is refused, what is named, what is left alone."""
+"""Dwells on undamped resonances: what is refused, what is named, what is left alone."""
 
 from dataclasses import replace
 

@@ -48,7 +48,7 @@ def test_a_gear_beside_its_seat_twists_the_shaft_there_and_meshes_in_its_own_pla
     ("values", "message"),
     [
         ({f"{AT}.spline.radial_stiffness": "4e8 N/m"}, "axial_stiffness and angular_stiffness of the seat missing"),
-        ({f"{AT}.spline.lateral_damping_time": 1e-6}, "has no stiffness to belong to"),
+        ({f"{AT}.spline.lateral_damping_time": 1e-6}, "is given without stiffness"),
         ({f"{AT}.seat_offset": "15 mm", f"{AT}.position": "10 mm"}, "puts the middle of the seat at"),
     ],
 )  # fmt: skip

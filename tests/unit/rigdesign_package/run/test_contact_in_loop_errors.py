@@ -60,8 +60,8 @@ def test_the_run_names_places_without_a_comparison_and_poor_ones() -> None:
         )
     )
     assert missing == (
-        "contact in the loop: none at stage dwell, 500 rpm: no response on contact tables: why; the errors of the "
-        "loads there are without it"
+        "contact in the loop: not solved at stage dwell, 500 rpm: no response on contact tables: why; the errors of "
+        "the loads there do not include it"
     )
     assert moving == (
         "contact in the loop: gearbox test, 12000 rpm: K_V still changes by 0.02 after 0.6 s; added to the error of "
