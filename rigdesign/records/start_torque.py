@@ -84,7 +84,7 @@ class StartResponse:
         return not inside or not bool(self.lost[below] or self.lost[above])
 
     def held(self, windows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-        """What is left of rising windows of speeds (low, high) without those at which flanks part."""
+        """What is left of rising windows of speeds (low, high) without those at which contact is lost."""
         left = list(windows)
         for low, high in self._parting():
             pieces = [piece for a, b in left for piece in ((a, min(b, low)), (max(a, high), b))]

@@ -19,7 +19,7 @@ UNDAMPED, LIGHTLY = 1e-4, 1e-3
 """Damping ratios below which a mode has no steady state at its resonance, and below which no rig of steel with joints
 and bearings is; its own material damps with 5e-4 and more."""
 GROWS = -1e-9
-"""Damping ratio below which a mode grows by itself; between this and zero stand rounding errors."""
+"""Damping ratio below which a mode is unstable; between this and zero stand rounding errors."""
 ON = 0.01
 """Distance of a dwell from a resonance, as a share of its speed, up to which it stands on it."""
 REMEDY = (
