@@ -50,13 +50,12 @@ class TorqueSection:
 class TwistRows:
     """Springs through which torque passes; several of one section stand one after the other.
 
-    sections : (r,) of each; middle : (r,) of its element from the left end of the shaft [m], 0 of a joint
+    sections : (r,) of each
     rows : (r, n) twist per freedom; stiffness [N m/rad], damping [N m s/rad] : (r,)
     bracing : (r,) offset of the twist per bracing twist [-]
     """
 
     sections: tuple[TorqueSection, ...]
-    middle: Array
     rows: Array
     stiffness: Array
     damping: Array
@@ -65,20 +64,18 @@ class TwistRows:
 
 @dataclass(frozen=True)
 class TwistSpring:
-    """One spring: row (n,) with its stiffness and damping; middle of its element on the shaft [m], 0 of a joint."""
+    """One spring: row (n,) with its stiffness and damping."""
 
     section: TorqueSection
     row: Array
     stiffness: float
     damping: float
-    middle: float = 0.0
 
 
 def twist_rows(springs: Sequence[TwistSpring], braced: str | None) -> TwistRows:
     """Rows of springs; braced : name of the coupling that makes the bracing twist."""
     return TwistRows(
         sections=tuple(spring.section for spring in springs),
-        middle=np.array([spring.middle for spring in springs]),
         rows=np.array([spring.row for spring in springs]),
         stiffness=np.array([spring.stiffness for spring in springs]),
         damping=np.array([spring.damping for spring in springs]),
@@ -100,17 +97,17 @@ def torsional_twist_rows(drivetrain: Drivetrain) -> TwistRows:
             continue
         row = np.zeros(size)
         row[joint.dof_a], row[joint.dof_b] = 1.0, -1.0
-        section, middle = (
+        section = (
             next(places[joint.name])
             if joint.kind == "shaft"
-            else (TorqueSection(kind=joint.kind, part=joint.name), 0.0)
+            else TorqueSection(kind=joint.kind, part=joint.name)
         )
-        springs.append(TwistSpring(section, row, joint.stiffness, joint.damping, middle))
+        springs.append(TwistSpring(section, row, joint.stiffness, joint.damping))
     return twist_rows(springs, drivetrain.bracing_coupling)
 
 
-def section_of_elements(shaft: Shaft, positions: Array) -> Iterator[tuple[TorqueSection, float]]:
-    """Section and middle [m] of each element between neighbouring positions (n,) [m] of a chain."""
+def section_of_elements(shaft: Shaft, positions: Array) -> Iterator[TorqueSection]:
+    """Section of each element between neighbouring positions (n,) [m] of a chain."""
     ends = np.cumsum([0.0, *(section.length for section in shaft.sections)])
     found = [
         TorqueSection(kind="shaft", part=shaft.name, start=float(a), end=float(b), section=section)
@@ -118,4 +115,4 @@ def section_of_elements(shaft: Shaft, positions: Array) -> Iterator[tuple[Torque
     ]
     middle = 0.5 * (positions[:-1] + positions[1:])
     index = np.clip(np.searchsorted(ends, middle) - 1, 0, len(found) - 1)
-    return ((found[i], float(at)) for i, at in zip(index, middle))
+    return (found[i] for i in index)

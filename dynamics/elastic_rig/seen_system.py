@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -81,6 +82,10 @@ class SeenRig:
     def on_freedoms(self, rows: Array) -> Array:
         """Rows (m, n) on the freedoms of the system of rows (m, n_full) on those of the whole rig."""
         return np.asarray(self.reduced.rows(rows) @ self._back)
+
+    def on_coordinates(self, motion: NDArray[Any]) -> NDArray[Any]:
+        """Motions (n, k) of the freedoms of the system on the coordinates of the reduced rig."""
+        return np.asarray(self._back @ motion)
 
     @cached_property
     def _mesh_wrench(self) -> MeshWrench:

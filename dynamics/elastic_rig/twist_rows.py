@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.shaft import Shaft
 from dynamics.drivetrain.twist_rows import (
     SectionKind,
@@ -26,14 +25,10 @@ JOINTS: tuple[SectionKind, ...] = ("spline", "coupling", "motor")
 TURN = DIRECTIONS.index("turn")
 
 
-def elastic_twist_rows(seen: SeenRig, system: LinearSystem) -> TwistRows:
-    """Rows on the freedoms of a system of ``seen``; they are the same for all its running states."""
+def elastic_twist_rows(seen: SeenRig) -> TwistRows:
+    """Rows on the freedoms of the systems of ``seen``; they are the same for all its running states."""
     model = seen.reduced.model
-    back = np.linalg.inv(system.coordinates.freedoms)
-    springs = []
-    for spring in _springs(model):
-        row = seen.reduced.rows(spring.row) @ back
-        springs.append(replace(spring, row=row))
+    springs = [replace(spring, row=seen.on_freedoms(spring.row)) for spring in _springs(model)]
     return twist_rows(springs, model.rig.drivetrain.bracing_coupling)
 
 
@@ -56,10 +51,10 @@ def _springs(model: ElasticModel) -> Iterator[TwistSpring]:
 def _elements(model: ElasticModel, shaft: Shaft) -> Iterator[TwistSpring]:
     nodes = model.freedoms.nodes[shaft.name]
     lengths = np.diff(nodes.positions)
-    for i, (section, middle) in enumerate(section_of_elements(shaft, nodes.positions)):
+    for i, section in enumerate(section_of_elements(shaft, nodes.positions)):
         assert section.section is not None
         row = np.zeros(model.size)
         first = nodes.first + 6 * i + TURN
         row[first], row[first + 6] = 1.0, -1.0
         stiffness = shaft.shear_modulus * section.section.polar_moment / float(lengths[i])
-        yield TwistSpring(section, row, stiffness, shaft.damping_time * stiffness, middle)
+        yield TwistSpring(section, row, stiffness, shaft.damping_time * stiffness)

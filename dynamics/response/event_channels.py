@@ -58,12 +58,11 @@ def bearing_channels(seen: SeenRig, system: LinearSystem, state: RunningState) -
     system : of ``seen`` at this running state. The force of a film is its tangent times the displacement by the
     meshes; the weight of the shafts is left out.
     """
-    back = np.linalg.inv(system.coordinates.freedoms)
     zero = np.zeros((2, len(system.inertia)))
     found = []
     for name, coefficients in state.bearings.items():
         stiffness, damping = coefficients.padded()
-        rows = np.asarray(seen.reduced.rows(seen.reduced.model.ports[name]) @ back)
+        rows = seen.on_freedoms(seen.reduced.model.ports[name])
         found.append(
             Channel(place=name, kind="bearing", angle=stiffness[:2] @ rows, speed=damping[:2] @ rows)
         )

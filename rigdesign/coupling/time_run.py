@@ -99,7 +99,7 @@ def run_ramp(
         torque_band=SPECTRUM_ORDERS * highest_mesh_frequency(rig, top) / (2.0 * np.pi),
         keep_accounts=False,
         cutoff=_cutoff(rig),
-        sections=lambda speed: twist_rows_of(rig, loop.at(0.0), speed / rig.pinion_speed(1.0)),
+        sections=lambda speed: twist_rows_of(rig, speed / rig.pinion_speed(1.0)),
     )
     response = run_schedule(
         loop,

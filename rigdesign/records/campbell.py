@@ -152,8 +152,8 @@ def _whirls(rig: Rig, states: Sequence[LoopState], found: Sequence[ShapedModes])
     for state, at in zip(states, found):
         if state.state is None:
             continue
-        own = np.linalg.solve(state.system.coordinates.freedoms, at.shapes)
-        character = mode_character(rig.elastic.seen.reduced, np.asarray(own, complex))
+        seen = rig.elastic.seen
+        character = mode_character(seen.reduced, seen.on_coordinates(np.asarray(at.shapes, complex)))
         whirls.update(zip((id(mode) for mode in at.modes), character.lateral_whirl(LATERAL)))
     return whirls
 

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.bearing.lateral import LateralCoefficients
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.response.event_channels import Channel
 from dynamics.response.event_march import EventHistory
@@ -28,12 +27,11 @@ LINEAR_FILMS = (
 """What of films an event leaves out, for its notes."""
 
 
-def journal_channels(seen: SeenRig, system: LinearSystem, films: Sequence[str]) -> tuple[Channel, ...]:
+def journal_channels(seen: SeenRig, films: Sequence[str]) -> tuple[Channel, ...]:
     """Travel along y and z [m] of journals in films, ``gearbox.bearing``, against their seats: two channels each."""
-    back = np.linalg.inv(system.coordinates.freedoms)
     found = []
     for name in films:
-        rows = np.asarray(seen.reduced.rows(seen.reduced.model.ports[name])[:2] @ back)
+        rows = seen.on_freedoms(seen.reduced.model.ports[name])[:2]
         found += [
             Channel(place=name, kind="journal travel", angle=row[None], speed=np.zeros_like(row[None]))
             for row in rows

@@ -77,14 +77,14 @@ class EventPlace:
         )
         bearings = solve_bearings(rig, point, state)
         system = loop_system(rig, point, state, bearings)
-        channels = torque_channels(twist_rows_of(rig, system, speed))
+        channels = torque_channels(twist_rows_of(rig, speed))
         films: dict[str, LateralCoefficients] = {}
         if rig.shaft_model != "torsional":
             running = running_state(rig, point, state, bearings)
             found = bearing_coefficients(rig, state, bearings)
             films = {name: found[name] for name, _, entry in rig.bearings() if entry.has_film}
             channels += bearing_channels(rig.elastic.seen, system, running)
-            channels += journal_channels(rig.elastic.seen, system, list(films))
+            channels += journal_channels(rig.elastic.seen, list(films))
         laws = periodic_laws(rig, shifted_laws(rig, mesh_models(rig, point, state), CONTROLLED))
         drags = drags_at(rig, test.last, state, speed)
         return cls(name, event.kind, rig, test.last, point, state, system, laws, channels, drags, films)
@@ -182,9 +182,8 @@ class EventPlace:
             yield from travel_warnings(self.rig, travels, self.coupling_state.bearing_clearance)
 
     def _peaks(self, history: EventHistory) -> Iterator[EventPeak]:
-        for m, name in enumerate(self.rig.mesh_names):
-            amount = np.maximum(np.abs(history.least[m]), np.abs(history.greatest[m]))
-            yield _peak(name, "mesh torque", float(history.before_torque[m]), amount, history.time)
+        meshes = tuple(self._peaks_of_meshes(history))
+        yield from meshes
         found: dict[tuple[str, Quantity], EventPeak] = {}
         for i, channel in enumerate(self.channels):
             if channel.kind not in QUANTITIES:
@@ -195,12 +194,14 @@ class EventPlace:
                 found[place, quantity] = _at_section(peak, channel.section)
         yield from sorted(found.values(), key=lambda peak: list(QUANTITIES.values()).index(peak.quantity))
         if self.rig.shaft_model == "torsional":
-            yield from self._static_bearings(history)
+            yield from self._static_bearings(meshes)
 
-    def _static_bearings(self, history: EventHistory) -> Iterator[EventPeak]:
-        """Forces of shafts that only twist: their static ones times peak over mean of the meshes on the shaft."""
+    def _static_bearings(self, meshes: Sequence[EventPeak]) -> Iterator[EventPeak]:
+        """Forces of shafts that only twist: their static ones times peak over mean of the meshes on the shaft.
+
+        meshes : peaks of all of them
+        """
         loads = bearing_loads(self.rig, self.coupling_state)
-        meshes = list(self._peaks_of_meshes(history))
         for name, _, entry in self.rig.bearings():
             own = [
                 peak

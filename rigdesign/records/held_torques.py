@@ -24,7 +24,7 @@ def held_torques(rig: Rig, point: PointResult) -> Iterator[HeldTorque]:
     if last.system is None or last.response is None or point.setting is None:
         return
     laws = periodic_laws(rig, shifted_laws(rig, last.models, point.setting))
-    loop = section_torques(last.system, laws, twist_rows_of(rig, last.system, point.point.speed))
+    loop = section_torques(last.system, laws, twist_rows_of(rig, point.point.speed))
     torque = loop.over_period(last.response, last.drags)
     for place, section, swing in section_swings(loop.rows, torque):
         yield HeldTorque(

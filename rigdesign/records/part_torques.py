@@ -11,7 +11,7 @@ from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.records.run_torques import run_torques
 from rigdesign.results.events import EventPeak, EventRecord, PassingPeak
-from rigdesign.results.section_torques import HeldTorque, PlaceKind
+from rigdesign.results.section_torques import HeldTorque, PlaceKind, TorquePlace
 from rigdesign.rig.model import Rig
 
 
@@ -20,7 +20,7 @@ class PartTorque:
     """A place at the largest amount of its torque [N m] in a stage or event.
 
     kind, part : as of `TorquePlace`; part of a seat (``spline``) is its gear ``gearbox.gear``
-    place : its name in tables
+    place : its name in tables, that of `TorquePlace`
     """
 
     kind: PlaceKind
@@ -100,10 +100,12 @@ def _of_events(points: Sequence[PointResult], events: Sequence[EventRecord]) -> 
         peaks: tuple[EventPeak | PassingPeak, ...] = (*event.peaks, *event.passing)
         for peak in peaks:
             if peak.quantity in KINDS:
+                kind = KINDS[peak.quantity]
+                place = TorquePlace(kind=kind, part=peak.part)
                 yield PartTorque(
-                    kind=KINDS[peak.quantity],
+                    kind=kind,
                     part=peak.part,
-                    place=peak.place,
+                    place=peak.place if kind == "shaft" else place.name,
                     torque=peak.peak,
                     where=f"event {event.name}",
                     event=event.name,

@@ -53,7 +53,7 @@ class LoopOverSpeed:
         near = (dwell for dwell in self._dwells if is_around(stated, dwell))
         around = min(near, key=lambda dwell: abs(dwell - stated), default=stated)
         system = nearest(self.states, around).system
-        rows = twist_rows_of(self.rig, self.states[0].system) if not self._loops else self._any.rows
+        rows = twist_rows_of(self.rig) if not self._loops else self._any.rows
         if id(system) not in self._loops:
             self._loops[id(system)] = section_torques(system, self._laws(), rows)
         torque = self._loops[id(system)].over_period(point, self.warm.drags)

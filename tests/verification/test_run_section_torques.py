@@ -43,7 +43,7 @@ def test_torques_read_in_bands_are_those_of_angles_and_speeds() -> None:
         ports={mesh.name: mesh_ports(model, mesh.name) for mesh in rig.drivetrain.meshes},
     )
     first, second = (seen.system(running(rig, speed)) for speed in (100.0, 140.0))
-    rows = elastic_twist_rows(seen, first)
+    rows = elastic_twist_rows(seen)
     command = Command(time=np.array([0.0, 0.5]), speed=np.array([100.0, 140.0]), torque=np.full(2, TORQUE))
     found = run(SpeedBands(limits=(110.0,), systems=(first, second)), command, rows, window=25e-6)
     assert found.speed[-1] > 112.0 and found.sections is not None

@@ -156,7 +156,7 @@ def test_elastic_rig_has_the_torques_of_its_full_matrices() -> None:
     )  # all modes: a change of coordinates
     system = seen.system(state)
     point = respond(system)
-    rows = elastic_twist_rows(seen, system)
+    rows = elastic_twist_rows(seen)
     torque = section_torques(system, laws(), rows).over_period(point)
     full = full_matrices(model, state)
     for number in (1, 2):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.graph import assemble, shaft_chains
 from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
@@ -89,11 +89,10 @@ def test_a_gear_without_any_contact_flies_freely(
     assert np.all(history.greatest[0, 1:] == 0.0) and np.all(history.least[0, 1:] == 0.0)
     # the section next to the gear unwinds from the mean torque towards the other side within its own half period
     rows = torsional_twist_rows(prototype())
-    at = next(
-        i
-        for i, (section, middle) in enumerate(zip(rows.sections, rows.middle))
-        if section.part == "test_pinion" and 0.19 <= middle < 0.2
-    )
+    ends = shaft_chains(prototype())["test_pinion"].positions
+    own = [i for i, section in enumerate(rows.sections) if section.part == "test_pinion"]
+    middles = 0.5 * (ends[:-1] + ends[1:])
+    at = next(i for i, middle in zip(own, middles, strict=True) if 0.19 <= middle < 0.2)
     values = history.values[at]
     assert abs(history.before[at]) == pytest.approx(TORQUE, rel=0.03)
     assert values.min() < -0.9 * abs(history.before[at]) and values.max() > 0.3 * abs(history.before[at])
@@ -177,7 +176,7 @@ def test_bearings_of_the_elastic_rig_carry_the_mesh_force() -> None:
     )
     state = RunningState(speed=SPEED, bearings=bearings(rig))
     system = seen.system(state)
-    channels = torque_channels(elastic_twist_rows(seen, system)) + bearing_channels(seen, system, state)
+    channels = torque_channels(elastic_twist_rows(seen)) + bearing_channels(seen, system, state)
     watched = Watched(channels)
     start = steady_start(system, laws, SPEED, TORQUE, {})
     history = EventMarch(system, laws, start, watched).run(1e-3)

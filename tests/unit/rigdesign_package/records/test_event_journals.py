@@ -29,10 +29,11 @@ def test_channels_read_the_motion_of_journals_against_their_seats() -> None:
     )
     system = seen.system(running(rig))
     names = ["test_pinion front", "reference_wheel rear"]
-    watched = Watched(journal_channels(seen, system, names))
+    watched = Watched(journal_channels(seen, names))
     eta = np.random.default_rng(1).normal(size=seen.reduced.size)
     assert system.coordinates is not None
     angles = system.coordinates.freedoms @ eta
+    assert seen.on_coordinates(angles) == pytest.approx(eta, rel=1e-9, abs=1e-12)
     found = watched.read(DriveState(angles=angles, speeds=np.zeros_like(angles), twist=0.0))
     expected = np.concatenate([(model.ports[name] @ (seen.reduced.basis @ eta))[:2] for name in names])
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)

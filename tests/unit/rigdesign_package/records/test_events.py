@@ -167,7 +167,7 @@ def test_the_torque_flange_is_held_in_the_events_and_in_the_stages(rig: SolvedRi
     )
     assert (check.id, check.verdict) == ("bought_part_event.torque_flange", "pass")
     assert check.value == pytest.approx(coupling) and check.limit == pytest.approx(400.0)
-    assert check.reason.startswith("wheel_side, event broken")
+    assert check.reason.startswith("coupling wheel_side, event broken")
     stated = rig.rig.case.with_values({"limits.bought_parts.torque_flange.overload": "600 N m"})
     higher = replace(rig, rig=replace(rig.rig, case=stated))
     assert next(iter(overloads(higher))).limit == pytest.approx(600.0)

@@ -32,7 +32,7 @@ def curves() -> Curves:
 def record() -> SectionTorqueRecord:
     rig, point = base()
     assert point.last.system is not None
-    sections = twist_rows_of(rig, point.last.system).sections
+    sections = twist_rows_of(rig).sections
     seat = next(i for i, one in enumerate(sections) if one.part == "test.pinion")
     ramp = made_ramp(rig, sections, {(seat, "test"): (140.0, 220.0), (seat, "run_down"): (30.0, 150.0)})
     loads: Any = SimpleNamespace(
