@@ -234,10 +234,9 @@ def solve_static(
         tau, tangents, own, transmitted = _reactions(model, u, where, speed)
         residual = u @ model.stiffness.T - tau - model.twist * phi - drag - drive[:, None] * unit
         miss = 0.0 if torque is None else torque - float(transmitted[:, control_mesh].mean())
+        error = max(float(np.max(np.abs(residual))), abs(miss)) / scale
         # a loop that a shift braces carries torque with hardly any twist
-        loaded = max(scale, float(np.max(np.abs(transmitted))))
-        error = max(float(np.max(np.abs(residual))), abs(miss)) / loaded
-        if error < 1e-10:
+        if error < 1e-10 * max(1.0, float(np.max(np.abs(transmitted))) / scale):
             return StaticState(
                 twist=float(phi), angles=where, ports=u, torque=transmitted, drive=drive,
                 approach=u @ model.approach.T + model.offsets,
