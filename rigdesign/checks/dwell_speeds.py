@@ -54,7 +54,8 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     rig = solved.rig
     if solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
-    for stage in dwell_stages(rig):
+    dwells = sorted(dwell_stages(rig), key=lambda stage: stage.kind != "dwell")
+    for stage in dwells:  # of stages at one speed the first is named
         speed = rig.pinion_speed(stage.speed_end)
         if speed not in solved.near_dwells:
             continue
