@@ -61,7 +61,7 @@ def bent() -> LinearSystem:
     model = assemble_rig(rig)
     seen = SeenRig(
         reduced=reduce_rig(model, bearings(rig), 20e3),
-        ports={mesh.name: mesh_ports(model, mesh.name) for mesh in rig.drivetrain.meshes},
+        ports={"test": mesh_ports(model, "test"), "reference": mesh_ports(model, "reference", "back")},
     )
     return seen.system(RunningState(speed=0.0, bearings=bearings(rig)))
 
@@ -69,8 +69,9 @@ def bent() -> LinearSystem:
 @pytest.mark.parametrize("torque", [1.0, 180.0])
 def test_bow_and_run_out_of_a_rig_at_rest_give_no_blow(bent: LinearSystem, torque: float) -> None:
     """They displace it statically, so that the meshes feel nothing, flanks that just touch included. Left: 2 % at most
-    of what loads from the first sample on give."""
-    command = Command(time=np.array([0.0, 0.05]), speed=np.zeros(2), torque=np.full(2, torque))
+    of what loads from the first sample on give, before the loop rolls out of the angle at which it was wound up, where
+    its strain energy is highest."""
+    command = Command(time=np.array([0.0, 0.02]), speed=np.zeros(2), torque=np.full(2, torque))
     bare, found, before = torques(bent, prototype_laws(), command)
     assert np.all(np.ptp(before - bare, axis=1) > 0.5)
     assert np.all(np.ptp(found - bare, axis=1) < 0.02 * np.ptp(before - bare, axis=1))

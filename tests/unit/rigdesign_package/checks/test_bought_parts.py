@@ -56,7 +56,7 @@ def solved_rig_of(case: Case) -> SolvedRig:
         last=SimpleNamespace(system=None, response=None),
     )  # fmt: skip
     return SolvedRig(
-        rig=rig, points=(point,), run=SimpleNamespace(ramp=ramp),  # type: ignore[arg-type]
+        rig=rig, points=(point,), run=SimpleNamespace(ramp=ramp, points=(point,)),  # type: ignore[arg-type]
         loads=DynamicLoads(meshes=meshes, bracing=(StageBracing(stage="test", drift=drift),)),
     )  # fmt: skip
 
