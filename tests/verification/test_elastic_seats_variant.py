@@ -19,6 +19,7 @@ from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 from tests.builders.static_deflection import static_deflection
 
+pytestmark = pytest.mark.slow
 FOLDER = CASES / "uhcf_prototype"
 MESH = "test.main"
 BEARING = 1e8

@@ -42,8 +42,8 @@ def bearing_forces(face: Face) -> tuple[dict[str, Array], Array]:
     march.advance(np.repeat(given, SAMPLES, axis=0))
     whole = rig.reduced.basis @ np.linalg.inv(system.coordinates.freedoms)
     angles, forces = [], []
-    for _ in range(SAMPLES // 4):
-        forces.append(march.advance(np.repeat(given, 2, axis=0)).force.mean(axis=1))
+    for _ in range(SAMPLES // 16):
+        forces.append(march.advance(np.repeat(given, 7, axis=0)).force.mean(axis=1))
         angles.append(march.state().angles)
     moved = whole @ np.mean(angles, axis=0)
     found = {name: film.padded()[0] @ (model.ports[name] @ moved) for name, film in state.bearings.items()}
