@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 65b043e7
+# compiled from sources 949a7d66
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -17,7 +17,7 @@ from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources 65b043e7
+# compiled from sources 949a7d66
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -111,7 +111,7 @@ def slow_targets(
         target[0] = min(max(wish, -control[2]), control[2])
         if target[0] == wish or error * wish < 0.0:
             controller[0] += control[1] * error
-    if control[4] > 0.0:
+    if control[5] > 0.0:
         controller[2] += control[5] * (torque - controller[2])
         controller[4] += control[5] * (given[3] - controller[4])
         controller[1] += control[4] * (controller[4] - controller[2])

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import sliding_direction
 
-# compiled from sources 65b043e7
+# compiled from sources 949a7d66
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 65b043e7
+# compiled from sources 949a7d66
 Array = NDArray[np.float64]
 
 

@@ -47,7 +47,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 65b043e7
+# compiled from sources 949a7d66
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
