@@ -16,6 +16,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsInputError
 from dynamics.response.contact_loop import ContactLoop, LoopRecord, MeshInLoop
+from dynamics.response.held_speed import HeldSpeed
 from dynamics.response.initial_state import pinion_ratios, wound_state
 
 Array = NDArray[np.float64]
@@ -26,8 +27,6 @@ LONGEST_STEP = 4e-6
 """[s]; the factors of the prototype at 3000 rpm are 1e-3 from those of ever shorter steps."""
 WINDOW, WINDOW_PERIODS = 0.03, 40
 """Time [s] and periods of the slowest mesh over which factors are taken, the longer of the two."""
-CORRECTED = 0.7
-"""Share of the drift in speed that a correction of the motor torque takes away."""
 STEADY_SPEED = 1e-4
 """Distance of the mean speed from the one asked for, over that, with which it is held [-]."""
 
@@ -121,40 +120,22 @@ def looped_response(
         drag_torques=problem.drag_torques,
     )  # fmt: skip
     count = math.ceil(max(WINDOW, WINDOW_PERIODS * float(periods.max())) / step)
-    held, windows = _HeldSpeed(problem), _Windows()
+    held, windows, drive = HeldSpeed(problem.system, laws, problem.speed), _Windows(), problem.drive_torque
     while True:
-        record = loop.advance(count, held.drive)
+        record = loop.advance(count, drive)
         windows.add(record)
         speed, time = float(record.speed[0].mean()), windows.count * count * step
         steady = abs(speed - problem.speed) <= STEADY_SPEED * problem.speed
         settled = steady and bool(np.all(windows.to_come <= tolerance))
         if settled or time + count * step > longest:
             break
-        held.correct(loop, speed, count * step)
+        change = held.correction(speed, count * step)
+        loop.kick(change.kick)
+        drive += change.drive_torque
     return LoopedResponse(
         speed=speed, **_in_motion(record), change=windows.to_come, settled=settled, time=time,
         steps=windows.count * count, unconverged=loop.unconverged,
     )  # fmt: skip
-
-
-class _HeldSpeed:
-    """Motor torque and kicks by which the mean speed of the first pinion comes to the one asked for, and stays."""
-
-    def __init__(self, problem: LoopedProblem) -> None:
-        system = problem.system
-        self.drive, self._speed = problem.drive_torque, problem.speed
-        self._ratios = pinion_ratios(system, [mesh.law for mesh in problem.meshes])
-        self._inertia = float(self._ratios @ system.inertia @ self._ratios / self._ratios[system.drive_dof])
-        self._before = math.nan
-
-    def correct(self, loop: ContactLoop, mean: float, window: float) -> None:
-        """After a window [s] with a mean speed [rad/s]."""
-        drift = 0.0 if math.isnan(self._before) else mean - self._before
-        self.drive -= CORRECTED * self._inertia * drift / window
-        # at the end of a window the rigid motion is half a window ahead of its mean
-        kick = self._speed - mean - 0.5 * drift
-        loop.kick(kick * self._ratios)
-        self._before = mean + kick
 
 
 class _Windows:

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.periodic_load import within_period
-from dynamics.response.initial_state import WoundLoop, pinion_ratios
+from dynamics.response.held_speed import HeldSpeed
+from dynamics.response.initial_state import WoundLoop
 from dynamics.response.march_inputs import DragTables
 from dynamics.response.time_march import Block, TimeMarch
 
@@ -48,12 +49,10 @@ class SteadySearch:
         self.balanced_drive = self.drive
         self.steady, self.residual = False, float("inf")
         self._stiffness, self._period = wound.loop_stiffness, period
-        ratios = pinion_ratios(system, march.laws)
-        self._loads = within_period(system.periodic_loads, ratios, period.turns)
-        self._ratios = ratios
-        self._inertia = float(ratios @ system.inertia @ ratios) / ratios[system.drive_dof]
+        self._held = HeldSpeed(system, march.laws, period.speed)
+        self._ratios = self._held.ratios
+        self._loads = within_period(system.periodic_loads, self._ratios, period.turns)
         self._last: Array | None = None
-        self._speed_before: float | None = None
         self._change = float("inf")
         self._quiet = 0
 
@@ -69,11 +68,10 @@ class SteadySearch:
         wave = radius[:, None] * result.force[:, -steps:]
         mean = float(radius[0] * result.force[0].mean())
         torque_error = 0.0 if self.torque is None else self.torque - mean
-        drift = 0.0 if self._speed_before is None else (mean_speed - self._speed_before) / span
-        self.balanced_drive = self.drive - self._inertia * drift
+        self.balanced_drive = self.drive - self._held.inertia * self._held.drift(mean_speed, span)
         self._test(wave, mean, torque_error, mean_speed)
         if not self.steady:
-            self._correct(mean_speed, drift, span, torque_error)
+            self._correct(mean_speed, span, torque_error)
         return result
 
     def held(self, periods: int, tables: Array) -> Block:
@@ -129,11 +127,9 @@ class SteadySearch:
             self.steady = self._quiet >= 2
         self._last = wave
 
-    def _correct(self, mean_speed: float, drift: float, span: float, torque_error: float) -> None:
-        self.drive -= 0.7 * self._inertia * drift
-        # at the end of the block the rigid motion is half a block ahead of its mean
-        kick = self.speed - mean_speed - 0.5 * drift * span
-        self.march.kick(kick * self._ratios)
-        self._speed_before = mean_speed + kick
+    def _correct(self, mean_speed: float, span: float, torque_error: float) -> None:
+        change = self._held.correction(mean_speed, span)
+        self.drive += change.drive_torque
+        self.march.kick(change.kick)
         self.twist += 0.5 * torque_error / self._stiffness
         self.march.set_slow(self.drive, self.twist)

@@ -15,6 +15,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.periodic_load import left_out, within_period
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.held_speed import HeldSpeed
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import march_model
@@ -130,14 +131,14 @@ def _settled(
     system: LinearSystem, laws: Sequence[MeshLaw], start: SteadyStart, missing: tuple[str, ...], cutoff: float
 ) -> SteadyStart:
     """March on with constant motor torque and twist while the missing loads come up; the mean speed is held."""
-    ratios = pinion_ratios(system, laws)
-    inertia = float(ratios @ system.inertia @ ratios) / float(ratios[system.drive_dof])
+    steady = HeldSpeed(system, laws, start.speed)
+    ratios = steady.ratios
     held, rising = _parted(system, laws, start.period)
     turn = 2.0 * np.pi / start.speed
     rise = turn * np.ceil(max(RISE / turn, RISE_TURNS))
     count = round(rise * SAMPLE_RATE)
     angles, speeds = start.angle * ratios[held.dofs], start.speed * ratios[held.dofs]
-    drive, before = start.drive_torque, start.speed
+    drive = start.drive_torque
     march = TimeMarch(
         system,
         laws,
@@ -155,11 +156,9 @@ def _settled(
         given[:, 4:] = held.values(at, speeds) + share**2 * (3.0 - 2.0 * share) * rising.values(at, speeds)
         turned = march.advance(given, drags=constant_drags(start.drags)).slow_speed[:, 0]
         mean = float(turned.mean() / ratios[system.drive_dof])
-        drift = (mean - before) / rise if block else 0.0
-        # at the end of a block the rigid motion is half a block ahead of its mean
-        kick = start.speed - mean - 0.5 * drift * rise
-        march.kick(kick * ratios)
-        drive, before = drive - 0.7 * inertia * drift, mean + kick
+        change = steady.correction(mean, rise)
+        march.kick(change.kick)
+        drive += change.drive_torque
     duration = BLOCKS * count / SAMPLE_RATE
     return replace(
         start,
