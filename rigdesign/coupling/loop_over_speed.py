@@ -45,8 +45,7 @@ def loop_over_speed(
 def under_share(coupling_state: CouplingState, share: float) -> CouplingState:
     """A coupling state whose mesh torques load the bearings with a share of theirs, `LIGHTEST` at least."""
     share = math.copysign(max(abs(share), LIGHTEST), share)
-    torque = {name: share * value for name, value in coupling_state.mesh_torque.items()}
-    return replace(coupling_state, mesh_torque=torque)
+    return coupling_state.with_torque_share(share)
 
 
 def band_limits(rig: Rig, speeds: tuple[float, float]) -> tuple[float, ...]:

@@ -28,8 +28,7 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     """
     share = point.torque / test.point.torque if test.point.torque else 0.0
     coupling_state = replace(
-        test.last.coupling_state,
-        mesh_torque={name: share * torque for name, torque in test.last.coupling_state.mesh_torque.items()},
+        test.last.coupling_state.with_torque_share(share),
         bearing_heat=dict.fromkeys(test.last.coupling_state.bearing_heat, 0.0),
     )
     bearings = solve_bearings(rig, point, coupling_state)

@@ -5,7 +5,7 @@ Parts are named by gearbox and own name: gear ``test.pinion``, mesh ``test.main`
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 
 Values = Mapping[str, float]
 
@@ -59,6 +59,10 @@ class CouplingState:
     and ``coupling.vertical`` [m], beyond the cold set-up: it loads their bearings. Of couplings that resist it."""
     coupling_angle: Values = field(default_factory=dict)
     """The same of its slope over x [rad]."""
+
+    def with_torque_share(self, share: float) -> "CouplingState":
+        """This coupling state with a share of its mesh torques."""
+        return replace(self, mesh_torque={name: share * torque for name, torque in self.mesh_torque.items()})
 
     def freeze(self, arrows: frozenset[str], initial: "CouplingState") -> "CouplingState":
         """This coupling state with the named arrows cut: those fields stay as in ``initial``.

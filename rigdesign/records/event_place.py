@@ -70,11 +70,7 @@ class EventPlace:
         speed = schedule.test_speed if event.speed is None else event.speed
         torque = schedule.test_torque if event.torque is None else event.torque
         point = OperatingPoint(stage=name, speed=speed, torque=torque)
-        share = torque / test.point.torque
-        state = replace(
-            test.last.coupling_state,
-            mesh_torque={k: share * value for k, value in test.last.coupling_state.mesh_torque.items()},
-        )
+        state = test.last.coupling_state.with_torque_share(torque / test.point.torque)
         bearings = solve_bearings(rig, point, state)
         system = loop_system(rig, point, state, bearings)
         channels = torque_channels(twist_rows_of(rig, speed))

@@ -14,7 +14,7 @@ Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123.
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 
 from dynamics.drivetrain.linear_system import LinearSystem
@@ -152,13 +152,8 @@ def _at(solved: SolvedRig, mesh: int, stage: str, speed: float, torque: float) -
         speed=speed / rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, 1.0),
         torque=share * test.point.torque,
     )
-    torques = {name: share * value for name, value in test.last.coupling_state.mesh_torque.items()}
-    return _Loaded(
-        point,
-        replace(test.last.coupling_state, mesh_torque=torques),
-        {},
-        BracingState(mode="torque_controlled"),
-    )
+    state = test.last.coupling_state.with_torque_share(share)
+    return _Loaded(point, state, {}, BracingState(mode="torque_controlled"))
 
 
 def _row(solved: SolvedRig, wanted: _Wanted, responses: tuple[CurvePoint, ...]) -> DiscretisationRow:
