@@ -25,14 +25,13 @@ from dynamics.response.looped_response import LoopedProblem, LoopedResponse, loo
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.base.parallel import BackgroundTasks
-from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import drags_at
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import held_contact
+from rigdesign.records.loop_states import state_at
 from rigdesign.results.contact_in_loop import ContactInLoop, LoopedContact
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
@@ -73,12 +72,8 @@ class _Both:
 
 
 def contact_in_loop(rig: Rig, run: DynamicRun) -> ContactInLoop:
-    """Of every mesh at every place; empty below fidelity reference, for analytic teeth and shafts that only twist."""
-    if (
-        rig.fidelity != "reference"
-        or rig.mesh_stiffness != "influence_numbers"
-        or rig.shaft_model == "torsional"
-    ):
+    """Of every mesh at every place; empty for analytic teeth and shafts that only twist."""
+    if rig.mesh_stiffness != "influence_numbers" or rig.shaft_model == "torsional":
         return ContactInLoop()
     places = _places(rig, run)
     with BackgroundTasks([partial(_both, rig, place) for place in places]) as tasks:
@@ -116,16 +111,15 @@ def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoi
 
     Raises DynamicsNotConverged where there is no response, DynamicsInputError where a mesh carries no torque.
     """
-    last, state = held.last, held.last.coupling_state
-    point = replace(held.point, speed=speed)
-    system = replace(loop_system(rig, point, state, solve_bearings(rig, point, state)), periodic_loads=())
+    last = held.last
+    system = replace(state_at(rig, held, speed).system, periodic_loads=())
     laws = [alike_teeth(law) for law in laws_of(last.models)]
-    drags = drags_at(rig, last, state, speed)
+    drags = drags_at(rig, last, last.coupling_state, speed)
     curve = periodic_response(
         system,
         laws,
         [rig.pinion_speed(speed)],
-        LoopLoad(torque=signed_torque(rig, point)),
+        LoopLoad(torque=signed_torque(rig, held.point)),
         drag_torques=drags,
         settings=SweepSettings(cutoff=rig.highest_mode),
     )

@@ -1,6 +1,6 @@
 """Periodic response of the warm rig at a speed that no stage holds, under the torque of the governing held point."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
@@ -8,13 +8,12 @@ from dynamics.drivetrain.static_loop import port_model
 from dynamics.response.harmonic_walk import MOST_HARMONICS, mesh_cells
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.coupling.time_run import drags_at
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.records.loop_states import state_at
 from rigdesign.rig.model import Rig
 
 REACH = 1.5
@@ -57,14 +56,12 @@ def response_at(rig: Rig, held: PointResult, speed: float) -> SpeedResponse:
     as springs.
     """
     last = held.last
-    point = replace(held.point, speed=speed)
-    bearings = solve_bearings(rig, point, last.coupling_state)
-    system = loop_system(rig, point, last.coupling_state, bearings)
+    system = state_at(rig, held, speed).system
     laws = periodic_laws(rig, laws_of(last.models))
     period = rig.case.numerics.response_period
     _, cell_angle = mesh_cells(port_model(system, laws), period, 0)
     reached = MOST_HARMONICS / REACH * rig.drive_speed(speed) / cell_angle
-    torque = signed_torque(rig, point)
+    torque = signed_torque(rig, held.point)
     curve = periodic_response(
         system,
         laws,

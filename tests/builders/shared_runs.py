@@ -11,7 +11,7 @@ import pickle
 import shutil
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -91,7 +91,7 @@ def _shipped(name: str) -> ShippedRun:
 
     def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
         if solved.run is not None and solved.rig.fidelity == "standard":
-            looped.append(contact_in_loop(replace(solved.rig, fidelity="reference"), solved.run))
+            looped.append(contact_in_loop(solved.rig, solved.run))
         return result
 
     follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}
