@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 949a7d66
+# compiled from sources d6830dd0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -23,7 +23,7 @@ from dynamics.kernels.looped_contact import (
     press_phase,
 )
 
-# compiled from sources 949a7d66
+# compiled from sources d6830dd0
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]

@@ -79,7 +79,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 949a7d66
+# compiled from sources d6830dd0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 949a7d66
+# compiled from sources d6830dd0
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 8
 """Numbers in a vector."""

@@ -47,7 +47,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 949a7d66
+# compiled from sources d6830dd0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

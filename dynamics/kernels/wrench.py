@@ -39,7 +39,7 @@ from dynamics.kernels.mesh_workspace import (
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import dot_modes, push_modes
 
-# compiled from sources 949a7d66
+# compiled from sources d6830dd0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -212,7 +212,7 @@ def lean_pinions(
     wrench: WrenchModes, blocks: Integers, bank: Array, space: Array, forces: Array, steps: int
 ) -> None:
     """Set by how much the pinions turn from the centre line beyond their ports, and how it goes on as in the last
-    ``steps``; where on its path a flank stands is told by these turns."""
+    ``steps``; these turns give the place of a flank on its path."""
     n_meshes = wrench.numbers.shape[0]
     for m in range(n_meshes):
         at = (m * N_SPACE) & POSITIVE
