@@ -56,11 +56,15 @@ def section_torque_record(solved: SolvedRig, states: Sequence[LoopState]) -> Sec
 
 
 def _more_speeds(rig: Rig, run: DynamicRun) -> Solve | None:
-    """Finds the response of the governing curve at more speeds, where the curves are to show every resonance."""
+    """Finds stable responses of the governing curve at more speeds, where the curves are to show every resonance.
+
+    Where only a march finds the motion, meshes lose contact and no resonance of a shaft is narrow.
+    """
     if not resolved(rig):
         return None
     speeds = run.curves.response.speeds
-    return response_solver(rig, run.test.last, run.curves.torque, (float(min(speeds)), float(max(speeds))))
+    limits = (float(min(speeds)), float(max(speeds)))
+    return response_solver(rig, run.test.last, run.curves.torque, limits, stable_only=True)
 
 
 def chosen(points: Sequence[CurvePoint], most: int, dwells: Sequence[float] = ()) -> list[CurvePoint]:

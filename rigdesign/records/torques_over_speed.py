@@ -84,15 +84,17 @@ def torques_over_speed(
 ) -> tuple[tuple[CurvePoint, ...], tuple[TorqueOverSpeed, ...]]:
     """Points by rising speed, those of narrow peaks among them, and the torque of every place at each.
 
-    solve : finds the response at more speeds; None where the points are all there is
+    solve : finds the response at more speeds, or none at some; None where the points are all there is
     """
     if not points:
         return (), ()
     found = {point.speed: (point, loop.swings(point)) for point in points}
+    asked: set[float] = set()
     for _ in range(ROUNDS if solve is not None else 0):
-        speeds = _around_peaks(found)
+        speeds = sorted(_around_peaks(found) - asked)
         if not speeds or solve is None:
             break
+        asked.update(speeds)
         found |= {point.speed: (point, loop.swings(point)) for point in solve(speeds).points}
     kept = sorted({point.speed for point in points} | set(_peaks(found)))
     listed = [found[speed] for speed in kept]
@@ -116,13 +118,13 @@ def _peaks(found: Found) -> Iterator[float]:
     return (speeds[i] for i in np.flatnonzero(inner.any(axis=1)))
 
 
-def _around_peaks(found: Found) -> list[float]:
+def _around_peaks(found: Found) -> set[float]:
     """Speeds half way from every peak that is not flat to its neighbours."""
     speeds, peaks = _table(found, FLAT)
     new: set[float] = set()
     for i in np.flatnonzero(peaks.any(axis=1)):
         new |= {0.5 * (speeds[i - 1] + speeds[i]), 0.5 * (speeds[i] + speeds[i + 1])}
-    return sorted(new)
+    return new
 
 
 def _table(found: Found, above: float = 0.0) -> tuple[list[float], NDArray[np.bool_]]:

@@ -164,7 +164,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
     checks = all_checks(solved)
     clock.lap("checks")
     losses = losses_by_stage(rig, points)
-    return RunResult(
+    result = RunResult(
         case=_case_record(case),
         fidelity=rig.fidelity,
         verdict=overall(checks),
@@ -194,6 +194,8 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         timings_s=clock.laps,
         fields=[field for p in points for field in fields_of(rig, p)],
     )
+    clock.lap("records")
+    return result
 
 
 def _case_record(case: Case) -> dict[str, str]:
