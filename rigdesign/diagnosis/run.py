@@ -11,9 +11,10 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.constants import Constants, constants
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.patch import patched_values
+from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.proof import FullRun
 from rigdesign.diagnosis.decision.proposals import extras_of, proposals
-from rigdesign.diagnosis.decision.workflow import Diagnosis, Problem, diagnose
+from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
 from rigdesign.diagnosis.library.candidates import spare_channels

@@ -5,13 +5,20 @@ from pathlib import Path
 
 from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import remove_published, staged
+from rigdesign.case.model import Case
 from rigdesign.diagnosis.decision.patch import case_patch, variant_text
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
-from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.diagnosis.document.outcome import CasePatch, Outcome
 from rigdesign.diagnosis.run import Calibrated
 from rigdesign.report.pages.diagnosis import diagnosis_page
 
-PATCHES = ["case.patch.json", "patched/case.toml", "measurement.patch.json"]
+PATCHES = [
+    "case.patch.json",
+    "patched/case.toml",
+    "suspected.patch.json",
+    "suspected/case.toml",
+    "measurement.patch.json",
+]
 """Files that a verdict may leave out; those of an earlier run are removed then."""
 
 
@@ -34,26 +41,32 @@ def write_diagnosis(outcome: Outcome, out: Path) -> None:
             file.parent.mkdir(exist_ok=True)
             file.write_text(text, encoding="utf-8", newline="\n")
     remove_published(out, [name for name in PATCHES if name not in texts])
-    if "patched/case.toml" not in texts and _is_empty(out / "patched"):
-        (out / "patched").rmdir()
+    for folder in ("patched", "suspected"):
+        if f"{folder}/case.toml" not in texts and _is_empty(out / folder):
+            (out / folder).rmdir()
 
 
 def diagnosis_texts(outcome: Outcome, out: Path) -> dict[str, str]:
     """Name of every file for ``out`` -> its text."""
     document = diagnosis_document(outcome)
     texts = {"diagnosis.html": diagnosis_page(outcome, document)}
-    patch = outcome.case_patch
-    if patch is not None:
-        case = outcome.result.case
-        operations = to_plain(case_patch(case, patch.title, patch.values))
-        texts["case.patch.json"] = (
-            json.dumps(operations, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-        )
-        texts["patched/case.toml"] = variant_text(case, patch.title, patch.values, out / "patched")
+    if outcome.case_patch is not None:
+        texts |= _patch_texts(outcome.result.case, outcome.case_patch, "case.patch.json", out / "patched")
+    if outcome.offered is not None:
+        texts |= _patch_texts(outcome.result.case, outcome.offered, "suspected.patch.json", out / "suspected")
     if outcome.corrections:
         texts["measurement.patch.json"] = to_text(measurement_patch(outcome))
     texts["diagnosis.json"] = to_text(document)
     return texts
+
+
+def _patch_texts(case: Case, patch: CasePatch, name: str, folder: Path) -> dict[str, str]:
+    """The JSON Patch, and the case with it as a variant in a folder."""
+    operations = to_plain(case_patch(case, patch.title, patch.values))
+    return {
+        name: json.dumps(operations, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
+        f"{folder.name}/case.toml": variant_text(case, patch.title, patch.values, folder),
+    }
 
 
 def write_calibrated(calibrated: Calibrated, out: Path) -> None:

@@ -17,7 +17,8 @@ from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.decision.decision import Thresholds
 from rigdesign.diagnosis.decision.defaults import Calibration
-from rigdesign.diagnosis.decision.workflow import Problem, diagnose
+from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual.residual_problem import compare
 from rigdesign.diagnosis.run import Result, mesh_orders, stated_settings, teeth_a_turn

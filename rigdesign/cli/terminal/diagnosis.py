@@ -51,7 +51,11 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     for one in outcome.named:
         sizes = "; ".join(formatted(value) for value in one.shown)
         console.print(Text("effect    ", "bold") + Text(f"{one.explanation}: {sizes}, 95 % interval"))
-    for suspect in () if outcome.verdict == "within_noise" else outcome.suspects:
+    if outcome.suspected is not None:
+        sizes = "; ".join(formatted(value) for value in outcome.suspected.shown)
+        text = f"{outcome.suspected.explanation}: {sizes}, 95 % interval"
+        console.print(Text("suspected ", "bold yellow") + Text(text))
+    for suspect in () if outcome.verdict in ("within_noise", "suspected") else outcome.suspects:
         share = f"{100.0 * suspect.inclusion:.0f} %"
         size = "" if suspect.size is None else f"; alone {formatted(suspect.size.shown[0])}"
         console.print(Text("perhaps   ", "bold") + Text(f"{suspect.name}: posterior {share}{size}"))
@@ -69,7 +73,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
             f"({', '.join(outcome.gap.points)}), a healthy rig has 1"
         )
         console.print(Text("gap       ", "bold") + Text(text, "bold red" if outcome.gap.grown else ""))
-    left = sentences(outcome.after, measurement) if outcome.named else []
+    left = sentences(outcome.after, measurement) if outcome.in_model else []
     for text in left[:3]:
         console.print(Text("remains   ", "bold") + Text(text))
     for step in steps(outcome)[:5]:
@@ -78,4 +82,6 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
         console.print(f"patched case: {out / 'patched' / 'case.toml'}")
     else:
         console.print(f"case not patched: {outcome.refused}")
+    if outcome.offered is not None:
+        console.print(f"case with the suspected effect, to be tried: {out / 'suspected' / 'case.toml'}")
     console.print(f"report: {out / 'diagnosis.html'}")

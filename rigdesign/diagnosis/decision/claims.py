@@ -24,6 +24,9 @@ from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
 from rigdesign.diagnosis.statistics.intervals import JointFit
 
+NAMED = frozenset({"physical", "sensor"})
+"""Families of what has a name."""
+
 REACHES = 0.5
 """Share of the trace of a name that another effect must leave within its bounds to stand for it."""
 
@@ -64,6 +67,11 @@ class Claim:
     answer: Array
     gap: Gap | None
     refused: tuple[Refusal, ...]
+
+    @property
+    def contradicted(self) -> bool:
+        """Whether the data or the full model speak against a name that the search gave."""
+        return any(one.verdict == "unknown_located" for one in self.refused)
 
 
 def claim(
@@ -237,8 +245,10 @@ class Traces:
     explanations: Sequence[Evidence]
     assembly: Sequence[object]
 
-    def like(self, explanation: str, size: Sequence[float]) -> list[tuple[str, float]]:
-        """Effects and sensor errors whose trace correlates with that of a name above `ALIAS`, those most alike first.
+    def like(
+        self, explanation: str, size: Sequence[float], families: frozenset[str] = NAMED
+    ) -> list[tuple[str, float]]:
+        """Causes of some families whose trace correlates with that of a name above `ALIAS`, those most alike first.
 
         The trace of a name is its whitened answer at its size. It is held against the answers of every other one over
         its bounds, of two parameters against the plane they span, under the covariance of the data. Where the rig was
@@ -246,11 +256,11 @@ class Traces:
         trace counting as much in each assembly: one may be read far more exactly than the other. What within its bounds
         leaves less than `REACHES` of the trace cannot stand for it; offset and scale of one sensor are one finding.
         """
-        own = next(one for one in self._single if one.hypothesis.name == explanation)
+        own = next(one for one in self._single(NAMED) if one.hypothesis.name == explanation)
         name = own.hypothesis.parts[0]
         trace = _answers(own.hypothesis, np.array([size]))[0]
         found: dict[str, float] = {}
-        for one in self._single:
+        for one in self._single(families):
             other = one.hypothesis.parts[0]
             if other == name or _of_one_sensor(own, one):
                 continue
@@ -262,11 +272,10 @@ class Traces:
 
     def of(self, name: str) -> Evidence:
         """The best explanation by a name alone."""
-        return next(one for one in self._single if one.hypothesis.parts == (name,))
+        return next(one for one in self._single(NAMED) if one.hypothesis.parts == (name,))
 
-    @property
-    def _single(self) -> list[Evidence]:
-        return [one for one in self.explanations if one.hypothesis.family in ("physical", "sensor")]
+    def _single(self, families: frozenset[str]) -> list[Evidence]:
+        return [one for one in self.explanations if one.hypothesis.family in families]
 
     def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
         """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""

@@ -15,6 +15,7 @@ from rigdesign.diagnosis.statistics.evidence import Evidence
 
 Verdict = Literal[
     "named",
+    "suspected",
     "alias_group",
     "unknown_located",
     "within_noise",
@@ -187,7 +188,7 @@ def decide(
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason=f"an effect outside the catalogue explains more: ln B {leads:.0f} above the best known one",
+            reason="a cause outside the catalogue explains the data better than any effect of the catalogue",
         )
     named = tuple(
         part

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import atan2, exp, hypot, isfinite, log, pi
 
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.decision.unmodelled_words import in_words
 from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.intervals import NORMAL_95, Size
@@ -272,7 +273,7 @@ def _without_entry(explanation: str) -> str:
     """Words for what has no entry."""
     kind, _, rest = explanation.partition(":")
     if kind == "unknown":
-        return f"not in the catalogue:{rest}".replace("heat unpaid", "heat not from the motor")
+        return f"not in the catalogue: {in_words(rest.strip())}"
     first, _, second = rest.partition(",")
     if kind == "swapped_channels":
         return f"channels {first} and {second} exchanged"

@@ -6,21 +6,24 @@ for the sensors in question; the difference is what the effects add.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names
 from rigdesign.diagnosis.decision.patch import Fitted, patched_case
+from rigdesign.diagnosis.decision.problem import Tier
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.detectability import SEEN
 from rigdesign.diagnosis.statistics.heldout import Gap, gap
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 from rigdesign.prediction.predict import predict
@@ -81,16 +84,18 @@ class Proof:
     """What effects are held against: numbers of points that no fit has seen.
 
     residuals, whole : all numbers that were kept, and their residual where a healthy rig is white noise; points : kept
-        aside; rerun : None leaves it at the stored runs
+        aside; tier : numbers that count there; rerun : None leaves it at the stored runs
     """
 
     residuals: ResidualProblem
     whole: Whitened
     points: tuple[str, ...]
+    tier: Tier = "all"
     rerun: Rerun | None = None
+    _covariances: dict[tuple[int, ...], Covariance] = field(default_factory=dict, repr=False)
 
     @cached_property
-    def rows(self) -> Array:
+    def rows(self) -> NDArray[np.intp]:
         """Places of the numbers at the points held out."""
         aside = set(self.points)
         found = [row for row, one in enumerate(self.residuals.features) if one.setting in aside]
@@ -132,16 +137,33 @@ class Proof:
         return answer
 
     def gap(self, answer: Array, given: Array | None = None) -> Gap:
-        """The gap without and with an answer (n,); ``given`` (n,) is in the model both times."""
+        """The gap without and with an answer (n,); ``given`` (n,) is in the model both times.
+
+        Where the numbers that decide hardly show the answer, orders of the meshes are asked as well.
+        """
         residual = self.whole.raw if given is None else self.whole.raw - given
-        rows = self.rows
+        rows = self._deciding
+        if not len(rows) or self.seen(answer, rows) < SEEN:
+            rows = self.rows
         quantities = [self.residuals.channels[self.residuals.features[row].channel].quantity for row in rows]
+        covariance = self._covariance(tuple(rows.tolist()))
         return gap(
-            self.covariance, residual[rows], answer[rows], self.residuals.noise[rows], quantities, self.points
+            covariance, residual[rows], answer[rows], self.residuals.noise[rows], quantities, self.points
         )
 
+    def seen(self, answer: Array, rows: NDArray[np.intp] | None = None) -> float:
+        """Whitened length of an answer (n,) at the points held out."""
+        rows = self.rows if rows is None else rows
+        return float(np.linalg.norm(self._covariance(tuple(rows.tolist())).whiten(answer[rows])))
+
     @cached_property
-    def covariance(self) -> Covariance:
-        """Of the numbers at the points held out."""
-        matrix = self.whole.covariance.matrix[np.ix_(self.rows, self.rows)]
-        return Covariance(base=matrix, columns=(), amplitudes={})
+    def _deciding(self) -> NDArray[np.intp]:
+        if self.tier == "all":
+            return self.rows
+        return self.rows[~self.residuals.of_mesh[self.rows]]
+
+    def _covariance(self, rows: tuple[int, ...]) -> Covariance:
+        if rows not in self._covariances:
+            matrix = self.whole.covariance.matrix[np.ix_(rows, rows)]
+            self._covariances[rows] = Covariance(base=matrix, columns=(), amplitudes={})
+        return self._covariances[rows]

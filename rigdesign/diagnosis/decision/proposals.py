@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.decision.workflow import Diagnosis, Problem
+from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.library.candidates import COST, NOISE, SPARE, Extra, extra_points
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor

@@ -12,6 +12,7 @@ from rigdesign.measurement.comparison.compare import sentence, significant
 
 VERDICTS = {
     "named": "effect named",
+    "suspected": "effect suspected",
     "alias_group": "one of an alias group",
     "unknown_located": "unknown, located",
     "within_noise": "no effect missing",
@@ -58,6 +59,8 @@ def headline(outcome: Outcome) -> str:
         case "alias_group":
             group = f"One of these effects is present; the data do not identify which: {_titles(outcome)}."
             return " ".join([group, *_named(outcome)])
+        case "suspected":
+            return _suspected(outcome)
         case "input_error_suspected":
             return f"A data error is more probable than a model error: {_titles(outcome)}."
         case "unknown_located":
@@ -82,6 +85,17 @@ def _named(outcome: Outcome) -> list[str]:
         if own:
             texts.append(f"{lead}: {'; '.join(f'{one.title}, {formatted(one.shown[0])}' for one in own)}.")
     return texts
+
+
+def _suspected(outcome: Outcome) -> str:
+    """The suspected effect with its size, and what it does not account for."""
+    assert outcome.suspected is not None
+    one = outcome.suspected
+    gap = "" if outcome.gap is None else f" With it in the model the gap {gap_in_words(outcome.gap)}."
+    return (
+        f"Suspected: {one.title}, {formatted(one.shown[0])}. It is part of every probable explanation, but a remainder "
+        f"is left that the catalogue does not account for.{gap}"
+    )
 
 
 def _where(outcome: Outcome) -> str:
@@ -111,6 +125,8 @@ def certainty(outcome: Outcome) -> str:
     missing = []
     if outcome.verdict == "alias_group":
         missing.append("an alias group identifies no single effect")
+    elif outcome.verdict == "suspected":
+        missing.append("the effect is suspected, not named, and the case was not run with it in full")
     elif not found.found:
         missing.append("no effect is named")
     elif found.proof.rerun is None:
@@ -154,6 +170,14 @@ def _first(outcome: Outcome) -> list[NextStep]:
                     NextStep(
                         text="inspect the rig for other signs of one member of the group, or choose one with --name",
                         why="these data fit all of them equally well",
+                    )
+                ]
+        case "suspected":
+            if outcome.suspected is not None and outcome.picked is None:
+                return [
+                    NextStep(
+                        text=f"inspect the rig for {outcome.suspected.title}, and try the case offered in suspected/",
+                        why="the data point at it and do not prove it",
                     )
                 ]
         case "unknown_located":

@@ -46,6 +46,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
         "certainty": certainty(outcome),
         "reason": found.decision.reason,
         "named": [{**_sized(one), "posterior": _inclusion(outcome, one)} for one in outcome.named],
+        "suspected": None if outcome.suspected is None else _sized(outcome.suspected),
         "suspects": [
             {
                 "effect": one.name,
@@ -302,10 +303,13 @@ def _rejected(outcome: Outcome) -> list[dict[str, Any]]:
 
 def _patch(outcome: Outcome) -> Mapping[str, Any]:
     written = outcome.case_patch is not None
+    offered = outcome.offered is not None
     return {
         "case": "case.patch.json" if written else None,
         "variant": "patched/case.toml" if written else None,
         "refused": None if written else outcome.refused,
+        "offered": "suspected.patch.json" if offered else None,
+        "offered_variant": "suspected/case.toml" if offered else None,
         "picked_by_user": outcome.picked is not None,
         "measurement": "measurement.patch.json" if outcome.corrections else None,
     }
@@ -346,7 +350,7 @@ def sentences(items: Sequence[Located], measurement: MeasurementSet) -> list[str
 def leading_sentences(outcome: Outcome) -> list[str]:
     """Groups that the named effects move most, or that hold most of the residual; where none betrays itself."""
     found = outcome.result.diagnosis
-    values = found.answer if outcome.named else found.residual
+    values = outcome.answer if outcome.in_model else found.residual
     shares = (values / np.sqrt(np.diagonal(found.covariance.matrix))) ** 2
     whole = float(shares.sum())
     weights = [(float(shares[list(item.features)].sum()), item) for item in outcome.before]

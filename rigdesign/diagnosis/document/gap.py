@@ -12,7 +12,7 @@ from rigdesign.prediction.model import Feature
 
 
 def gap_document(outcome: Outcome) -> dict[str, Any] | None:
-    """On points the fit never saw; None without any. ``after`` equals ``before`` where nothing was named or picked."""
+    """On points the fit never saw; None without any. ``after`` equals ``before`` where no effect is in the model."""
     if outcome.gap is None:
         return None
     return {

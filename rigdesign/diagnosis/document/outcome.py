@@ -47,20 +47,23 @@ class CasePatch:
 class Outcome:
     """Everything the document, the page and the terminal say.
 
-    named : of verdict ``named``, and what stands apart from an alias group; suspects : members of an alias group,
-        suspected data, or the leading explanations
+    named : of verdict ``named``, and what stands apart from an alias group; suspected : of verdict ``suspected``
+    suspects : the suspected effect, members of an alias group, suspected data, or the leading explanations
     picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
-    answer : (n,) what named or picked effects add to the kept numbers; gap : with them on the points held out
-    before, after : where the residual sits without and with the named effects
+    offered : the patch of a suspected effect, to be tried and not applied
+    answer : (n,) what named, suspected or picked effects add to the kept numbers
+    gap : with them on the points held out; before, after : where the residual sits without and with them
     """
 
     result: Result
     names: Names
     named: tuple[Sized, ...]
+    suspected: Sized | None
     suspects: tuple[Suspect, ...]
     picked: Sized | None
     case_patch: CasePatch | None
     refused: str
+    offered: CasePatch | None
     answer: Array
     gap: Gap | None
     corrections: tuple[Correction, ...]
@@ -74,6 +77,17 @@ class Outcome:
         return self.result.diagnosis.decision.verdict
 
     @property
+    def in_question(self) -> tuple[str, Array]:
+        """What is drawn beside the readings: effects in the model, or the leading suspect alone, and what it adds."""
+        if self.in_model:
+            return " and ".join(self.in_model), self.answer
+        sized = [one.size for one in self.suspects if one.size is not None]
+        if not sized or self.verdict in ("within_noise", "input_error_suspected"):
+            return "", self.answer
+        first = sized[0]
+        return first.explanation, self.result.diagnosis.proof.stored({first.explanation: first.coordinates})
+
+    @property
     def applied(self) -> tuple[Sized, ...]:
         """What a patch holds: the named effects, or the one the user picked with those apart from its group."""
         return _applied(self.verdict, self.named, self.picked)
@@ -81,6 +95,8 @@ class Outcome:
     @property
     def in_model(self) -> tuple[str, ...]:
         """Explanations in ``answer`` and ``gap``; a group from which others stand apart is there by its leader."""
+        if self.picked is None and self.suspected is not None:
+            return (self.suspected.explanation,)
         if self.picked is None:
             return tuple(one.hypothesis.name for one in self.result.diagnosis.found)
         return tuple(one.explanation for one in self.applied)
@@ -112,7 +128,12 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
     named = tuple(one for one in fitted if not group or one.name in found.decision.apart)
     picked = None if pick is None else _picked(result, names, fitted, pick)
     applied = _applied(found.decision.verdict, named, picked)
-    answer, gap = found.answer, found.gap
+    suspicion = found.suspicion
+    suspected = None if suspicion is None else from_fit(names, suspicion.fit.sizes)[0]
+    answer, gap = (found.answer, found.gap) if suspicion is None else (suspicion.answer, suspicion.gap)
+    offered = None
+    if suspected is not None and picked is None:
+        offered, _ = _case_patch(result, [suspected], None)
     if group and picked is None:
         patch, refused = None, _why_not(result, False)
     else:
@@ -128,15 +149,17 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
         result=result,
         names=names,
         named=named,
+        suspected=suspected,
         suspects=() if named and not group else _suspects(result, names),
         picked=picked,
         case_patch=patch,
         refused=refused,
+        offered=offered,
         answer=answer,
         gap=gap,
         corrections=tuple(corrections),
         before=located(result, found.residual),
-        after=located(result, found.residual - found.answer),
+        after=located(result, found.residual - answer),
         proposals=tuple(proposals),
     )
 
@@ -261,6 +284,8 @@ def _why_not(result: Result, sensors: bool) -> str:
     if sensors:
         return "only sensors or settings are off; the case stays as it is"
     match result.diagnosis.decision.verdict:
+        case "suspected":
+            return "the effect is suspected, not proven; the case with it is offered in suspected/, or pick it with --name"
         case "alias_group":
             return (
                 "the data do not separate the members of the group; choose one with --name, or make a measurement "
@@ -282,8 +307,10 @@ def _why_not(result: Result, sensors: bool) -> str:
 
 def _evidence_text(result: Result, one: Sized, picked: bool) -> str:
     sizes = ", ".join(formatted(value) for value in one.shown)
-    strength = "picked by the user among explanations the data do not tell apart" if picked else (
-        f"named, {result.diagnosis.strength}"
-    )  # fmt: skip
+    strength = f"named, {result.diagnosis.strength}"
+    if picked:
+        strength = "picked by the user among explanations the data do not tell apart"
+    elif result.diagnosis.decision.verdict == "suspected":
+        strength = "suspected, not proven"
     origin = f"fitted to measurement '{result.measurement.title}' ({result.measurement.hash[:16]})"
     return f"{origin}: {one.title}, {sizes}, 95 %; {strength}"

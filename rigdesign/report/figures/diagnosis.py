@@ -55,9 +55,10 @@ def residual_maps(outcome: Outcome) -> "Figure":
     spread = np.sqrt(np.diagonal(found.covariance.matrix))
     tables = [_by_series(outcome, features, found.residual / spread)]
     titles = ["model as it is"]
-    if outcome.named:
-        tables.append(_by_series(outcome, features, (found.residual - found.answer) / spread))
-        titles = ["before: model as it is", "after: with the named effects"]
+    name, answer = outcome.in_question
+    if name:
+        tables.append(_by_series(outcome, features, (found.residual - answer) / spread))
+        titles = ["before: model as it is", f"after: with {plain(name)}"]
     kept = sorted(tables[0], key=lambda label: -float(np.nanmax(np.abs(tables[0][label]))))[:MOST_ROWS]
     shown = [label for label in tables[0] if label in kept]
     height = 1.25 + 0.17 * len(shown)
@@ -110,12 +111,13 @@ def _by_series(outcome: Outcome, features: Sequence[Feature], whitened: Array) -
 
 
 def with_and_without(outcome: Outcome) -> "Figure | None":
-    """Readings of the series that the named effects move most, against the model without and with them."""
+    """Readings of the series that the effects in question move most, against the model without and with them."""
     found = outcome.result.diagnosis
-    if not outcome.named:
+    name, answer = outcome.in_question
+    if not name:
         return None
     features = kept_features(outcome)
-    moved = (found.answer / np.sqrt(np.diagonal(found.covariance.matrix))) ** 2
+    moved = (answer / np.sqrt(np.diagonal(found.covariance.matrix))) ** 2
     running = {
         label: rows for label, rows in series_of(features).items() if all(features[i].setting for i in rows)
     }
@@ -152,7 +154,8 @@ def _draw_series(
     points = [setting.name for setting in result.data.settings]
     at = [points.index(name) for name in dict.fromkeys(features[i].setting for i in rows)]
     without = values - found.residual
-    series = (values, without, without + found.answer)
+    name, answer = outcome.in_question
+    series = (values, without, without + answer)
     measured, before, after = (
         [units.display(value, kind, unit) for value in _sizes(features, rows, numbers)] for numbers in series
     )
@@ -169,7 +172,7 @@ def _draw_series(
         markersize=13,
         markeredgewidth=2.0,
         color=SERIES[1],
-        label="model with the named effects",
+        label=f"model with {plain(name)}",
     )
     axes.errorbar(
         at, measured, yerr=bars, fmt="o", markersize=2.8, linewidth=0.8, color=INK, label="measured", zorder=4

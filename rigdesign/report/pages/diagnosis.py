@@ -38,6 +38,7 @@ def diagnosis_page(outcome: Outcome, document: dict[str, Any]) -> str:
             "banner": BANNERS.get(outcome.verdict, "warn"),
             "where": sentences(outcome.before, measurement),
             "leading": leading_sentences(outcome),
+            "in_question": outcome.in_question[0],
             "channels_shown": CHANNELS_SHOWN,
             "shown": shown_value,
             "size": shown_size,

@@ -1,0 +1,45 @@
+"""A set to be explained and its residual where a healthy rig is white noise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rigdesign.diagnosis.decision.defaults import Calibration
+from rigdesign.diagnosis.residual.baseline import differenced
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
+from rigdesign.diagnosis.statistics.covariance import Whitened
+
+Tier = Literal["deciding", "all"]
+"""Numbers of a search: all but the orders of the meshes, whose amplitudes no model knows well; or all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A set to be explained, with a healthy one of the same rig if there is one.
+
+    seed : fixes the held-out points, the hash of the measurement
+    repeated : the noise is known from repeats
+    """
+
+    residuals: ResidualProblem
+    baseline: ResidualProblem | None
+    seed: str
+    repeated: bool
+
+    def space(self, calibration: Calibration) -> Whitened:
+        """Of all its numbers: against the model, or given the baseline."""
+        if self.baseline is None:
+            return plain(self.residuals, calibration.amplitudes, calibration.inflation)
+        return differenced(self.residuals, self.baseline, calibration.amplitudes, calibration.drift)
+
+    def cut(
+        self, space: Whitened, residuals: ResidualProblem, rows: Sequence[int], calibration: Calibration
+    ) -> Whitened:
+        """The space of some of the numbers of ``space``: ``rows`` of it, which are ``residuals``.
+
+        What a baseline foretells of a number does not depend on the others of the set; where constants are bent to the
+        data it does.
+        """
+        if self.baseline is None:
+            return plain(residuals, calibration.amplitudes, calibration.inflation)
+        return space.rows(rows)

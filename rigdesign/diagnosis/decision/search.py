@@ -1,0 +1,188 @@
+"""The search over one selection of the numbers: evaluate, take what is named into the model, evaluate what is left."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rigdesign.diagnosis.decision.defaults import Calibration
+from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Evaluation, Explanations, evaluate
+from rigdesign.diagnosis.decision.problem import Problem, Tier
+from rigdesign.diagnosis.residual.data_error import data_error
+from rigdesign.diagnosis.residual.healthy import relative_speed
+from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
+from rigdesign.diagnosis.residual.signature import Signature
+from rigdesign.diagnosis.residual.unmodelled_cause import unmodelled_causes
+from rigdesign.diagnosis.statistics.columns import Column
+from rigdesign.diagnosis.statistics.covariance import Whitened
+from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.intervals import JointFit, fit_together
+from rigdesign.diagnosis.statistics.model_error import ModelError
+
+MOST_EFFECTS = 4
+"""Effects that are looked for one after the other."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """What a search evaluated and found.
+
+    residuals, space : of the numbers it had; evaluations : one after the other, the first with nothing named yet;
+    found : the best explanation of every name
+    """
+
+    tier: Tier
+    residuals: ResidualProblem = field(repr=False)
+    space: Whitened = field(repr=False)
+    explanations: Explanations = field(repr=False)
+    evaluations: tuple[Evaluation, ...] = field(repr=False)
+    found: tuple[Evidence, ...]
+
+    @property
+    def first(self) -> Evaluation:
+        """The evaluation in which all causes compete at once."""
+        return self.evaluations[0]
+
+
+def search(
+    problem: Problem, residuals: ResidualProblem, space: Whitened, calibration: Calibration, tier: Tier
+) -> Look:
+    """Evaluate, take what is named into the model, evaluate what is left."""
+    explanations = explanations_of(problem, residuals, space)
+    signature = signature_of(problem, residuals, calibration)
+    criteria = Criteria(
+        thresholds=calibration.thresholds(problem.baseline is not None),
+        points=[feature.setting for feature in residuals.features],
+        orders=frozenset(effect.claim for effect in residuals.effects if effect.family.dynamic),
+        signature=signature,
+    )
+    evaluations = [evaluate(space, explanations, criteria)]
+    found: list[Evidence] = []
+    while evaluations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
+        new = _best_of(evaluations[-1])
+        if not new:
+            break
+        found += new
+        after = _with_named(space, found, signature)
+        claimed = {part for one in found for part in one.hypothesis.parts}
+        rest = explanations_of(problem, residuals, after, data=False)
+        left = Explanations(
+            physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
+            sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
+            unmodelled=rest.unmodelled,
+            data=rest.data,
+        )
+        earlier = Earlier(look=evaluations[0], named=frozenset(claimed))
+        explained = max(one.gain for one in found)
+        evaluations.append(evaluate(after, left, criteria, explained=explained, earlier=earlier))
+    return Look(
+        tier=tier,
+        residuals=residuals,
+        space=space,
+        explanations=explanations,
+        evaluations=tuple(evaluations),
+        found=tuple(found),
+    )
+
+
+def explanations_of(
+    problem: Problem, residuals: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
+) -> Explanations:
+    """All explanations; without the unmodelled ``rivals`` where only data and catalogue are evaluated, and without
+    errors of the ``data`` where those were evaluated before."""
+    covariance = space.covariance
+    expected = residuals.values - space.raw
+    return Explanations(
+        physical=physical(
+            covariance,
+            residuals.features,
+            residuals.effects,
+            residuals.library.responses,
+            residuals.teeth_a_turn,
+        ),
+        sensor=sensor(covariance, residuals.errors),
+        unmodelled=without_a_name(covariance, unmodelled_causes(residuals.library, residuals.channels))
+        if rivals
+        else [],
+        data=data_error(
+            covariance,
+            residuals.features,
+            residuals.channels,
+            residuals.values,
+            expected,
+            met_before=problem.baseline is not None,
+        )
+        if data
+        else [],
+    )
+
+
+def signature_of(problem: Problem, residuals: ResidualProblem, calibration: Calibration) -> Signature:
+    """An order is answered as badly as the model knows it: the frequencies near it, and of a mesh its own size.
+
+    Without a baseline the residual of a healthy rig is as wide as that by itself.
+    """
+    placed = calibration.amplitudes.frequency * residuals.steepness
+    share = np.hypot(placed, np.where(residuals.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
+    own = ModelError.of(residuals.features, share, residuals.of_mesh, residuals.values)
+    return Signature.of(
+        residuals.features,
+        relative_speed(residuals.features, residuals.library.settings),
+        calibration.signature_error,
+        None if problem.baseline is None else own,
+        circuit=frozenset(effect.claim for effect in residuals.effects if effect.family.circuit),
+    )
+
+
+def _best_of(evaluation: Evaluation) -> list[Evidence]:
+    """For every named effect its best explanation by itself."""
+    found = []
+    for name in evaluation.decision.named:
+        own = [one for one in evaluation.evidence if one.hypothesis.parts == (name,)]
+        if own:
+            found.append(own[0])
+    return found
+
+
+def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature) -> Whitened:
+    """The space with the named effects in the model, their sizes left free, and what it may answer wrongly to them."""
+    lower = space.covariance.lower
+    columns = [
+        Column(
+            name=f"named {one.hypothesis.name}/{number}",
+            kind="named",
+            values=lower @ slope,
+            spread=half_of(one),
+        )
+        for one in found
+        for number, slope in enumerate(one.columns.T)
+    ]
+    precision = np.diagonal(space.precision)
+    for one in found:
+        columns += signature.columns(one.hypothesis, lower @ one.answer, precision)
+    owns = [own for one in found for own in one.hypothesis.own]
+    residual = lower @ (space.freed(owns) - sum((one.answer for one in found), np.zeros(len(space.residual))))
+    nonlinear_parts = {
+        effect: lower @ part for effect, part in space.nonlinear_parts.items() if effect not in owns
+    }
+    return Whitened.of(space.covariance.with_extra(columns), residual, nonlinear_parts)
+
+
+def half_of(one: Evidence) -> float:
+    """The wider side of the bounds of an explanation."""
+    curve = one.hypothesis.curve
+    return one.hypothesis.half if curve is None else curve.half
+
+
+def fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:
+    """The joint fit of some explanations in a space, with their intervals."""
+    return fit_together(space, found, calibration.signature_error, [bounds_of(one) for one in found])
+
+
+def bounds_of(one: Evidence) -> list[tuple[float, float]]:
+    """Physical bounds of every coordinate of an explanation."""
+    curve = one.hypothesis.curve
+    if curve is not None:
+        return [curve.bounds]
+    return [(-one.hypothesis.half, one.hypothesis.half)] * one.columns.shape[1]
