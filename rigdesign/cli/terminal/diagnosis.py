@@ -55,10 +55,12 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
         sizes = "; ".join(formatted(value) for value in outcome.suspected.shown)
         text = f"{outcome.suspected.explanation}: {sizes}, 95 % interval"
         console.print(Text("suspected ", "bold yellow") + Text(text))
-    for suspect in () if outcome.verdict in ("within_noise", "suspected") else outcome.suspects:
+    shown = () if outcome.verdict == "within_noise" else outcome.suspects
+    for suspect in shown[1:] if outcome.suspected is not None else shown:
         share = f"{100.0 * suspect.inclusion:.0f} %"
         size = "" if suspect.size is None else f"; alone {formatted(suspect.size.shown[0])}"
-        console.print(Text("perhaps   ", "bold") + Text(f"{suspect.name}: posterior {share}{size}"))
+        name = suspect.title if suspect.size is None else suspect.name
+        console.print(Text("perhaps   ", "bold") + Text(f"{name}: posterior {share}{size}"))
     doubts = [one.text for one in outcome.result.data.findings if one.weight == "suspect"]
     for text in doubts[:MOST_DOUBTS]:
         console.print(Text("suspect   ", "bold yellow") + Text(text))

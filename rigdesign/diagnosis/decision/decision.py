@@ -210,7 +210,7 @@ def decide(
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason="an effect is present; no small group of the catalogue accounts for it",
+            reason="no small group of effects of the catalogue accounts for it",
         )
     return _silent(weights, square, candidates, thresholds)
 

@@ -65,8 +65,9 @@ class Suspicion:
 class Candidate:
     """The most probable effect of the catalogue with those that leave its trace.
 
-    evidence, fit : of the effect alone; answer : (n,) what it adds to all kept numbers; gap : with it on the points held
-    out; alike : effects and sensor errors that leave its trace, most alike first; unmodelled : causes that do
+    evidence, fit : of the effect alone; answer : (n,) what it adds to all kept numbers
+    gap : with it on the points held out
+    alike : effects and sensor errors that leave its trace, most alike first; unmodelled : causes that do
     """
 
     look: Look
@@ -111,7 +112,7 @@ class Candidate:
         return (own, *sorted(self.alike, key=lambda name: -inclusion.get(name, 0.0)))
 
     def mass(self, *, unmodelled: bool) -> float:
-        """Posterior mass of all explanations that hold one of the group, or an unmodelled cause that leaves its trace."""
+        """Posterior mass of all explanations that hold one of the group, or an unmodelled cause of its trace."""
         members = {*self.group, *(self.unmodelled if unmodelled else ())}
         weights, evidence = self.look.first.weights, self.look.first.evidence
         return sum(
@@ -145,12 +146,9 @@ def suspected(look: Look, proof: Proof, traces: Traces, calibration: Calibration
         return None
     first, *others = candidate.group
     also = f"; {' and '.join(others)} would leave the same trace" if others else ""
-    decision = Decision(
-        verdict="suspected",
-        named=candidate.group,
-        reason=f"{first} leaves {candidate.excess:.0%} of what it explains, with which no effect of the catalogue is "
-        f"left alone{also}",
-    )
+    rest = f"{candidate.excess:.0%} of what it accounts for" if candidate.excess > 0.0 else "nothing"
+    reason = f"{first} is the most probable effect; it leaves {rest} beyond a healthy rig"
+    decision = Decision(verdict="suspected", named=candidate.group, reason=reason + also)
     return Suspicion(
         decision=decision,
         evidence=candidate.evidence,

@@ -13,7 +13,7 @@ LAWS = {
 """Law of a cause as `rigdesign.diagnosis.residual.unmodelled_cause` writes it -> in words."""
 
 PLACES = {
-    "body": "in the wall at {0}",
+    "body": "in {0}",
     "rim": "in gear {0}",
     "bore": "in the bore of bearing {0}",
     "film": "in the oil film of bearing {0}",

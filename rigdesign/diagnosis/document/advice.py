@@ -88,14 +88,12 @@ def _named(outcome: Outcome) -> list[str]:
 
 
 def _suspected(outcome: Outcome) -> str:
-    """The suspected effect with its size, and what it does not account for."""
+    """The suspected effect with its size, what speaks for it, and the gap with it."""
     assert outcome.suspected is not None
     one = outcome.suspected
     gap = "" if outcome.gap is None else f" With it in the model the gap {gap_in_words(outcome.gap)}."
-    return (
-        f"Suspected: {one.title}, {formatted(one.shown[0])}. It is part of every probable explanation, but a remainder "
-        f"is left that the catalogue does not account for.{gap}"
-    )
+    reason = outcome.result.diagnosis.decision.reason
+    return f"Suspected: {one.title}, {formatted(one.shown[0])}. {reason[:1].upper()}{reason[1:]}.{gap}"
 
 
 def _where(outcome: Outcome) -> str:
@@ -174,12 +172,12 @@ def _first(outcome: Outcome) -> list[NextStep]:
                 ]
         case "suspected":
             if outcome.suspected is not None and outcome.picked is None:
-                return [
-                    NextStep(
-                        text=f"inspect the rig for {outcome.suspected.title}, and try the case offered in suspected/",
-                        why="the data point at it and do not prove it",
-                    )
-                ]
+                offered = ", and try the case offered in suspected/" if outcome.offered is not None else ""
+                check = (
+                    "inspect the rig for" if isinstance(outcome.suspected.entry, Effect) else "check for an"
+                )
+                text = f"{check} {outcome.suspected.title}{offered}"
+                return [NextStep(text=text, why="the data point at it and do not prove it")]
         case "unknown_located":
             place = outcome.before[0].group if outcome.before else "the rig"
             return [NextStep(text=f"look at {place}", why="the residual is largest there")]

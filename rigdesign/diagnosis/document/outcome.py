@@ -285,7 +285,7 @@ def _why_not(result: Result, sensors: bool) -> str:
         return "only sensors or settings are off; the case stays as it is"
     match result.diagnosis.decision.verdict:
         case "suspected":
-            return "the effect is suspected, not proven; the case with it is offered in suspected/, or pick it with --name"
+            return "the effect is suspected, not proven; try the case in suspected/, or pick the effect with --name"
         case "alias_group":
             return (
                 "the data do not separate the members of the group; choose one with --name, or make a measurement "

@@ -111,7 +111,7 @@ def _by_series(outcome: Outcome, features: Sequence[Feature], whitened: Array) -
 
 
 def with_and_without(outcome: Outcome) -> "Figure | None":
-    """Readings of the series that the effects in question move most, against the model without and with them."""
+    """Measured less simulated of the series that the effects in question move most, without and with them."""
     found = outcome.result.diagnosis
     name, answer = outcome.in_question
     if not name:
@@ -154,33 +154,35 @@ def _draw_series(
     points = [setting.name for setting in result.data.settings]
     at = [points.index(name) for name in dict.fromkeys(features[i].setting for i in rows)]
     without = values - found.residual
-    name, answer = outcome.in_question
-    series = (values, without, without + answer)
+    effect, answer = outcome.in_question
     measured, before, after = (
-        [units.display(value, kind, unit) for value in _sizes(features, rows, numbers)] for numbers in series
+        np.array([units.display(value, kind, unit) for value in _sizes(features, rows, numbers)])
+        for numbers in (values, without, without + answer)
     )
     scale = abs(units.worth(kind, unit)[0])
     bars = [value / scale for value in _sizes(features, rows, noise, mean=True)]
     for place, name in enumerate(points):
         if name in found.held_out_points:
             axes.axvspan(place - 0.5, place + 0.5, color="#eef1f4", zorder=0, linewidth=0)
-    axes.plot(at, before, "o", markersize=5, markerfacecolor="none", color=SERIES[0], label="model as it is")
+    axes.axhline(0.0, color=INK, linewidth=0.7)
     axes.plot(
         at,
-        after,
-        "_",
-        markersize=13,
-        markeredgewidth=2.0,
-        color=SERIES[1],
-        label=f"model with {plain(name)}",
+        measured - before,
+        "o",
+        markersize=5,
+        markerfacecolor="none",
+        color=SERIES[0],
+        label="model as it is",
     )
     axes.errorbar(
-        at, measured, yerr=bars, fmt="o", markersize=2.8, linewidth=0.8, color=INK, label="measured", zorder=4
-    )
+        at, measured - after, yerr=bars, fmt="o", markersize=3.2, linewidth=0.9, color=SERIES[1],
+        label=f"model with {plain(effect)}", zorder=4,
+    )  # fmt: skip
     axes.set_xlim(-0.5, len(points) - 0.5)
     axes.set_xticks(range(len(points)), _labels(outcome, points), rotation=90 if len(points) > 9 else 0)
     size = " (size)" if any(features[i].part != "value" for i in rows) else ""
-    finish(axes, "", f"[{unit_text(unit)}]", plain(label) + size)
+    difference = "K" if kind == "temperature" else unit_text(unit)
+    finish(axes, "", f"[{difference}]", plain(label) + size)
 
 
 def _sizes(
