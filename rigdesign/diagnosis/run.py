@@ -13,7 +13,12 @@ from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.patch import patched_values
 from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.proof import FullRun
-from rigdesign.diagnosis.decision.proposals import extras_of, proposals
+from rigdesign.diagnosis.decision.proposals import (
+    NOTHING_NEXT,
+    NextMeasurements,
+    extras_of,
+    next_measurements,
+)
 from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
@@ -21,7 +26,6 @@ from rigdesign.diagnosis.library.candidates import spare_channels
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain
 from rigdesign.diagnosis.residual.sensors import Stated
-from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, OperatingCondition
@@ -42,7 +46,7 @@ class Result:
     effects: tuple[Effect, ...]
     diagnosis: Diagnosis
     calibration: Calibration
-    proposals: tuple[Ranked, ...] = ()
+    next_measurements: NextMeasurements = NOTHING_NEXT
 
 
 def diagnose_measurement(
@@ -79,7 +83,8 @@ def diagnose_measurement(
         found = diagnose(problem, calibration, rerun)
         extras = extras_of(case, data.settings)
         offered = candidates_of(case, measurement, data.settings)
-        ahead = proposals(problem, found, offered, extras, calibration.amplitudes) if offered else ()
+        say("looking for the next measurement")
+        ahead = next_measurements(problem, found, offered, extras, calibration) if offered else NOTHING_NEXT
     return Result(
         case=case,
         measurement=measurement,
@@ -89,7 +94,7 @@ def diagnose_measurement(
         effects=effects,
         diagnosis=found,
         calibration=calibration,
-        proposals=ahead,
+        next_measurements=ahead,
     )
 
 

@@ -55,7 +55,7 @@ def diagnose(
     prepare_output(out)
     with Progress() as progress, interrupted(SIMULATIONS_KEPT):
         found = diagnose_measurement(loaded, measurement, say=progress)
-        reported = outcome(found, pick=name, proposals=found.proposals)
+        reported = outcome(found, pick=name)
         progress("writing report")
         write_diagnosis(reported, out)
     if json:

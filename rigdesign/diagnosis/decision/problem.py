@@ -4,9 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from rigdesign.diagnosis.decision.defaults import Calibration
-from rigdesign.diagnosis.residual.baseline import differenced
+from rigdesign.diagnosis.residual.baseline import Change, differenced
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
+from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 
 Tier = Literal["deciding", "all"]
@@ -31,6 +34,14 @@ class Problem:
         if self.baseline is None:
             return plain(self.residuals, calibration.amplitudes, calibration.inflation)
         return differenced(self.residuals, self.baseline, calibration.amplitudes, calibration.drift)
+
+    def healthy(self, residuals: ResidualProblem, calibration: Calibration) -> tuple[Array, Array]:
+        """Mean (n,) and covariance (n, n) of the residual of numbers of this rig while it is healthy."""
+        if self.baseline is None:
+            covariance = residuals.covariance(calibration.amplitudes, calibration.inflation)
+            return np.zeros(len(residuals.features)), covariance.matrix
+        change = Change.of(residuals, self.baseline, calibration.amplitudes)
+        return change.expected, change.covariance(calibration.drift)
 
     def cut(
         self, space: Whitened, residuals: ResidualProblem, rows: Sequence[int], calibration: Calibration

@@ -1,20 +1,29 @@
 """What to measure next: the rivals of a diagnosis against every further measurement of the rig."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.simulation import Simulation
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.library.candidates import COST, NOISE, SPARE, Extra, extra_points
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
-from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
-from rigdesign.diagnosis.statistics.next_measurement import Proposal, Ranked, Rival, ranked
+from rigdesign.diagnosis.statistics.next_measurement import (
+    Foreseen,
+    Proposal,
+    Ranked,
+    Rival,
+    SmallestSet,
+    ranked,
+    smallest_set,
+)
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition
@@ -28,33 +37,60 @@ def extras_of(case: Case, settings: Sequence[OperatingCondition]) -> tuple[Extra
     return extra_points(settings, Places(case).meshes if case.drivetrain is not None else ())
 
 
-def proposals(
-    problem: Problem, found: Diagnosis, library: Library, extras: Sequence[Extra], amplitudes: Amplitudes
-) -> tuple[Ranked, ...]:
-    """Measurements that tell the leading rivals apart, best first; none where something is named.
+@dataclass(frozen=True, kw_only=True)
+class NextMeasurements:
+    """What to measure next.
 
-    With too few data to name anything: those that tell the leading explanation from a healthy rig.
+    ranked : single measurements, best first; together : the cheapest set that decides, None where none was found
+    verified : explanations for which a simulation of that set ended in their name, of those simulated
+    """
+
+    ranked: tuple[Ranked, ...] = ()
+    together: SmallestSet | None = None
+    verified: tuple[tuple[str, bool], ...] = ()
+
+
+NOTHING_NEXT = NextMeasurements()
+
+UNDECIDED = ("suspected", "alias_group", "too_small", "unknown_located", "data_insufficient")
+"""Verdicts after which there is something to decide."""
+
+
+def next_measurements(
+    problem: Problem, found: Diagnosis, library: Library, extras: Sequence[Extra], calibration: Calibration
+) -> NextMeasurements:
+    """Measurements that tell the leading rivals apart; none where something is named.
+
+    Of a single suspect, and with too few data to name anything: those that tell it from a healthy rig. The set is
+    verified by simulating it with each rival as the truth and diagnosing what it would read.
 
     library : with the candidates, points and channels under the names of the set
     """
-    if found.decision.verdict not in ("alias_group", "too_small", "unknown_located", "data_insufficient"):
-        return ()
+    if found.decision.verdict not in UNDECIDED:
+        return NOTHING_NEXT
     rivals = _rivals(found)
-    alone = found.decision.verdict == "data_insufficient"
+    alone = found.decision.verdict == "data_insufficient" or (
+        found.decision.verdict == "suspected" and len(found.decision.named) == 1
+    )
     if len(rivals) < (1 if alone else 2):
-        return ()
+        return NOTHING_NEXT
     whole, measured = _with_candidates(problem.residuals.rows(found.kept), library)
-    answers = _answers(problem, whole, rivals)
+    answers = _answers(whole, rivals)
     compared = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
     if alone:
         compared = [compared[0], _nothing(len(whole.features))]
-    return ranked(
-        whole.covariance(amplitudes),
-        measured,
-        found.residual,
-        compared,
-        _offers(whole.features[measured:], whole.channels, extras),
-    )
+    mean, matrix = problem.healthy(whole, calibration)
+    foreseen = Foreseen.of(matrix, found.residual, compared)
+    offers = _offers(whole.features[measured:], whole.channels, extras)
+    together = smallest_set(foreseen, offers)
+    verified: tuple[tuple[str, bool], ...] = ()
+    if together is not None:
+        simulation = Simulation(
+            problem=problem, whole=whole, measured=measured, mean=mean, foreseen=foreseen, rows=together.rows
+        )
+        names = [one.hypothesis.parts[0] for one in (rivals[:1] if alone else rivals)]
+        verified = simulation.verified(names, calibration)
+    return NextMeasurements(ranked=ranked(foreseen, offers), together=together, verified=verified)
 
 
 def _rivals(found: Diagnosis) -> list[Evidence]:
@@ -108,7 +144,7 @@ def _offered(feature: Feature) -> bool:
     return feature.channel.startswith(SPARE) != feature.setting.startswith(SPARE)
 
 
-def _answers(problem: Problem, whole: ResidualProblem, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
+def _answers(whole: ResidualProblem, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
     """Of the rivals at all numbers, in the units of the features."""
     names = {one.hypothesis.name for one in rivals}
     effects = [one for one in whole.effects if any(f"{name}/".startswith(f"{one.name}/") for name in names)]

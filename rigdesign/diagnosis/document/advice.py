@@ -142,17 +142,49 @@ def steps(outcome: Outcome) -> tuple[NextStep, ...]:
         NextStep(
             text=one.title, why=_why(outcome, one), separation=one.separation, cost=one.cost, decides=one.decides
         )
-        for one in outcome.proposals
+        for one in outcome.ahead.ranked
         if one.separation >= WORTH
     ][:MOST_PROPOSED]  # fmt: skip
-    return (*_first(outcome), *computed, *_better_data(outcome))
+    nothing = [] if computed or not outcome.ahead.ranked else [_none_separates(outcome)]
+    return (*_first(outcome), *_together(outcome), *computed, *nothing, *_better_data(outcome))
+
+
+def _none_separates(outcome: Outcome) -> NextStep:
+    """That the measurements this rig offers would not help."""
+    count = len(outcome.ahead.ranked)
+    return NextStep(
+        text="inspect the rig, or run points at which the residual is larger",
+        why=f"none of {count} further sensors and points considered separates the leading explanations at this size",
+    )
+
+
+def _together(outcome: Outcome) -> list[NextStep]:
+    """The cheapest measurements that decide, with what simulating them gave."""
+    found = outcome.ahead.together
+    if found is None:
+        return []
+    named = [name for name, right in outcome.ahead.verified if right]
+    count = len(outcome.ahead.verified)
+    if count == 1:
+        shown = f"{'names' if named else 'does not name'} the suspect"
+    else:
+        shown = f"names {' and '.join(named) or 'none'}, of {count}"
+    return [
+        NextStep(
+            text=" and ".join(found.titles),
+            why=f"the cheapest set that decides; in a simulation with each of them true the diagnosis {shown}",
+            separation=found.separation,
+            cost=found.cost,
+            decides=True,
+        )
+    ]
 
 
 def _why(outcome: Outcome, proposal: Ranked) -> str:
     """What a proposal is good for."""
     apart = (
         "the leading explanation from a healthy rig"
-        if outcome.verdict == "data_insufficient"
+        if outcome.verdict == "data_insufficient" or outcome.suspected is not None
         else "the leading explanations"
     )
     return f"separates {apart}" if proposal.decides else f"partly separates {apart}"

@@ -9,13 +9,13 @@ from rigdesign.base.errors import CaseError, RigdesignError, UsageError
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names, Sized, formatted, from_evidence, from_fit
 from rigdesign.diagnosis.decision.patch import Fitted, patched_title, patched_values
+from rigdesign.diagnosis.decision.proposals import NextMeasurements
 from rigdesign.diagnosis.document.correction import Correction, of_data, of_sensor
 from rigdesign.diagnosis.document.located import located
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.heldout import Gap, gap_in_words
-from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement.comparison.locate import Located
 
 SHOWN = 3
@@ -69,7 +69,7 @@ class Outcome:
     corrections: tuple[Correction, ...]
     before: tuple[Located, ...]
     after: tuple[Located, ...]
-    proposals: tuple[Ranked, ...]
+    ahead: NextMeasurements
 
     @property
     def verdict(self) -> str:
@@ -109,11 +109,10 @@ def _applied(verdict: str, named: tuple[Sized, ...], picked: Sized | None) -> tu
     return (*others, picked)
 
 
-def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Ranked] = ()) -> Outcome:
+def outcome(result: Result, *, pick: str | None = None) -> Outcome:
     """Put a diagnosis into words and patches.
 
     pick : name of an effect that the user decides for although, or of those that, the data name
-    proposals : measurements that would tell the rivals apart, best first
 
     Raises
     ------
@@ -160,7 +159,7 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
         corrections=tuple(corrections),
         before=located(result, found.residual),
         after=located(result, found.residual - answer),
-        proposals=tuple(proposals),
+        ahead=result.next_measurements,
     )
 
 

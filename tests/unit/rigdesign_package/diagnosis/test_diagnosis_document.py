@@ -13,7 +13,12 @@ from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.waiting import WAITING
 from rigdesign.diagnosis.decision.naming import Names, formatted
-from rigdesign.diagnosis.decision.proposals import extras_of, proposals
+from rigdesign.diagnosis.decision.proposals import (
+    NOTHING_NEXT,
+    NextMeasurements,
+    extras_of,
+    next_measurements,
+)
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
@@ -267,7 +272,7 @@ def test_what_no_key_says_is_a_correction_in_words() -> None:
 
 def test_proposals_come_first_and_keep_their_numbers() -> None:
     proposal = Ranked(title="wheel put on further", separation=31.0, cost=5.0, decides=True)
-    told_ = outcome(story("mesh loss"), proposals=[proposal])
+    told_ = outcome(replace(story("mesh loss"), next_measurements=NextMeasurements(ranked=(proposal,))))
     first = steps(told_)[0]
     assert (first.text, first.separation, first.cost, first.decides) == (
         "wheel put on further",
@@ -310,7 +315,7 @@ def test_what_waits_is_not_in_the_catalogue() -> None:
     assert len(waiting) == len(WAITING) and not waiting & kinds
 
 
-def proposed(name: str, *, rivals: int = 3) -> tuple[Ranked, ...]:
+def proposed(name: str, *, rivals: int = 3) -> NextMeasurements:
     """What is to be measured next where the run-out of the wheel turns round with its place on the shaft."""
     result = story(name)
     extras = extras_of(result.case, result.data.settings)
@@ -324,18 +329,21 @@ def proposed(name: str, *, rivals: int = 3) -> tuple[Ranked, ...]:
     alone = [one for one in first.evidence if one.hypothesis.family == "physical"]
     few = replace(first, evidence=tuple(alone[:rivals]))
     found = replace(result.diagnosis, evaluations=(few, *others))
-    return proposals(result.problem, found, offered, extras, result.calibration.amplitudes)
+    return next_measurements(result.problem, found, offered, extras, result.calibration)
 
 
 def test_the_point_that_tells_members_of_a_group_apart_is_proposed_first() -> None:
-    best, *others = proposed("alias", rivals=2)
+    found = proposed("alias", rivals=2)
+    best, *others = found.ranked
     assert best.title.endswith("put on five teeth further") and best.decides
-    assert [one.separation for one in others] == [0.0] * 3
+    assert [one.separation for one in others] == pytest.approx([0.0] * 3, abs=1e-9)
+    assert found.together is not None and found.together.titles == (best.title,)
+    assert dict(found.verified) == {"run_out:test.pinion": True, "run_out:test.wheel": True}
 
 
 def test_a_single_explanation_has_nothing_to_be_told_from_but_nothing_at_all() -> None:
-    assert proposed("alias", rivals=1) == ()
-    assert proposed("mesh loss") == ()
-    assert proposed("one point", rivals=0) == ()
-    from_nothing = [one.separation for one in proposed("one point", rivals=1)]
+    assert proposed("alias", rivals=1) == NOTHING_NEXT
+    assert proposed("mesh loss") == NOTHING_NEXT
+    assert proposed("one point", rivals=0) == NOTHING_NEXT
+    from_nothing = [one.separation for one in proposed("one point", rivals=1).ranked]
     assert from_nothing and min(from_nothing) > 0.0

@@ -17,7 +17,7 @@ from rigdesign.diagnosis.statistics.detectability import aliases, detectabilitie
 from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.diagnosis.statistics.intervals import fit_together
-from rigdesign.diagnosis.statistics.next_measurement import Proposal, Rival, ranked
+from rigdesign.diagnosis.statistics.next_measurement import Foreseen, Proposal, Rival, ranked, smallest_set
 from rigdesign.diagnosis.statistics.outliers import reject
 from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition, features_of
@@ -167,12 +167,38 @@ def test_next_measurement_prefers_what_the_rivals_foresee_differently():
               slopes=np.concatenate([answer, neither, [1.0]])[:, None], deviations=np.array([0.1])),
     ]  # fmt: skip
     proposals = [Proposal(title="second", rows=(0,), cost=2.0), Proposal(title="same", rows=(1,), cost=1.0)]
-    found = ranked(covariance, 4, answer, rivals, proposals)
+    foreseen = Foreseen.of(covariance.matrix, answer, rivals)
+    found = ranked(foreseen, proposals)
     assert found[0].title == "second"
     spread = 0.3**2 + 0.1**2 * 9.0
     assert found[0].separation == pytest.approx(9.0 / spread, rel=0.1)
     assert found[0].decides
     assert found[1].separation == pytest.approx(0.0, abs=1e-9)
+    together = smallest_set(foreseen, proposals)
+    assert together is not None and together.titles == ("second",) and together.cost == 2.0
+    assert smallest_set(foreseen, proposals[1:]) is None
+
+
+def test_the_smallest_set_takes_two_where_one_does_not_decide_and_leaves_out_what_is_superfluous():
+    covariance = Covariance.of_noise(np.ones(5), [], {})
+    nothing = np.zeros((5, 0))
+    foreseen = Foreseen.of(
+        covariance.matrix,
+        np.zeros(1),
+        [
+            Rival(name="a", answer=np.array([0.0, 2.0, 2.9, 2.0, 9.0]), slopes=nothing, deviations=np.zeros(0)),
+            Rival(name="b", answer=np.zeros(5), slopes=nothing, deviations=np.zeros(0)),
+        ],
+    )  # fmt: skip
+    offers = [
+        Proposal(title="first", rows=(0,), cost=0.5),
+        Proposal(title="second", rows=(1,), cost=1.1),
+        Proposal(title="third", rows=(2,), cost=9.0),
+        Proposal(title="dear", rows=(3,), cost=30.0),
+    ]
+    together = smallest_set(foreseen, offers)
+    assert together is not None and together.titles == ("first", "second")
+    assert together.separation == pytest.approx(2.0**2 + 2.9**2)
 
 
 SETTINGS = (
