@@ -43,6 +43,9 @@ class Drift:
     amplitude: float
     """Of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
     inflation: Mapping[str, float] = field(default_factory=dict)
+    channels: Mapping[str, float] = field(default_factory=dict)
+    """Channel -> standard deviation of a shift of all its numbers together from set to set, over their level; from a
+    rig's own healthy sets."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,12 +96,30 @@ class Change:
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
-        mesh = self.residuals.of_mesh
-        steep = np.where(mesh, drift.mesh, drift.shaft) * self.steep
-        still = np.where(mesh, drift.amplitude, 0.0) * self.amplitude
-        alone = np.diag((drift.slope * self.slope) ** 2 + steep**2 + still**2)
+        shares = sum(getattr(drift, name) ** 2 * part for name, part in self.parts().items())
         inflated = self.residuals.inflated(drift.inflation)
-        return np.asarray(self.known + drift.shared**2 * self.shared + alone + inflated)
+        shifted = sum(
+            (size**2 * np.outer(shift, shift))
+            for channel, size in drift.channels.items()
+            if (shift := self.shift(channel)).any()
+        )
+        return np.asarray(self.known + shares + inflated + shifted)
+
+    def parts(self) -> dict[str, Array]:
+        """Share of the drift -> (n, n) covariance of what it scales, at one."""
+        mesh = self.residuals.of_mesh
+        return {
+            "shared": self.shared,
+            "slope": np.diag(self.slope**2),
+            "shaft": np.diag(np.where(mesh, 0.0, self.steep) ** 2),
+            "mesh": np.diag(np.where(mesh, self.steep, 0.0) ** 2),
+            "amplitude": np.diag(np.where(mesh, self.amplitude, 0.0) ** 2),
+        }
+
+    def shift(self, channel: str) -> Array:
+        """(n,) all numbers of a channel moved by their level."""
+        own = [feature.channel == channel for feature in self.residuals.features]
+        return np.where(own, self.residuals.level, 0.0)
 
     def whitened(self, drift: Drift) -> Whitened:
         """The change where a healthy rig is white noise."""
