@@ -131,7 +131,21 @@ def steps(outcome: Outcome) -> tuple[NextStep, ...]:
         for one in outcome.proposals
         if one.separation >= WORTH
     ][:MOST_PROPOSED]  # fmt: skip
-    return (*_first(outcome), *computed, *_better_data(outcome))
+    return (*_baseline(outcome), *_first(outcome), *computed, *_better_data(outcome))
+
+
+def _baseline(outcome: Outcome) -> list[NextStep]:
+    """Without any healthy set of the rig: measure one, before anything else."""
+    result = outcome.result
+    if result.baseline is not None or result.calibration.origin.kind == "file":
+        return []
+    return [
+        NextStep(
+            text="measure a healthy baseline first: the same points in a state known to be healthy, given as baseline; "
+            "two to four such sets calibrate the rig (rigdesign calibrate)",
+            why="errors of the model cancel in the difference of two sets; without one, intervals are wide",
+        )
+    ]
 
 
 def _why(outcome: Outcome, proposal: Ranked) -> str:
@@ -184,7 +198,7 @@ def _better_data(outcome: Outcome) -> list[NextStep]:
         steps.append(
             NextStep(text="repeat every operating point", why="the noise is then measured, not declared")
         )
-    if result.baseline is None and outcome.verdict != "named":
+    if result.baseline is None and result.calibration.origin.kind == "file" and outcome.verdict != "named":
         steps.append(
             NextStep(
                 text="measure the same points in a state known to be healthy and give that set as baseline",

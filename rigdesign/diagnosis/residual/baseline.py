@@ -5,7 +5,8 @@ settings, and a drift.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -46,6 +47,20 @@ class Drift:
     channels: Mapping[str, float] = field(default_factory=dict)
     """Channel -> standard deviation of a shift of all its numbers together from set to set, over their level; from a
     rig's own healthy sets."""
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Numbers that scale what two sets share or what their orders do."""
+        return {name: getattr(self, name) for name in SHARES}
+
+    def with_shares(self, shares: Mapping[str, float]) -> "Drift":
+        """Some of them changed."""
+        changes: dict[str, Any] = dict(shares)
+        return replace(self, **changes)
+
+
+SHARES = ("shared", "slope", "shaft", "mesh", "amplitude")
+"""Numbers of a drift that are fitted."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +111,7 @@ class Change:
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
-        shares = sum(getattr(drift, name) ** 2 * part for name, part in self.parts().items())
+        shares = sum(drift.shares[name] ** 2 * part for name, part in self.parts().items())
         inflated = self.residuals.inflated(drift.inflation)
         shifted = sum(
             (size**2 * np.outer(shift, shift))
@@ -117,8 +132,8 @@ class Change:
         }
 
     def shift(self, channel: str) -> Array:
-        """(n,) all numbers of a channel moved by their level."""
-        own = [feature.channel == channel for feature in self.residuals.features]
+        """(n,) all numbers of a channel moved by their level; orders are no part of it."""
+        own = [feature.channel == channel and not feature.order for feature in self.residuals.features]
         return np.where(own, self.residuals.level, 0.0)
 
     def whitened(self, drift: Drift) -> Whitened:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigdesign.diagnosis.residual.baseline import Change, Drift
+from rigdesign.diagnosis.residual.baseline import SHARES, Change, Drift
 from rigdesign.diagnosis.residual.covariance_inflation import inflate
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
@@ -22,9 +22,6 @@ are stated with their sources: what two models disagree on beyond that is no con
 
 OWN_KINDS = ("point", "series_mesh_point", "series_shaft_point", "frequency")
 """Amplitudes of what each number is off by itself."""
-
-SHARES = ("shared", "slope", "shaft", "mesh", "amplitude")
-"""Numbers of a drift that are fitted."""
 
 
 def group_of(
@@ -116,7 +113,8 @@ def calibrate_drift(
     inflation.
     """
     changes = [Change.of(residuals, baseline, amplitudes) for residuals, baseline in pairs]
-    return replace(start, inflation={}, **fit_drift(changes, replace(start, inflation={})).values)
+    still = replace(start, inflation={})
+    return still.with_shares(fit_drift(changes, still).values)
 
 
 def fit_drift(changes: Sequence[Change], start: Drift, weight: float = 1.0) -> Fit:
@@ -124,17 +122,15 @@ def fit_drift(changes: Sequence[Change], start: Drift, weight: float = 1.0) -> F
 
     weight : of each change in the likelihood, below one where they are not independent
     """
-    values = {name: getattr(start, name) for name in SHARES}
     groups = [change_group(change, start, weight) for change in changes]
-    return fit(groups, start=values, prior=values, reach={}, fixed={})
+    return fit(groups, start=start.shares, prior=start.shares, reach={}, fixed={})
 
 
 def change_group(change: Change, drift: Drift, weight: float) -> Group:
     """One change, with what the shares of its drift scale."""
     left = change.residuals.residual - change.expected
-    still = replace(drift, **dict.fromkeys(SHARES, 0.0))
     return Group(
-        noise=change.covariance(still),
+        noise=change.covariance(drift.with_shares(dict.fromkeys(SHARES, 0.0))),
         parts=change.parts(),
         products=weight * np.outer(left, left),
         count=weight,

@@ -89,9 +89,7 @@ def fit(
     )
 
 
-def group_misfit(
-    group: Group, amplitudes: Mapping[str, float], names: Sequence[str]
-) -> tuple[float, Array]:
+def group_misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str]) -> tuple[float, Array]:
     """-ln likelihood of a group and its derivative by the logarithms of the named amplitudes."""
     matrix = group.noise + sum(amplitudes[kind] ** 2 * part for kind, part in group.parts.items())
     lower = np.linalg.cholesky(matrix)
