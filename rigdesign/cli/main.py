@@ -4,9 +4,9 @@ Commands: check, study, compare, diagnose, calibrate, diff, validate, explain, n
 completion; ``--verbose`` and ``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
-validate: no gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is
-missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside
-the commands, so that `--help` answers at once.
+validate: no gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system
+library is missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen
+inside the commands, so that `--help` answers at once.
 """
 
 import signal

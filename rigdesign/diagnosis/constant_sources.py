@@ -122,6 +122,7 @@ SOURCES: Mapping[str, Source] = {
     "residual.signature.SLIGHT": Source("-", "choice", _NUMERICS),
     "residual.signature.MOST_ALONE": Source("-", "choice", _TIME),
     "rig_calibration.channels.STANDS_OUT": Source("variances", "choice", "two standard deviations"),
+    "rig_calibration.channels.WORTH_A_SHIFT": Source("-", "choice", _JUDGEMENT),
     "rig_calibration.channels.LARGEST_SHIFT": Source("-", "choice", _NUMERICS),
     "rig_calibration.document.SCHEMA": Source("-", "definition", "format"),
     "rig_calibration.estimate.FEWEST": Source("-", "definition", "one pair"),

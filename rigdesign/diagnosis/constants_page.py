@@ -33,7 +33,7 @@ Every number that a diagnosis depends on, apart from the bounds and healthy spre
 ([effects.md](effects.md)) and from what a measurement states. Kinds of source: *fit* to sets of the virtual rig
 (`tests/virtual_rig`, `tests/blind/README.md`), *literature*, *choice* of the method, *definition* of units and formats.
 "Own rig: yes" is replaced by `rigdesign calibrate CASE HEALTHY_SET ...`, with the value here as prior; all other
-numbers stay. `rigdesign calibrate` adds a shift of single channels from set to set (`channels.NAME`), which is zero as shipped.
+numbers stay. `rigdesign calibrate` adds a shift of single channels from set to set (`channels.NAME`), zero as shipped.
 """
 
 

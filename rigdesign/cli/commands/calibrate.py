@@ -32,7 +32,8 @@ def calibrate(
     case
         Case folder or its case.toml; it is not written to.
     healthy_set
-        Folders with measurement.toml, each of the rig in a state known to be healthy: two to four; with --constants one.
+        Folders with measurement.toml, each of the rig in a state known to be healthy: two to four; one with
+        --constants.
     out
         Folder for calibration.json and calibration.html; with --constants for calibrated/case.toml and
         constants.json.

@@ -31,13 +31,12 @@ def print_rig_calibration(found: "RigCalibration", out: Path) -> None:
 
 
 def _left_out(rows: "tuple[LeftOut, ...]", verdicts: dict[str, str]) -> Table:
-    table = _table(
-        "set", "baseline", "calibrated by", "verdict", numbers=("numbers", "chi2/number", "shipped")
-    )
+    table = _table("set", "baseline", "calibration", "verdict", numbers=("numbers", "chi2/number", "shipped"))
     for row in rows:
+        by = f"{len(row.calibrated_by)} others" if row.calibrated_by else "shipped"
         verdict = verdicts[row.verdict] + (f": {', '.join(row.named)}" if row.named else "")
         table.add_row(
-            Text(row.name), Text(row.baseline or "none"), Text(", ".join(row.calibrated_by) or "shipped values"),
+            Text(row.name), Text(row.baseline or "none"), by,
             Text(verdict, "bold yellow" if row.alarm else ""), str(row.numbers), f"{row.chi_square:.2f}",
             f"{row.before:.2f}",
         )  # fmt: skip

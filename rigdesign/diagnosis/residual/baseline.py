@@ -33,34 +33,39 @@ class Drift:
     """
 
     shared: float
-    """Of everything."""
+    """Share of all errors that two sets have in common which each has anew."""
     slope: float
-    """Of what the model says that an order changes with the speed from one set to the other."""
+    """Share of what the model says that an order changes with the speed from one set to the other."""
     shaft: float
-    """Of what the natural frequencies make of a shaft order or sideband that the healthy set reads
+    """Share of what the natural frequencies make of a shaft order or sideband that the healthy set reads
     (`rigdesign.diagnosis.statistics.resonance`)."""
     mesh: float
-    """The same of an order of the meshes."""
+    """Share of what the natural frequencies make of an order of the meshes."""
     amplitude: float
-    """Of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
+    """Share of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
     inflation: Mapping[str, float] = field(default_factory=dict)
     channels: Mapping[str, float] = field(default_factory=dict)
-    """Channel -> standard deviation of a shift of all its numbers together from set to set, over their level; from a
-    rig's own healthy sets."""
+    """Channel -> standard deviation of a shift of all its numbers together from set to set, over their level
+    (`Change.shift`); from a rig's own healthy sets."""
 
     @property
-    def shares(self) -> dict[str, float]:
-        """Numbers that scale what two sets share or what their orders do."""
-        return {name: getattr(self, name) for name in SHARES}
+    def scales(self) -> dict[str, float]:
+        """What scales the parts of a change by name: shares, and ``channel NAME``."""
+        shares = {name: getattr(self, name) for name in SHARES}
+        return shares | {CHANNEL + name: size for name, size in self.channels.items()}
 
-    def with_shares(self, shares: Mapping[str, float]) -> "Drift":
-        """Some of them changed."""
-        changes: dict[str, Any] = dict(shares)
-        return replace(self, **changes)
+    def with_scales(self, scales: Mapping[str, float]) -> "Drift":
+        """Some of them changed, or channels added."""
+        shares: dict[str, Any] = {name: scales[name] for name in SHARES if name in scales}
+        channels = {name.removeprefix(CHANNEL): size for name, size in scales.items() if name not in SHARES}
+        return replace(self, **shares, channels={**self.channels, **channels})
 
 
 SHARES = ("shared", "slope", "shaft", "mesh", "amplitude")
-"""Numbers of a drift that are fitted."""
+"""Numbers of a drift that scale what two sets share or what their orders do."""
+
+CHANNEL = "channel "
+"""Before the name of a channel that has a shift of its own."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,30 +116,37 @@ class Change:
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
-        shares = sum(drift.shares[name] ** 2 * part for name, part in self.parts().items())
-        inflated = self.residuals.inflated(drift.inflation)
-        shifted = sum(
-            (size**2 * np.outer(shift, shift))
-            for channel, size in drift.channels.items()
-            if (shift := self.shift(channel)).any()
-        )
-        return np.asarray(self.known + shares + inflated + shifted)
+        scaled = sum(drift.scales[name] ** 2 * part for name, part in self.parts(drift).items())
+        return np.asarray(self.known + self.residuals.inflated(drift.inflation) + scaled)
 
-    def parts(self) -> dict[str, Array]:
-        """Share of the drift -> (n, n) covariance of what it scales, at one."""
+    def parts(self, drift: Drift) -> dict[str, Array]:
+        """Name of a scale of the drift -> (n, n) covariance of what it scales, at one."""
         mesh = self.residuals.of_mesh
-        return {
+        shares = {
             "shared": self.shared,
             "slope": np.diag(self.slope**2),
             "shaft": np.diag(np.where(mesh, 0.0, self.steep) ** 2),
             "mesh": np.diag(np.where(mesh, self.steep, 0.0) ** 2),
             "amplitude": np.diag(np.where(mesh, self.amplitude, 0.0) ** 2),
         }
+        shifts = {name: self.shift(name) for name in drift.channels}
+        return shares | {CHANNEL + name: np.outer(shift, shift) for name, shift in shifts.items()}
 
     def shift(self, channel: str) -> Array:
-        """(n,) all numbers of a channel moved by their level; orders are no part of it."""
-        own = [feature.channel == channel and not feature.order for feature in self.residuals.features]
-        return np.where(own, self.residuals.level, 0.0)
+        """(n,) all numbers of a channel moved together, as by its level: by one temperature, or in proportion.
+
+        Orders are no part of it.
+        """
+        residuals = self.residuals
+        own = np.array([one.channel == channel and not one.order for one in residuals.features], dtype=bool)
+        if not own.any():
+            return np.zeros(len(own))
+        level = residuals.level[own]
+        if "temperature" in residuals.channels[channel].quantity:
+            level = np.full_like(level, np.sqrt(np.mean(level**2)))
+        moved = np.zeros(len(own))
+        moved[own] = level
+        return moved
 
     def whitened(self, drift: Drift) -> Whitened:
         """The change where a healthy rig is white noise."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigdesign.diagnosis.residual.baseline import SHARES, Change, Drift
+from rigdesign.diagnosis.residual.baseline import Change, Drift
 from rigdesign.diagnosis.residual.covariance_inflation import inflate
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
@@ -114,24 +114,24 @@ def calibrate_drift(
     """
     changes = [Change.of(residuals, baseline, amplitudes) for residuals, baseline in pairs]
     still = replace(start, inflation={})
-    return still.with_shares(fit_drift(changes, still).values)
+    return still.with_scales(fit_drift(changes, still).values)
 
 
 def fit_drift(changes: Sequence[Change], start: Drift, weight: float = 1.0) -> Fit:
-    """The shares of a drift that make changes of a healthy rig most likely; the rest of ``start`` stays.
+    """The scales of a drift that make changes of a healthy rig most likely; its inflation stays.
 
     weight : of each change in the likelihood, below one where they are not independent
     """
-    groups = [change_group(change, start, weight) for change in changes]
-    return fit(groups, start=start.shares, prior=start.shares, reach={}, fixed={})
+    groups = [_change_group(change, start, weight) for change in changes]
+    return fit(groups, start=start.scales, prior=start.scales, reach={}, fixed={})
 
 
-def change_group(change: Change, drift: Drift, weight: float) -> Group:
-    """One change, with what the shares of its drift scale."""
+def _change_group(change: Change, drift: Drift, weight: float) -> Group:
+    """One change, with what the scales of its drift scale."""
     left = change.residuals.residual - change.expected
     return Group(
-        noise=change.covariance(drift.with_shares(dict.fromkeys(SHARES, 0.0))),
-        parts=change.parts(),
+        noise=change.covariance(drift.with_scales(dict.fromkeys(drift.scales, 0.0))),
+        parts=change.parts(drift),
         products=weight * np.outer(left, left),
         count=weight,
     )

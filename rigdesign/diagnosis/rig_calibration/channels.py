@@ -1,8 +1,8 @@
 """Channels of a rig that shift from one healthy set to the next by more than its drift says.
 
 A thermocouple that is taken out and put back, an amplifier zeroed anew: all numbers of one channel move together, by a
-share of their level. The channel with the largest whitened square is given a shift of its own, then the next, until
-none stands out.
+share of their level. The channel that stands out most is given a shift of its own, then the next, as long as that
+explains the changes better.
 """
 
 from collections.abc import Sequence
@@ -13,29 +13,42 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import brentq
 
 from rigdesign.diagnosis.residual.baseline import Change, Drift
+from rigdesign.diagnosis.residual.calibration import fit_drift
 from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.marginal_likelihood import Fit
 
 STANDS_OUT = 4.0
-"""Mean square of the changes of a channel [variances] above which it has a shift of its own: by chance one channel in
-twenty with two sets."""
+"""Mean square of the changes of a channel [variances] above which a shift of its own is tried."""
+
+WORTH_A_SHIFT = 2.0
+"""Logarithm by which the likelihood has to rise for a shift of a channel."""
 
 LARGEST_SHIFT = 1e3
 """Largest shift that is looked for, over the least one that the drift leaves visible."""
 
 
-def channel_shifts(changes: Sequence[Change], drift: Drift) -> dict[str, float]:
-    """Channel -> standard deviation of its shift from set to set over its level, of those that stand out."""
-    found: dict[str, float] = {}
-    names = dict.fromkeys(feature.channel for change in changes for feature in change.residuals.features)
-    for _ in names:
-        seen = _seen(changes, replace(drift, channels=found), [one for one in names if one not in found])
-        if not seen:
+def fit_with_channels(changes: Sequence[Change], drift: Drift, weight: float) -> Fit:
+    """The scales of a drift, with a shift for each channel that the data give one.
+
+    Candidates are looked for with the drift known before: otherwise one channel that shifts is taken for a drift of
+    everything. Each is fitted together with all other scales and kept where that explains the changes better.
+    """
+    best = fit_drift(changes, drift, weight)
+    while (found := most_shifted(changes, drift)) is not None:
+        name, size = found
+        drift = replace(drift, channels={**drift.channels, name: size})
+        more = fit_drift(changes, drift, weight)
+        if more.misfit > best.misfit - WORTH_A_SHIFT:
             break
-        worst = max(seen, key=lambda name: seen[name].square)
-        if seen[worst].square <= STANDS_OUT:
-            break
-        found[worst] = seen[worst].size()
-    return found
+        best = more
+    return best
+
+
+def most_shifted(changes: Sequence[Change], drift: Drift) -> tuple[str, float] | None:
+    """The channel that stands out most beyond a drift and the size of its shift; None where none does."""
+    seen = _seen(changes, drift)
+    worst = max(seen, key=lambda name: seen[name].square, default="")
+    return (worst, seen[worst].size()) if worst and seen[worst].square > STANDS_OUT else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,15 +76,16 @@ class _Seen:
         return float(np.exp(high if rise(high) >= 0.0 else brentq(rise, low, high, xtol=1e-6)))
 
 
-def _seen(changes: Sequence[Change], drift: Drift, names: Sequence[str]) -> dict[str, _Seen]:
+def _seen(changes: Sequence[Change], drift: Drift) -> dict[str, _Seen]:
+    """Channels without a shift so far, of those that read more than orders."""
     loads: dict[str, list[float]] = {}
     grams: dict[str, list[float]] = {}
     for change in changes:
         factor = cho_factor(change.covariance(drift), lower=True)
         left = cho_solve(factor, change.residuals.residual - change.expected)
-        for name in names:
+        for name in dict.fromkeys(feature.channel for feature in change.residuals.features):
             shift = change.shift(name)
-            if shift.any():
+            if name not in drift.channels and shift.any():
                 loads.setdefault(name, []).append(float(shift @ left))
                 grams.setdefault(name, []).append(float(shift @ cho_solve(factor, shift)))
     return {name: _Seen(load=np.array(loads[name]), gram=np.array(grams[name])) for name in loads}

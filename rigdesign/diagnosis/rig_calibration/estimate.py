@@ -16,12 +16,12 @@ from typing import Literal
 import numpy as np
 
 from rigdesign.diagnosis.decision.defaults import Calibration
-from rigdesign.diagnosis.residual.baseline import Change, Drift
-from rigdesign.diagnosis.residual.calibration import fit_amplitudes, fit_drift, group_of
+from rigdesign.diagnosis.residual.baseline import CHANNEL, Change, Drift
+from rigdesign.diagnosis.residual.calibration import fit_amplitudes, group_of
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
-from rigdesign.diagnosis.rig_calibration.channels import channel_shifts
+from rigdesign.diagnosis.rig_calibration.channels import fit_with_channels
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
-from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Fit, Group
+from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Group
 
 FEWEST = 2
 """Healthy sets that a calibration needs: one pair."""
@@ -96,7 +96,7 @@ def _model_error(sets: Sequence[ResidualProblem], shipped: Calibration, start: A
     before = shipped.amplitudes.as_dict()
     return [
         _estimate(f"amplitudes.{name}", "channel error" if name in OF_CHANNELS else "model error",
-                  before[name], found, found.spreads[name])
+                  before[name], found.values[name], found.spreads[name])
         for name in before
         if name in found.values
     ]  # fmt: skip
@@ -114,22 +114,19 @@ def _one_nth(one: ResidualProblem, shipped: Calibration, count: int) -> Group:
 
 
 def _drift(changes: Sequence[Change], shipped: Drift, sets: int) -> list[Estimate]:
-    found = fit_drift(changes, shipped, 1.0 / sets)
-    spreads = {name: session_spread(spread, sets) for name, spread in found.spreads.items()}
-    shares = [
-        _estimate(f"drift.{name}", "drift", value, found, spreads[name])
-        for name, value in shipped.shares.items()
-    ]
-    shifts = channel_shifts(changes, shipped.with_shares(_used(shares)))
-    spread = session_spread(0.0, sets)
-    channels = [
-        Estimate(
-            name=f"channels.{channel}", kind="channel shift", shipped=0.0, fitted=size, spread=spread,
-            used=size * float(np.exp(spread)),
-        )
-        for channel, size in shifts.items()
-    ]  # fmt: skip
-    return [*shares, *channels]
+    found = fit_with_channels(changes, shipped, 1.0 / sets)
+    estimates = []
+    for name, fitted in found.values.items():
+        spread = session_spread(found.spreads[name], sets)
+        if name.startswith(CHANNEL):
+            key = f"channels.{name.removeprefix(CHANNEL)}"
+            used = fitted * float(np.exp(spread))
+            estimates.append(
+                Estimate(name=key, kind="channel shift", shipped=0.0, fitted=fitted, spread=spread, used=used)
+            )
+        else:
+            estimates.append(_estimate(f"drift.{name}", "drift", shipped.scales[name], fitted, spread))
+    return estimates
 
 
 def session_spread(spread: float, sets: int) -> float:
@@ -139,8 +136,7 @@ def session_spread(spread: float, sets: int) -> float:
     return float((prior + min(seen, 2.0 * (sets - 1))) ** -0.5)
 
 
-def _estimate(name: str, kind: Kind, shipped: float, found: Fit, spread: float) -> Estimate:
-    fitted = found.values[name.partition(".")[2]]
+def _estimate(name: str, kind: Kind, shipped: float, fitted: float, spread: float) -> Estimate:
     used = max(fitted, min(shipped, fitted * float(np.exp(spread))))
     return Estimate(name=name, kind=kind, shipped=shipped, fitted=fitted, spread=spread, used=used)
 
@@ -158,6 +154,6 @@ def with_values(shipped: Calibration, values: Mapping[str, float]) -> Calibratio
     return replace(
         shipped,
         amplitudes=shipped.amplitudes.with_values(groups["amplitudes"]),
-        drift=replace(shipped.drift.with_shares(groups["drift"]), channels=groups["channels"]),
+        drift=replace(shipped.drift.with_scales(groups["drift"]), channels=groups["channels"]),
         answers=shipped.of_answers,
     )

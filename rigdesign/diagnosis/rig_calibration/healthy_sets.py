@@ -23,10 +23,7 @@ LEAST_AGAIN = 3
 
 @dataclass(frozen=True, kw_only=True)
 class RigCalibration:
-    """A rig as its healthy sets have it.
-
-    names : of the sets, in their order; odd : those that do not look like the others
-    """
+    """A rig as its healthy sets have it; names : of the sets, in their order."""
 
     case: Case
     measurements: tuple[MeasurementSet, ...]

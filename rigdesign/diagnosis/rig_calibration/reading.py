@@ -84,7 +84,7 @@ def _checked(values: Mapping[str, Any], shipped: Calibration, where: str) -> dic
     amplitudes = {
         f"amplitudes.{name}" for name in shipped.amplitudes.as_dict() if name not in OF_THE_MEASUREMENT
     }
-    shares = {f"drift.{name}" for name in shipped.drift.shares}
+    shares = {f"drift.{name}" for name in shipped.drift.scales}
     unknown = [
         name for name in values if name not in amplitudes | shares and not name.startswith("channels.")
     ]

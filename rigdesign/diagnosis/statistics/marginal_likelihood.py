@@ -41,10 +41,14 @@ class Group:
 
 @dataclass(frozen=True, kw_only=True)
 class Fit:
-    """Amplitudes with the highest posterior density, and the standard deviation of the logarithm of each."""
+    """Amplitudes with the highest posterior density, and the standard deviation of the logarithm of each.
+
+    misfit : -ln of likelihood and prior there, up to a constant of the data
+    """
 
     values: Mapping[str, float]
     spreads: Mapping[str, float]
+    misfit: float
 
 
 def fit(
@@ -60,8 +64,6 @@ def fit(
     which each may leave it, `FARTHEST` where left out; fixed : amplitudes that stay as they are
     """
     names = sorted(start)
-    if not names:
-        return Fit(values={}, spreads={})
     centre = np.log([prior[name] for name in names])
 
     def misfit(logs: Array) -> tuple[float, Array]:
@@ -86,6 +88,7 @@ def fit(
     return Fit(
         values=dict(zip(names, np.exp(found.x).tolist(), strict=True)),
         spreads=dict(zip(names, _spreads(lambda logs: misfit(logs)[1], found.x), strict=True)),
+        misfit=float(found.fun),
     )
 
 
