@@ -144,15 +144,7 @@ class Calibration:
     signature_error: Mapping[str, float] = field(default_factory=lambda: dict(SIGNATURE_ERROR))
     drift: Drift = DRIFT
     """With a baseline."""
-    answers: Amplitudes | None = None
-    """What the model answers wrongly to an effect in orders and frequencies, which healthy sets do not show; as
-    ``amplitudes`` where left out."""
     origin: Origin = Origin()
-
-    @property
-    def of_answers(self) -> Amplitudes:
-        """Amplitudes of what the model answers wrongly to an effect."""
-        return self.amplitudes if self.answers is None else self.answers
 
     def thresholds(self, baseline: bool) -> Thresholds:
         """Those of a set with a baseline or without one."""

@@ -272,8 +272,8 @@ def _signature(problem: Problem, residuals: ResidualProblem, calibration: Calibr
 
     Without a baseline the residual of a healthy rig is as wide as that by itself.
     """
-    placed = calibration.of_answers.frequency * residuals.steepness
-    share = np.hypot(placed, np.where(residuals.of_mesh, calibration.of_answers.series_mesh_point, 0.0))
+    placed = calibration.amplitudes.frequency * residuals.steepness
+    share = np.hypot(placed, np.where(residuals.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
     own = ModelError.of(residuals.features, share, residuals.of_mesh, residuals.values)
     return Signature.of(
         residuals.features,

@@ -48,8 +48,7 @@ def group_of(
     return Group(
         noise=np.mean([one.base_noise(nothing) for one in sets], axis=0),
         parts=parts,
-        products=np.sum([np.outer(one.raw, one.raw) for one in spaces], axis=0),
-        count=len(sets),
+        residuals=np.stack([one.raw for one in spaces], axis=1),
     )
 
 
@@ -132,6 +131,6 @@ def _change_group(change: Change, drift: Drift, weight: float) -> Group:
     return Group(
         noise=change.covariance(drift.with_scales(dict.fromkeys(drift.scales, 0.0))),
         parts=change.parts(drift),
-        products=weight * np.outer(left, left),
-        count=weight,
+        residuals=left[:, None],
+        weight=weight,
     )

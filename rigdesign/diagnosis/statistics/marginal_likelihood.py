@@ -1,7 +1,6 @@
 """Amplitudes of a covariance by marginal likelihood, with what the data leave open of each.
 
-C = N + sum_k a_k^2 S_k; of several sets with the same N and S_k only the sum of r r' counts. The logarithms of the
-amplitudes have a normal prior around given values.
+C = N + sum_k a_k^2 S_k; the logarithms of the amplitudes have a normal prior around given values.
 
 Source: type II maximum likelihood, Rasmussen and Williams 2006, ch. 5.4; the gradient is eq. (5.9). The spread is that
 of the normal distribution with the curvature at the maximum (Laplace's approximation, ibid. ch. 3.4).
@@ -14,6 +13,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.covariance import inverse_of_factor
 
 PRIOR = 1.5
 """Standard deviation of the logarithm of an amplitude around the value known before."""
@@ -29,14 +29,14 @@ CURVATURE_STEP = 1e-3
 class Group:
     """Residuals of one covariance.
 
-    noise : (n, n) without any amplitude; parts : amplitude -> (n, n); products : (n, n) sum of r r'; count : of
-    residuals, less than their number where they are not independent
+    noise : (n, n) without any amplitude; parts : amplitude -> (n, n); residuals : (n, k)
+    weight : of each residual in the likelihood, below one where they are not independent
     """
 
     noise: Array
     parts: Mapping[str, Array]
-    products: Array
-    count: float
+    residuals: Array
+    weight: float = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,21 +94,18 @@ def fit(
 
 def group_misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str]) -> tuple[float, Array]:
     """-ln likelihood of a group and its derivative by the logarithms of the named amplitudes."""
-    matrix = group.noise + sum(amplitudes[kind] ** 2 * part for kind, part in group.parts.items())
-    lower = np.linalg.cholesky(matrix)
-    inverse = np.linalg.inv(lower)
-    precision = inverse.T @ inverse
-    weighted = precision @ group.products @ precision
-    value = group.count * float(np.log(np.diagonal(lower)).sum()) + 0.5 * float(
-        np.sum(precision * group.products)
-    )
+    matrix: Array = group.noise + sum(amplitudes[kind] ** 2 * part for kind, part in group.parts.items())
+    lower: Array = np.asarray(np.linalg.cholesky(matrix))
+    precision = inverse_of_factor(lower)
+    weighted = precision @ group.residuals
+    count = group.residuals.shape[1]
+    value = count * float(np.log(np.diagonal(lower)).sum()) + 0.5 * float(np.sum(group.residuals * weighted))
+    rise = count * precision - weighted @ weighted.T
     slopes = [
-        amplitudes[name] ** 2 * float(np.sum((group.count * precision - weighted) * group.parts[name]))
-        if name in group.parts
-        else 0.0
+        amplitudes[name] ** 2 * float(np.vdot(rise, group.parts[name])) if name in group.parts else 0.0
         for name in names
     ]
-    return value, np.array(slopes)
+    return group.weight * value, group.weight * np.array(slopes)
 
 
 def _spreads(slope: Callable[[Array], Array], at: Array) -> list[float]:

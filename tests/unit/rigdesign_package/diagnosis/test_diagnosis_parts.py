@@ -141,8 +141,7 @@ def test_amplitudes_are_found_again():
     group = Group(
         noise=0.1**2 * np.eye(n),
         parts={"link": first @ first.T, "channel": second @ second.T},
-        products=draws @ draws.T,
-        count=count,
+        residuals=draws,
     )
     found = fit_amplitudes([group], Amplitudes())
     assert found.values["link"] == pytest.approx(0.4, rel=0.05)
