@@ -20,10 +20,11 @@ import numpy as np
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.residual.baseline import CHANNEL, Change, Drift
 from rigdesign.diagnosis.residual.calibration import fit_amplitudes, group_of
-from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.rig_calibration.channels import fit_with_channels
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Group
+from rigdesign.diagnosis.statistics.outliers import reject
 
 FEWEST = 2
 """Healthy sets that a calibration needs: one pair."""
@@ -78,6 +79,7 @@ def estimate(
     """
     if len(sets) < FEWEST:
         raise ValueError(f"healthy sets = {len(sets)}, must be at least {FEWEST}")
+    sets = [_without_outliers(one, shipped) for one in sets]
     errors = _model_error(sets, shipped, start or shipped.amplitudes)
     amplitudes = shipped.amplitudes.with_values(_used(errors))
     drifts = _drift(changes_of(sets, amplitudes), shipped.drift, len(sets))
@@ -85,6 +87,14 @@ def estimate(
     return RigFit(
         calibration=with_values(shipped, {one.name: one.used for one in estimates}), estimates=estimates
     )
+
+
+def _without_outliers(one: ResidualProblem, shipped: Calibration) -> ResidualProblem:
+    """A set without single readings that its others contradict: a slip is no drift."""
+    space = plain(one, shipped.amplitudes, shipped.inflation)
+    series = [(feature.channel, feature.order) for feature in one.features]
+    gone = {outlier.place for outlier in reject(space.covariance.matrix, space.raw, series)}
+    return one.rows([row for row in range(len(one.features)) if row not in gone]) if gone else one
 
 
 def changes_of(sets: Sequence[ResidualProblem], amplitudes: Amplitudes) -> list[Change]:

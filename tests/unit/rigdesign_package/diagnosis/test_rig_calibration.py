@@ -138,6 +138,20 @@ def test_a_value_is_lowered_by_no_more_than_is_proven_and_raised_as_found() -> N
     assert "amplitudes.sensor" not in found and "amplitudes.input" not in found
 
 
+def test_a_slip_of_a_reading_is_no_drift() -> None:
+    """2500 W too much at one point of one set: without that reading the values are nearly the same."""
+
+    def spoil(point, values):
+        return {**values, "P": values["P"] + (2500.0 if point == "P04" else 0.0)}
+
+    result = result_of(write_set(Path(mkdtemp()), Rig(seed=12), spoil=spoil))
+    spoilt = HealthySet(name="x", residuals=result.problem.residuals, seed="x", repeated=True)
+    found, clean = values([*quiet()[:2], spoilt]), values(quiet())
+    assert found.keys() == clean.keys()
+    for name, one in found.items():
+        assert one.used == pytest.approx(clean[name].used, rel=0.15)
+
+
 def test_one_set_alone_calibrates_nothing() -> None:
     with pytest.raises(ValueError, match="healthy sets = 1"):
         estimate([quiet()[0].residuals], DEFAULT)

@@ -11,6 +11,7 @@ from tempfile import mkdtemp
 
 import pytest
 
+from rigdesign import api
 from rigdesign.base.errors import UsageError
 from rigdesign.case import load_case
 from rigdesign.cli import ending
@@ -256,6 +257,19 @@ def test_a_diagnosis_records_the_calibration_it_used(
         == 2
     )
     assert not (tmp_path / "new").exists()
+
+
+def test_the_library_takes_the_file_as_well(written: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    used = []
+
+    def instead(case, folder, *, calibration):
+        used.append(calibration)
+        return story("healthy")
+
+    monkeypatch.setattr(api, "diagnose_measurement", instead)
+    api.diagnose(the_case(), "set")
+    api.diagnose(the_case(), "set", calibration=written)
+    assert used == [DEFAULT, load_rig_calibration(written, the_case())]
 
 
 # ------------------------------------------------------------------------ no healthy set at all
