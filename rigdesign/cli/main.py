@@ -1,7 +1,7 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, calibrate, diff, validate, explain, new, import, mesh, schema, doctor,
-completion; ``--verbose`` and ``--quiet`` go with each.
+Commands: check, study, compare, diagnose, calibrate, diff, validate, explain, new, import, mesh, schema,
+    doctor, completion; ``--verbose`` and ``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
 validate: no gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system

@@ -1,5 +1,6 @@
 """calibration.html: what healthy sets of a rig changed of the shipped values, and what they say of each other."""
 
+import re
 from typing import Any
 
 from rigdesign.diagnosis.constants_page import meanings
@@ -20,4 +21,4 @@ def meaning(name: str) -> str:
     group, _, key = name.partition(".")
     if group == "channels":
         return f"Shift of all numbers of {key} together from set to set, over their level."
-    return meanings()[name]
+    return re.sub(r" \(`[^`]*`\)", "", meanings()[name])
