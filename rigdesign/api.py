@@ -10,7 +10,9 @@ from pathlib import Path
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case import Case
 from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.decision.defaults import DEFAULT
 from rigdesign.diagnosis.document.outcome import Outcome, check_pick, outcome
+from rigdesign.diagnosis.rig_calibration.reading import load_rig_calibration
 from rigdesign.diagnosis.run import diagnose_measurement
 from rigdesign.measurement.comparison.compare import Comparison
 from rigdesign.measurement.comparison.comparing import compare_measurement
@@ -129,15 +131,22 @@ def compare(
     return compare_measurement(case, Path(measurement), model=model, fidelity=fidelity)
 
 
-def diagnose(case: Case, measurement: str | Path, *, name: str | None = None) -> Outcome:
+def diagnose(
+    case: Case,
+    measurement: str | Path,
+    *,
+    name: str | None = None,
+    calibration: str | Path | None = None,
+) -> Outcome:
     """The effect that the model lacks against a measurement set, or that the data do not identify one.
 
-    measurement : folder with measurement.toml; name : effect to patch where the data leave several
+    measurement : folder with measurement.toml; name : effect to patch where the data leave several; calibration : file
+    that `rigdesign calibrate` wrote for this rig, the shipped values when left out
 
     Raises
     ------
     UsageError
-        A name that is no effect of this case, or that these data exclude.
+        A name that is no effect of this case, or that these data exclude; a calibration of another rig, or damaged.
     MeasurementError
         Data of which nothing can be used.
     CaseError, NotConvergedError, MissingLibraryError
@@ -145,5 +154,6 @@ def diagnose(case: Case, measurement: str | Path, *, name: str | None = None) ->
     """
     if name is not None:
         check_pick(effects_of(case), name)
-    found = diagnose_measurement(case, Path(measurement))
+    used = DEFAULT if calibration is None else load_rig_calibration(Path(calibration), case)
+    found = diagnose_measurement(case, Path(measurement), calibration=used)
     return outcome(found, pick=name, proposals=found.proposals)

@@ -1,12 +1,12 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, diff, validate, explain, new, import, mesh, schema, doctor, completion;
-``--verbose`` and ``--quiet`` go with each.
+Commands: check, study, compare, diagnose, calibrate, diff, validate, explain, new, import, mesh, schema,
+    doctor, completion; ``--verbose`` and ``--quiet`` go with each.
 
-Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; diff: both can be read; validate: no
-gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is
-missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside
-the commands, so that `--help` answers at once.
+Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
+validate: no gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system
+library is missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen
+inside the commands, so that `--help` answers at once.
 """
 
 import signal
@@ -14,6 +14,7 @@ import sys
 
 from rigdesign.cli.application import app, run
 from rigdesign.cli.commands import (
+    calibrate,
     check,
     compare,
     completion,
@@ -33,6 +34,7 @@ from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [
     "app",
+    "calibrate",
     "check",
     "compare",
     "completion",

@@ -9,7 +9,6 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.decision.patch import case_patch, variant_text
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.document.outcome import CasePatch, Outcome
-from rigdesign.diagnosis.run import Calibrated
 from rigdesign.report.pages.diagnosis import diagnosis_page
 
 PATCHES = [
@@ -67,39 +66,6 @@ def _patch_texts(case: Case, patch: CasePatch, name: str, folder: Path) -> dict[
         name: json.dumps(operations, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
         f"{folder.name}/case.toml": variant_text(case, patch.title, patch.values, folder),
     }
-
-
-def write_calibrated(calibrated: Calibrated, out: Path) -> None:
-    """Write calibrated/case.toml, which extends the case, and calibration.json with the covariance of the constants.
-
-    Raises
-    ------
-    OutputError
-        If ``out`` cannot be written.
-    """
-    found = calibrated.constants
-    document = {
-        "case": {"name": calibrated.case.name, "hash": calibrated.case.hash},
-        "measurement": {"title": calibrated.measurement.title, "hash": calibrated.measurement.hash},
-        "constants": [
-            {
-                "effect": entry.effect.name,
-                "parameter": entry.effect.parameters[0].name,
-                "unit": entry.effect.parameters[0].unit,
-                "value": entry.effect.parameters[0].value(entry.coordinate),
-                "coordinate": "logarithm" if entry.effect.parameters[0].factor else "value",
-                "deviation": entry.deviation,
-                "deviation_before": entry.before,
-            }
-            for entry in found.entries
-        ],
-        "covariance": found.covariance.tolist(),
-    }
-    text = variant_text(calibrated.case, calibrated.title, calibrated.values, out / "calibrated")
-    with staged(out) as scratch:
-        (scratch / "calibrated").mkdir()
-        (scratch / "calibrated" / "case.toml").write_text(text, encoding="utf-8", newline="\n")
-        (scratch / "calibration.json").write_text(to_text(document), encoding="utf-8", newline="\n")
 
 
 def _is_empty(folder: Path) -> bool:

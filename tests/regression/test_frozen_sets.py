@@ -10,6 +10,7 @@ from functools import cache
 import pytest
 
 from rigdesign.case import load_case
+from rigdesign.diagnosis.rig_calibration.healthy_sets import calibrate_rig
 from rigdesign.diagnosis.run import diagnose_measurement
 from tests.blind.metrics import canonical
 from tests.builders.paths import ROOT
@@ -84,3 +85,24 @@ def test_nothing_is_named_that_is_not_hidden(name):
 )
 def test_an_alias_group_is_small(name):
     assert len(diagnosed(name).named) <= 3
+
+
+@cache
+def calibrated():
+    case = load_case(ROOT / "cases" / "uhcf_prototype")
+    return calibrate_rig(case, [FROZEN / "set_00", FROZEN / "set_05"])
+
+
+def test_two_healthy_sets_calibrate_their_rig_without_an_alarm():
+    found = calibrated()
+    assert found.odd == () and not any(row.alarm for row in found.left_out)
+    assert all(0.8 < row.chi_square < 1.2 for row in found.left_out if row.baseline is not None)
+
+
+@pytest.mark.parametrize("name", ["set_01", "set_04"])
+def test_verdicts_hold_with_the_calibration_of_the_rig(name):
+    """A hidden leak is named, a cause outside the catalogue is not."""
+    case, calibration = calibrated().case, calibrated().fit.calibration
+    found = diagnose_measurement(case, FROZEN / name, calibration=calibration).diagnosis
+    assert found.decision.verdict == VERDICTS[name], found.decision.reason
+    assert set(found.named) == (hidden(name) if VERDICTS[name] == "named" else set())

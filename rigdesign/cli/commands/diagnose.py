@@ -5,6 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from rigdesign.base.errors import UsageError
 from rigdesign.cli.application import OutFolder, app, loaded_case, print_json
 from rigdesign.cli.ending import SIMULATIONS_KEPT, interrupted
 
@@ -18,7 +19,8 @@ def diagnose(
     out: OutFolder,
     json: bool = False,
     name: str | None = None,
-    calibrate: Annotated[bool, Parameter(negative=())] = False,
+    calibration: Path | None = None,
+    calibrate: Annotated[bool, Parameter(negative=(), show=False)] = False,
 ) -> int:
     """Name the effect that the model lacks against a measurement set, patch the case, and prove that the gap shrinks.
 
@@ -35,26 +37,34 @@ def diagnose(
         Print diagnosis.json on stdout; everything else goes to stderr.
     name
         Effect to patch where the data leave several, such as one of an alias group.
+    calibration
+        calibration.json that `rigdesign calibrate` wrote for this rig, or its folder; the shipped values when left out.
     calibrate
-        The set is of a healthy rig: fit the uncertain constants of the case to it and write calibrated/case.toml.
+        Moved to `rigdesign calibrate --constants`.
     """
     if calibrate:
-        return _calibrate(case, measurement, out)
+        raise UsageError(
+            "--calibrate of diagnose is now `rigdesign calibrate CASE SET --constants --out DIR`; "
+            "--calibration FILE uses the calibration of a rig"
+        )
     loaded = loaded_case(case)
     from rigdesign.cli.terminal.diagnosis import print_diagnosis
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.diagnosis.catalogue import effects_of
+    from rigdesign.diagnosis.decision.defaults import DEFAULT
     from rigdesign.diagnosis.document.document import diagnosis_document
     from rigdesign.diagnosis.document.outcome import check_pick, outcome
+    from rigdesign.diagnosis.rig_calibration.reading import load_rig_calibration
     from rigdesign.diagnosis.run import diagnose_measurement
     from rigdesign.report import prepare_output
     from rigdesign.report.diagnosis_files import write_diagnosis
 
     if name is not None:
         check_pick(effects_of(loaded), name)
+    used = DEFAULT if calibration is None else load_rig_calibration(calibration, loaded)
     prepare_output(out)
     with Progress() as progress, interrupted(SIMULATIONS_KEPT):
-        found = diagnose_measurement(loaded, measurement, say=progress)
+        found = diagnose_measurement(loaded, measurement, calibration=used, say=progress)
         reported = outcome(found, pick=name)
         progress("writing report")
         write_diagnosis(reported, out)
@@ -62,20 +72,4 @@ def diagnose(
         print_json(diagnosis_document(reported))
     else:
         print_diagnosis(reported, out)
-    return 0
-
-
-def _calibrate(case: Path, measurement: Path, out: Path) -> int:
-    loaded = loaded_case(case)
-    from rigdesign.cli.terminal.diagnosis import print_constants
-    from rigdesign.cli.terminal.progress import Progress
-    from rigdesign.diagnosis.run import calibrate_case
-    from rigdesign.report import prepare_output
-    from rigdesign.report.diagnosis_files import write_calibrated
-
-    prepare_output(out)
-    with Progress() as progress, interrupted(SIMULATIONS_KEPT):
-        found = calibrate_case(loaded, measurement, say=progress)
-        write_calibrated(found, out)
-    print_constants(found, out)
     return 0

@@ -1,4 +1,4 @@
-"""A diagnosis, and the constants of a calibrated case."""
+"""A diagnosis."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,30 +8,13 @@ from rich.text import Text
 from rigdesign.cli.terminal.console import new_console, verdict_console
 
 if TYPE_CHECKING:
+    from rigdesign.diagnosis.decision.defaults import Origin
     from rigdesign.diagnosis.document.outcome import Outcome
-    from rigdesign.diagnosis.run import Calibrated
 
 DIAGNOSIS_STYLES = {"named": "bold green", "within_noise": "green", "input_error_suspected": "bold red"}
 
 MOST_DOUBTS = 4
 """Suspected input errors that are printed."""
-
-
-def print_constants(found: "Calibrated", out: Path) -> None:
-    """Every constant that a healthy set narrows: its value, its interval, and what it was known to before."""
-    console = new_console()
-    entries = found.constants.entries
-    if not entries:
-        console.print("no constant of the case is known better from this set than before")
-    for entry in entries:
-        parameter = entry.effect.parameters[0]
-        low, high = (
-            parameter.value(entry.coordinate + sign * 1.96 * entry.deviation) for sign in (-1.0, 1.0)
-        )
-        value = f"{parameter.value(entry.coordinate):.4g} ({low:.4g} to {high:.4g}) {parameter.unit}".rstrip()
-        narrowed = f"{entry.deviation / entry.before:.0%} of the spread before"
-        console.print(Text(f"{entry.effect.title}: {parameter.name} {value}, {narrowed}"))
-    console.print(Text(f"calibrated case: {out / 'calibrated' / 'case.toml'}"))
 
 
 def print_diagnosis(outcome: "Outcome", out: Path) -> None:
@@ -80,6 +63,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
         console.print(Text("remains   ", "bold") + Text(text))
     for step in steps(outcome)[:5]:
         console.print(Text("next      ", "bold") + Text(f"{step.text}: {step.why}"))
+    console.print(Text(calibration_line(outcome.result.calibration.origin), "dim"))
     if outcome.case_patch is not None:
         console.print(f"patched case: {out / 'patched' / 'case.toml'}")
     else:
@@ -87,3 +71,11 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     if outcome.offered is not None:
         console.print(f"case with the suspected effect, to be tried: {out / 'suspected' / 'case.toml'}")
     console.print(f"report: {out / 'diagnosis.html'}")
+
+
+def calibration_line(origin: "Origin") -> str:
+    """Which calibration a diagnosis used."""
+    if origin.kind == "shipped":
+        return "calibration: shipped values, no healthy sets of this rig"
+    odd = f"; {', '.join(origin.odd)} did not look like the others" if origin.odd else ""
+    return f"calibration: {len(origin.sets)} healthy sets of this rig, {origin.path}{odd}"

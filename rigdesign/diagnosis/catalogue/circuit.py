@@ -20,6 +20,7 @@ from rigdesign.diagnosis.catalogue.families import DAMPING, EXCITATION, INERTIA,
 from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_rig
 
 MICROMETRE = 1e-6
+"""In metres."""
 
 LEAST_TORQUE = 0.1
 """Amplitude of a harmonic torque that matters [N m]: the motor of a power circuit gives tens of newton metres, of which

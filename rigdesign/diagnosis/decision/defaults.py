@@ -8,6 +8,7 @@ from the development split and from what healthy sets reach.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from rigdesign.diagnosis.decision.decision import Thresholds
 from rigdesign.diagnosis.residual.baseline import Drift
@@ -115,6 +116,22 @@ loop with a hunting ratio; the inflation to 108 pairs, 36 of each rig."""
 
 
 @dataclass(frozen=True, kw_only=True)
+class Origin:
+    """Where a calibration is from.
+
+    path, hash : of the file that `rigdesign calibrate` wrote, SHA-256; case_hash : of the case it was made with
+    sets : titles of the healthy sets; odd : names of those that did not look like the others
+    """
+
+    kind: Literal["shipped", "file"] = "shipped"
+    path: str = ""
+    hash: str = ""
+    case_hash: str = ""
+    sets: tuple[str, ...] = ()
+    odd: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
 class Calibration:
     """Everything a diagnosis takes from calibration."""
 
@@ -127,6 +144,7 @@ class Calibration:
     signature_error: Mapping[str, float] = field(default_factory=lambda: dict(SIGNATURE_ERROR))
     drift: Drift = DRIFT
     """With a baseline."""
+    origin: Origin = Origin()
 
     def thresholds(self, baseline: bool) -> Thresholds:
         """Those of a set with a baseline or without one."""

@@ -153,7 +153,7 @@ def variant_text(case: Case, title: str, values: Mapping[str, Mapping[str, Any]]
     """A case file for ``folder`` that extends the case and holds the patched values, each with its reason."""
     base = os.path.relpath(case.path.resolve(), folder.resolve())
     lines = [
-        "# Written by rigdesign diagnose. The case it extends is as it was.",
+        "# Written by rigdesign. The case it extends is as it was.",
         "",
         f"extends = {_text(Path(base).as_posix())}",
         f"title = {_text(title)}",

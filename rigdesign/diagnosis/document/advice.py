@@ -146,7 +146,14 @@ def steps(outcome: Outcome) -> tuple[NextStep, ...]:
         if one.separation >= WORTH
     ][:MOST_PROPOSED]  # fmt: skip
     nothing = [] if computed or not outcome.ahead.ranked else [_none_separates(outcome)]
-    return (*_first(outcome), *_together(outcome), *computed, *nothing, *_better_data(outcome))
+    return (
+        *_baseline(outcome),
+        *_first(outcome),
+        *_together(outcome),
+        *computed,
+        *nothing,
+        *_better_data(outcome),
+    )
 
 
 def _none_separates(outcome: Outcome) -> NextStep:
@@ -176,6 +183,20 @@ def _together(outcome: Outcome) -> list[NextStep]:
             separation=found.separation,
             cost=found.cost,
             decides=True,
+        )
+    ]
+
+
+def _baseline(outcome: Outcome) -> list[NextStep]:
+    """Without any healthy set of the rig: measure one, before anything else."""
+    result = outcome.result
+    if result.baseline is not None or result.calibration.origin.kind == "file":
+        return []
+    return [
+        NextStep(
+            text="measure a healthy baseline first: the same points in a state known to be healthy, given as baseline; "
+            "two to four such sets calibrate the rig (rigdesign calibrate)",
+            why="errors of the model cancel in the difference of two sets; without one, intervals are wide",
         )
     ]
 
@@ -238,7 +259,7 @@ def _better_data(outcome: Outcome) -> list[NextStep]:
         steps.append(
             NextStep(text="repeat every operating point", why="the noise is then measured, not declared")
         )
-    if result.baseline is None and outcome.verdict != "named":
+    if result.baseline is None and result.calibration.origin.kind == "file" and outcome.verdict != "named":
         steps.append(
             NextStep(
                 text="measure the same points in a state known to be healthy and give that set as baseline",

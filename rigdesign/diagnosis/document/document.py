@@ -23,6 +23,7 @@ from rigdesign.measurement.comparison.locate import Located
 from rigdesign.measurement.quantities import CHANNELS
 
 SCHEMA = 1
+"""Of diagnosis.json."""
 
 
 def diagnosis_document(outcome: Outcome) -> dict[str, Any]:

@@ -5,7 +5,8 @@ settings, and a drift.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -32,17 +33,39 @@ class Drift:
     """
 
     shared: float
-    """Of everything."""
+    """Share of all errors that two sets have in common which each has anew."""
     slope: float
-    """Of what the model says that an order changes with the speed from one set to the other."""
+    """Share of what the model says that an order changes with the speed from one set to the other."""
     shaft: float
-    """Of what the natural frequencies make of a shaft order or sideband that the healthy set reads
+    """Share of what the natural frequencies make of a shaft order or sideband that the healthy set reads
     (`rigdesign.diagnosis.statistics.resonance`)."""
     mesh: float
-    """The same of an order of the meshes."""
+    """Share of what the natural frequencies make of an order of the meshes."""
     amplitude: float
-    """Of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
+    """Share of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
     inflation: Mapping[str, float] = field(default_factory=dict)
+    channels: Mapping[str, float] = field(default_factory=dict)
+    """Channel -> standard deviation of a shift of all its numbers together from set to set, over their level
+    (`Change.shift`); from a rig's own healthy sets."""
+
+    @property
+    def scales(self) -> dict[str, float]:
+        """What scales the parts of a change by name: shares, and ``channel NAME``."""
+        shares = {name: getattr(self, name) for name in SHARES}
+        return shares | {CHANNEL + name: size for name, size in self.channels.items()}
+
+    def with_scales(self, scales: Mapping[str, float]) -> "Drift":
+        """Some of them changed, or channels added."""
+        shares: dict[str, Any] = {name: scales[name] for name in SHARES if name in scales}
+        channels = {name.removeprefix(CHANNEL): size for name, size in scales.items() if name not in SHARES}
+        return replace(self, **shares, channels={**self.channels, **channels})
+
+
+SHARES = ("shared", "slope", "shaft", "mesh", "amplitude")
+"""Numbers of a drift that scale what two sets share or what their orders do."""
+
+CHANNEL = "channel "
+"""Before the name of a channel that has a shift of its own."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,12 +116,37 @@ class Change:
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
+        scaled = sum(drift.scales[name] ** 2 * part for name, part in self.parts(drift).items())
+        return np.asarray(self.known + self.residuals.inflated(drift.inflation) + scaled)
+
+    def parts(self, drift: Drift) -> dict[str, Array]:
+        """Name of a scale of the drift -> (n, n) covariance of what it scales, at one."""
         mesh = self.residuals.of_mesh
-        steep = np.where(mesh, drift.mesh, drift.shaft) * self.steep
-        still = np.where(mesh, drift.amplitude, 0.0) * self.amplitude
-        alone = np.diag((drift.slope * self.slope) ** 2 + steep**2 + still**2)
-        inflated = self.residuals.inflated(drift.inflation)
-        return np.asarray(self.known + drift.shared**2 * self.shared + alone + inflated)
+        shares = {
+            "shared": self.shared,
+            "slope": np.diag(self.slope**2),
+            "shaft": np.diag(np.where(mesh, 0.0, self.steep) ** 2),
+            "mesh": np.diag(np.where(mesh, self.steep, 0.0) ** 2),
+            "amplitude": np.diag(np.where(mesh, self.amplitude, 0.0) ** 2),
+        }
+        shifts = {name: self.shift(name) for name in drift.channels}
+        return shares | {CHANNEL + name: np.outer(shift, shift) for name, shift in shifts.items()}
+
+    def shift(self, channel: str) -> Array:
+        """(n,) all numbers of a channel moved together, as by its level: by one temperature, or in proportion.
+
+        Orders are no part of it.
+        """
+        residuals = self.residuals
+        own = np.array([one.channel == channel and not one.order for one in residuals.features], dtype=bool)
+        if not own.any():
+            return np.zeros(len(own))
+        level = residuals.level[own]
+        if "temperature" in residuals.channels[channel].quantity:
+            level = np.full_like(level, np.sqrt(np.mean(level**2)))
+        moved = np.zeros(len(own))
+        moved[own] = level
+        return moved
 
     def whitened(self, drift: Drift) -> Whitened:
         """The change where a healthy rig is white noise."""

@@ -87,6 +87,7 @@ _TEMPERATURE: tuple[_Misreading, ...] = (
     ("fahrenheit", 1.8, ZERO_CELSIUS - 459.67),
     ("kelvin as celsius", 1.0, ZERO_CELSIUS),
 )
+"""Misreadings of temperatures."""
 _TORQUE: tuple[_Misreading, ...] = (
     ("sign", -1.0, 0.0),
     ("kilonewton metre", 1e-3, 0.0),
@@ -95,6 +96,7 @@ _TORQUE: tuple[_Misreading, ...] = (
     ("pound-force foot", 1.0 / 1.355818, 0.0),
     ("pound-force inch", 12.0 / 1.355818, 0.0),
 )
+"""Misreadings of torques."""
 _MISREAD: Mapping[str, tuple[_Misreading, ...]] = {
     "temperature": _TEMPERATURE,
     "oil_outlet_temperature": _TEMPERATURE,

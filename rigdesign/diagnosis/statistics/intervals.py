@@ -10,6 +10,7 @@ from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.evidence import Evidence, release_of
 
 NORMAL_95 = 1.96
+"""Standard deviations of an interval that holds 95 % of a normal distribution."""
 
 
 @dataclass(frozen=True, kw_only=True)

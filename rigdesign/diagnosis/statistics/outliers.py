@@ -11,6 +11,8 @@ from rigdesign.diagnosis.statistics.covariance import inverse_of_factor
 
 LIMIT = 5.5
 """Leave-one-out deviation [standard deviations] above which a reading is left out."""
+MOST_REJECTED = 0.05
+"""Share of the readings that may be left out; if more stand out, none is."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ def reject(
     series: Sequence[object],
     *,
     limit: float = LIMIT,
-    most: float = 0.05,
+    most: float = MOST_REJECTED,
 ) -> tuple[Outlier, ...]:
     """Readings that the others contradict.
 

@@ -76,8 +76,8 @@ remove = ["housing"]
 
 
 COMMANDS = (
-    "check", "study", "compare", "diagnose", "diff", "validate", "explain", "new", "import", "mesh", "schema", "doctor",
-    "completion",
+    "check", "study", "compare", "diagnose", "calibrate", "diff", "validate", "explain", "new", "import", "mesh",
+    "schema", "doctor", "completion",
 )  # fmt: skip
 
 
@@ -510,6 +510,7 @@ def test_check_writes_the_report_as_pdf_with_its_author(
 
 EMPTY_OUT: dict[str, tuple[str, ...]] = {
     "check": ("x",), "compare": ("x", "y"), "diagnose": ("x", "y"), "diff": ("a", "b"), "mesh": ("x",),
+    "calibrate": ("x", "y", "z"),
     "new measurement": ("x",), "study": ("x", "--vary", "a=1,2"), "validate": (),
     "import": ("unit.rexs",),
 }  # fmt: skip

@@ -9,7 +9,7 @@ from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
 from rigdesign.diagnosis.catalogue.families import LOSS
 from rigdesign.diagnosis.decision.constants import constants
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.diagnosis.residual.calibration import Group, _misfit, fit_amplitudes
+from rigdesign.diagnosis.residual.calibration import fit_amplitudes
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
@@ -17,6 +17,7 @@ from rigdesign.diagnosis.statistics.detectability import aliases, detectabilitie
 from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.diagnosis.statistics.intervals import fit_together
+from rigdesign.diagnosis.statistics.marginal_likelihood import Group, group_misfit
 from rigdesign.diagnosis.statistics.next_measurement import Foreseen, Proposal, Rival, ranked, smallest_set
 from rigdesign.diagnosis.statistics.outliers import reject
 from rigdesign.diagnosis.statistics.phase_shift import Turning
@@ -140,18 +141,17 @@ def test_amplitudes_are_found_again():
     group = Group(
         noise=0.1**2 * np.eye(n),
         parts={"link": first @ first.T, "channel": second @ second.T},
-        products=draws @ draws.T,
-        count=count,
+        residuals=draws,
     )
     found = fit_amplitudes([group], Amplitudes())
-    assert found.link == pytest.approx(0.4, rel=0.05)
-    assert found.channel == pytest.approx(0.05, rel=0.15)
+    assert found.values["link"] == pytest.approx(0.4, rel=0.05)
+    assert found.values["channel"] == pytest.approx(0.05, rel=0.15)
     names = ("link", "channel")
     logs = np.log([0.3, 0.07])
-    value, slope = _misfit(group, dict(zip(names, np.exp(logs))), names)
+    value, slope = group_misfit(group, dict(zip(names, np.exp(logs))), names)
     for number in range(2):
         moved = logs + 1e-6 * np.eye(2)[number]
-        above, _ = _misfit(group, dict(zip(names, np.exp(moved))), names)
+        above, _ = group_misfit(group, dict(zip(names, np.exp(moved))), names)
         assert (above - value) / 1e-6 == pytest.approx(slope[number], rel=1e-3)
 
 

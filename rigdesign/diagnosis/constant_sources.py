@@ -1,0 +1,162 @@
+"""Where every constant of the diagnosis is from, and whether healthy sets of a user's rig replace it.
+
+Name, value and meaning stand where a constant is used; `rigdesign.diagnosis.constants_page` joins them with these
+entries to one table.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+Kind = Literal["fit", "literature", "choice", "definition"]
+"""fit: to sets of the virtual rig; choice: of the method, by trials or by judgement; definition: of units, formats."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Unit, kind of source and source of a constant; replaced : by `rigdesign calibrate`."""
+
+    unit: str
+    kind: Kind
+    text: str
+    replaced: bool = False
+
+
+_HEALTHY = "marginal likelihood of 76 healthy sets of the virtual rig, three rigs"
+_PAIRS = "marginal likelihood of 80 pairs of healthy sets of the virtual rig, three rigs"
+_TRIALS = "trials with two simulators, before the first score"
+_DEVELOPMENT = "chosen on the development split of the blind score"
+_JUDGEMENT = "judgement, not fitted"
+_PRACTICE = "rig practice"
+_NUMERICS = "numerical method"
+_TIME = "computing time"
+_REPORT = "what a reader wants to see"
+
+SOURCES: Mapping[str, Source] = {
+    "decision.defaults.AMPLITUDES": Source("-", "fit", _HEALTHY, replaced=True),
+    "decision.defaults.AMPLITUDES.sensor": Source(
+        "-", "definition", "uncertainties as the measurement states them"
+    ),
+    "decision.defaults.AMPLITUDES.input": Source(
+        "-", "definition", "uncertainties as the measurement states them"
+    ),
+    "decision.defaults.INFLATION": Source(
+        "coordinate", "fit", "108 healthy sets of the virtual rig, three rigs"
+    ),
+    "decision.defaults.DRIFT": Source("-", "fit", _PAIRS, replaced=True),
+    "decision.defaults.DRIFT.inflation": Source(
+        "coordinate", "fit", "108 pairs of healthy sets of the virtual rig, three rigs"
+    ),
+    "decision.defaults.SIGNATURE_ERROR": Source(
+        "-", "fit", "traces of 22 effects in the virtual rig; not_steady: second score"
+    ),
+    "decision.defaults.PLAIN": Source(
+        "-", "fit", "development split of the blind score; evidence: largest of 108 healthy sets"
+    ),
+    "decision.defaults.GIVEN_BASELINE": Source(
+        "-", "fit", "development split of the blind score; evidence: largest of healthy pairs"
+    ),
+    "decision.decision.PRIOR": Source("-", "choice", _TRIALS),
+    "decision.suspicion.REMAINDER": Source("-", "choice", _JUDGEMENT),
+    "decision.suspicion.AGREEMENT": Source("-", "choice", _JUDGEMENT),
+    "decision.suspicion.INCLUSION": Source("-", "choice", "as large as for a name"),
+    "decision.suspicion.CATALOGUE": Source("-", "choice", _JUDGEMENT),
+    "decision.suspicion.LARGEST_GROUP": Source("-", "choice", _JUDGEMENT),
+    "decision.suspicion.FAINT": Source("sd", "choice", _JUDGEMENT),
+    "decision.simulation.SEED": Source("-", "definition", "any number"),
+    "statistics.next_measurement.MOST_TOGETHER": Source("-", "choice", _REPORT),
+    "decision.claims.REACHES": Source("-", "choice", _DEVELOPMENT),
+    "decision.claims.SIZES": Source("-", "choice", _NUMERICS),
+    "decision.constants.NARROWED": Source(
+        "-", "choice", "a constant known hardly better stays as the case has it"
+    ),
+    "decision.evaluate.LEADERS": Source("-", "choice", _TIME),
+    "decision.evaluate.UNNAMED_LEADERS": Source("-", "choice", _TIME),
+    "decision.evaluate.COPY": Source("-", "choice", _DEVELOPMENT),
+    "decision.evaluate.PARTNERS": Source("-", "choice", _TIME),
+    "decision.naming.DIGITS": Source("-", "definition", "format"),
+    "decision.naming._SCALES": Source("-", "definition", "units"),
+    "decision.proposals.RIVALS": Source("-", "choice", _REPORT),
+    "decision.search.MOST_EFFECTS": Source("-", "choice", _JUDGEMENT),
+    "decision.workflow.LEAST_RUNNING_POINTS": Source("-", "choice", _JUDGEMENT),
+    "catalogue.circuit.MICROMETRE": Source("m", "definition", "units"),
+    "catalogue.circuit.LEAST_TORQUE": Source("N m", "choice", _PRACTICE),
+    "catalogue.circuit.LEAST_SOFTENING": Source(
+        "-", "choice", "stiffness of a tooth over the depth of a crack"
+    ),
+    "catalogue.families.FEWER_SIZES": Source("of the bound", "choice", _TIME),
+    "catalogue.families.YIELDING_SIZES": Source("of the bound", "choice", _TIME),
+    "catalogue.heat.FLOW_METER": Source("-", "choice", _PRACTICE),
+    "catalogue.heat.FLOWS": Source("-", "choice", _PRACTICE),
+    "catalogue.heat.IN_MIST": Source("-", "literature", "films on rotating parts, `thermal.films.rotating`"),
+    "catalogue.heat.IN_BEARING": Source(
+        "-", "literature", "laminar film, Nu 2 to 6, `thermal.films.convection`"
+    ),
+    "catalogue.heat.LOOSE": Source("m2 K/W", "choice", "conduction through an air gap of 0.1 mm"),
+    "catalogue.heat.PRESSED": Source("m2 K/W", "choice", _JUDGEMENT),
+    "document.advice.NOTABLE": Source("-", "choice", _REPORT),
+    "document.advice.WORTH": Source("-", "choice", _REPORT),
+    "document.advice.MOST_PROPOSED": Source("-", "choice", _REPORT),
+    "document.document.SCHEMA": Source("-", "definition", "format"),
+    "document.outcome.SHOWN": Source("-", "choice", _REPORT),
+    "library.build.BATCH": Source("-", "choice", _TIME),
+    "library.build.LINEAR_SHARE": Source("of the bound", "choice", _NUMERICS),
+    "library.build.OSCILLATION_SHARE": Source("of the bound", "choice", _NUMERICS),
+    "library.cache.SCHEMA": Source("-", "definition", "format"),
+    "library.candidates.NOISE": Source("SI", "choice", f"{_PRACTICE}: usual sensors"),
+    "library.candidates.COST": Source("thermocouples", "choice", _PRACTICE),
+    "library.candidates.MOST_TEMPERATURES": Source("-", "choice", _TIME),
+    "residual.baseline.TWINS": Source("-", "choice", _DEVELOPMENT),
+    "residual.calibration.HANDBOOK": Source("-", "choice", _JUDGEMENT),
+    "residual.calibration.ROUNDS": Source("-", "choice", _NUMERICS),
+    "residual.covariance_inflation.INFLATE_ABOVE": Source("variances", "choice", _TRIALS),
+    "residual.covariance_inflation.LARGEST": Source("variances", "choice", _DEVELOPMENT),
+    "residual.covariance_inflation.WIDEST": Source("-", "choice", _NUMERICS),
+    "residual.covariance_inflation.ENOUGH": Source("-", "choice", _NUMERICS),
+    "residual.covariance_inflation.UNSEEN": Source("-", "choice", _DEVELOPMENT),
+    "residual.data_error.STEP": Source("rad", "choice", _NUMERICS),
+    "residual.data_error._MISREAD": Source("-", "definition", "units"),
+    "residual.data_error._TEMPERATURE": Source("-", "definition", "units"),
+    "residual.data_error._TORQUE": Source("-", "definition", "units"),
+    "residual.healthy.TREND": Source("-", "choice", _JUDGEMENT),
+    "residual.hypotheses.SIGMAS": Source("-", "choice", _JUDGEMENT),
+    "residual.hypotheses.INVISIBLE": Source("-", "choice", _NUMERICS),
+    "residual.residual_problem.BENDING_STEPS": Source("-", "choice", _NUMERICS),
+    "residual.residual_problem.BENDING_SHARE": Source("-", "choice", _NUMERICS),
+    "residual.sensors.TIMES": Source("-", "choice", _JUDGEMENT),
+    "residual.sensors.ANGLE_ZERO": Source("rad", "choice", _PRACTICE),
+    "residual.sensors.LARGEST_ANGLE_ERROR": Source("rad", "choice", "20 times its healthy error"),
+    "residual.signature.CONTENDERS": Source("-", "choice", _TIME),
+    "residual.signature.SLIGHT": Source("-", "choice", _NUMERICS),
+    "residual.signature.MOST_ALONE": Source("-", "choice", _TIME),
+    "rig_calibration.channels.STANDS_OUT": Source("variances", "choice", "two standard deviations"),
+    "rig_calibration.channels.WORTH_A_SHIFT": Source("-", "choice", _JUDGEMENT),
+    "rig_calibration.channels.LARGEST_SHIFT": Source("-", "choice", _NUMERICS),
+    "rig_calibration.document.SCHEMA": Source("-", "definition", "format"),
+    "rig_calibration.estimate.FEWEST": Source("-", "definition", "one pair"),
+    "rig_calibration.estimate.MOST": Source("-", "choice", _TIME),
+    "rig_calibration.healthy_sets.LEAST_AGAIN": Source("-", "choice", "as LEAST_RUNNING_POINTS"),
+    "run.HIGHEST": Source("-", "choice", _PRACTICE),
+    "statistics.detectability.SEEN": Source(
+        "-", "literature", "normal distribution, 5 % error on both sides"
+    ),
+    "statistics.detectability.SEPARATED": Source("-", "choice", _TRIALS),
+    "statistics.detectability.ALIAS": Source("-", "choice", _TRIALS),
+    "statistics.evidence.SPREADS": Source("of the bound", "choice", _TRIALS),
+    "statistics.evidence.GRID": Source("-", "choice", _NUMERICS),
+    "statistics.evidence.ALIKE": Source("-", "choice", _NUMERICS),
+    "statistics.heldout.LEAST_POINTS": Source("-", "choice", _JUDGEMENT),
+    "statistics.heldout.SHARE": Source("-", "choice", _JUDGEMENT),
+    "statistics.heldout.OWN": Source("-", "choice", _JUDGEMENT),
+    "statistics.intervals.NORMAL_95": Source("-", "literature", "normal distribution"),
+    "statistics.intervals.FINE": Source("-", "choice", _NUMERICS),
+    "statistics.marginal_likelihood.PRIOR": Source("-", "choice", "a factor of 4.5 between rigs"),
+    "statistics.marginal_likelihood.FARTHEST": Source("-", "choice", _NUMERICS),
+    "statistics.marginal_likelihood.CURVATURE_STEP": Source("-", "choice", _NUMERICS),
+    "statistics.next_measurement.TELLS": Source("variances", "choice", _JUDGEMENT),
+    "statistics.outliers.LIMIT": Source("-", "choice", _JUDGEMENT),
+    "statistics.outliers.MOST_REJECTED": Source("-", "choice", _JUDGEMENT),
+    "statistics.reference_scale.AMBIENT": Source("K", "choice", "room temperature"),
+    "statistics.resonance.BLURRED": Source("-", "choice", _DEVELOPMENT),
+}
+"""Module and name, as ``decision.defaults.DRIFT`` -> source; a field or key of a constant may have its own entry."""

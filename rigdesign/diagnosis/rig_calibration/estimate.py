@@ -1,0 +1,167 @@
+"""Drift, channels and model error of one rig from its healthy sets; the shipped values are the prior.
+
+Sets of one rig share its constants, so that they are one draw of the model error: each counts as one N-th. Of N sets
+N (N - 1) ordered pairs can be made, but only N - 1 changes are independent: each pair counts as one N-th as well.
+
+A value found larger than shipped is used as found. A smaller drift is used with one standard deviation added, as one
+too small gives false alarms and one too large only hides small effects. What all numbers of a session have in common
+was drawn N - 1 times, which leaves the logarithm of a drift open by at least (1/1.5^2 + 2 (N - 1))^-1/2: two sets lower
+a drift to no less than 1.9 times the value found, four to 1.5 times. Errors of model and channels are never lowered: a
+rig is one draw of them, and single orders or channels stand out of their kind. With lower ones two of six healthy sets
+of a loop gave an alarm against the model alone, with these none.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from rigdesign.diagnosis.decision.defaults import Calibration
+from rigdesign.diagnosis.residual.baseline import CHANNEL, Change, Drift
+from rigdesign.diagnosis.residual.calibration import fit_amplitudes, group_of
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
+from rigdesign.diagnosis.rig_calibration.channels import fit_with_channels
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Group
+from rigdesign.diagnosis.statistics.outliers import reject
+
+FEWEST = 2
+"""Healthy sets that a calibration needs: one pair."""
+MOST = 4
+"""Healthy sets that a calibration takes: more add little to a drift and each is diagnosed with all others."""
+
+OF_THE_MEASUREMENT = frozenset({"sensor", "input"})
+"""Amplitudes on what the measurement states itself."""
+
+OF_CHANNELS = (
+    "channel", "channel_speed", "point", "series_mean", "series_mesh", "series_mesh_point", "series_shaft",
+    "series_shaft_point", "frequency",
+)  # fmt: skip
+"""Amplitudes of what channels are off by; the others are those of the model's constants."""
+
+Kind = Literal["drift", "channel shift", "channel error", "model error"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """One value of a calibration.
+
+    name : ``drift.shaft``, ``amplitudes.link``, or ``channels.`` with the name of a channel
+    shipped : value before, the prior; fitted : of highest posterior density; spread : standard deviation of its
+        logarithm; used : what a diagnosis takes
+    """
+
+    name: str
+    kind: Kind
+    shipped: float
+    fitted: float
+    spread: float
+    used: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigFit:
+    """A calibration with its estimates."""
+
+    calibration: Calibration
+    estimates: tuple[Estimate, ...]
+
+
+def estimate(
+    sets: Sequence[ResidualProblem], shipped: Calibration, start: Amplitudes | None = None
+) -> RigFit:
+    """Values of a rig from healthy sets of it, of the same points and sensors as far as possible.
+
+    start : amplitudes from which the search starts; the shipped ones when left out
+
+    Raises ValueError for less than two sets.
+    """
+    if len(sets) < FEWEST:
+        raise ValueError(f"healthy sets = {len(sets)}, must be at least {FEWEST}")
+    sets = [_without_outliers(one, shipped) for one in sets]
+    errors = _model_error(sets, shipped, start or shipped.amplitudes)
+    amplitudes = shipped.amplitudes.with_values(_used(errors))
+    drifts = _drift(changes_of(sets, amplitudes), shipped.drift, len(sets))
+    estimates = (*drifts, *errors)
+    return RigFit(
+        calibration=with_values(shipped, {one.name: one.used for one in estimates}), estimates=estimates
+    )
+
+
+def _without_outliers(one: ResidualProblem, shipped: Calibration) -> ResidualProblem:
+    """A set without single readings that its others contradict: a slip is no drift."""
+    space = plain(one, shipped.amplitudes, shipped.inflation)
+    series = [(feature.channel, feature.order) for feature in one.features]
+    gone = {outlier.place for outlier in reject(space.covariance.matrix, space.raw, series)}
+    return one.rows([row for row in range(len(one.features)) if row not in gone]) if gone else one
+
+
+def changes_of(sets: Sequence[ResidualProblem], amplitudes: Amplitudes) -> list[Change]:
+    """Every set given every other one."""
+    return [Change.of(one, other, amplitudes) for one in sets for other in sets if other is not one]
+
+
+def _model_error(sets: Sequence[ResidualProblem], shipped: Calibration, start: Amplitudes) -> list[Estimate]:
+    groups = [_one_nth(one, shipped, len(sets)) for one in sets]
+    found = fit_amplitudes(groups, start, OF_THE_MEASUREMENT, shipped.amplitudes)
+    before = shipped.amplitudes.as_dict()
+    return [
+        _estimate(f"amplitudes.{name}", "channel error" if name in OF_CHANNELS else "model error",
+                  before[name], found.values[name], found.spreads[name])
+        for name in before
+        if name in found.values
+    ]  # fmt: skip
+
+
+def _one_nth(one: ResidualProblem, shipped: Calibration, count: int) -> Group:
+    """A set against the model with a weight of one over their number, the shipped inflation included."""
+    group = group_of([one], shipped.amplitudes, shipped.inflation)
+    return replace(group, noise=group.noise + one.inflated(shipped.inflation), weight=1.0 / count)
+
+
+def _drift(changes: Sequence[Change], shipped: Drift, sets: int) -> list[Estimate]:
+    found = fit_with_channels(changes, shipped, 1.0 / sets)
+    estimates = []
+    for name, fitted in found.values.items():
+        spread = session_spread(found.spreads[name], sets)
+        if name.startswith(CHANNEL):
+            key = f"channels.{name.removeprefix(CHANNEL)}"
+            used = fitted * float(np.exp(spread))
+            estimates.append(
+                Estimate(name=key, kind="channel shift", shipped=0.0, fitted=fitted, spread=spread, used=used)
+            )
+        else:
+            estimates.append(_estimate(f"drift.{name}", "drift", shipped.scales[name], fitted, spread))
+    return estimates
+
+
+def session_spread(spread: float, sets: int) -> float:
+    """Standard deviation of the logarithm of a drift, at least what so many sessions leave open."""
+    prior = PRIOR**-2
+    seen = np.inf if spread == 0.0 else max(spread**-2 - prior, 0.0)
+    return float((prior + min(seen, 2.0 * (sets - 1))) ** -0.5)
+
+
+def _estimate(name: str, kind: Kind, shipped: float, fitted: float, spread: float) -> Estimate:
+    least = min(shipped, fitted * float(np.exp(spread))) if kind == "drift" else shipped
+    return Estimate(
+        name=name, kind=kind, shipped=shipped, fitted=fitted, spread=spread, used=max(fitted, least)
+    )
+
+
+def _used(estimates: Sequence[Estimate]) -> dict[str, float]:
+    return {one.name.partition(".")[2]: one.used for one in estimates}
+
+
+def with_values(shipped: Calibration, values: Mapping[str, float]) -> Calibration:
+    """A calibration with the values of a rig by the names of their estimates; what is not among them stays."""
+    groups: dict[str, dict[str, float]] = {"drift": {}, "channels": {}, "amplitudes": {}}
+    for name, value in values.items():
+        group, _, key = name.partition(".")
+        groups[group][key] = value
+    return replace(
+        shipped,
+        amplitudes=shipped.amplitudes.with_values(groups["amplitudes"]),
+        drift=replace(shipped.drift.with_scales(groups["drift"]), channels=groups["channels"]),
+    )
