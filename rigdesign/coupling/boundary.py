@@ -34,13 +34,9 @@ from thermal.conditions.boundary import (
     SurfaceSource,
 )
 from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
-from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
 from thermal.housing.measures import SIDES
-
-STORED = "stored"
-"""Kind of the rows of the bodies that are warming up."""
 
 
 def boundary_conditions(
@@ -81,7 +77,8 @@ def boundary_conditions(
     if context.box.gear_oil_temperature is None and not sump_given:
         conditions = _with_free_sump(context, conditions, losses.losses)
     conditions += fluid_networks(rig, name, wetted, context.link_ends(sump_given=sump_given))
-    return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
+    stored = [losses.stored[name]] if name in losses.stored else []
+    return [*conditions, *_sources(context, losses.losses), *stored]
 
 
 def _with_free_sump(
@@ -118,14 +115,6 @@ def _radiation_in_film(context: HousingContext, entry: str, surface: str) -> boo
         and condition.wetted_by == "ambient"
         and condition.radiation_included(context.place(condition, surface))
     )
-
-
-def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
-    """What the bodies take up where the case says that its points were not steady."""
-    room = rig.case.ambient
-    if room.warming_time is not None:
-        capacity = {body: m.density * m.heat_capacity for body, m in rig.body_materials(name).items()}
-        yield StoredHeat(capacity=capacity, start=room.temperature, time=room.warming_time, kind=STORED)
 
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:

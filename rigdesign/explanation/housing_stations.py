@@ -18,7 +18,7 @@ HOUSING_STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__mesh_models="cold geometry of the teeth",
     ),
     "ambient.warming_time": stations_at(
-        coupling__boundary="heat stored in bodies that still warm up, as one implicit step"
+        coupling__warm_up="heat stored in bodies that still warm up, marched from room temperature"
     ),
     "gearboxes.*.housing.bearing_seats": stations_at(rig__housing_seats=_SUPPORT),
     "rig_heat": stations_at(coupling__rig_heat="heat of the rig outside of its gearboxes"),

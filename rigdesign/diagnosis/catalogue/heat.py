@@ -68,8 +68,7 @@ def not_steady(case: Case) -> Iterator[Effect]:
         name="not_steady",
         title="readings before steady temperatures",
         family=STATE,
-        signature="heavy parts too cold at every point, oil and drive torque unchanged; reported is the time of one "
-        "implicit step, about twice the true one",
+        signature="heavy parts too cold at every point, still warming; oil a little colder, drive torque a little higher",
         parameters=(
             Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
         ),
