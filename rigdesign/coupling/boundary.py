@@ -13,6 +13,7 @@ from rigdesign.coupling.enclosures import enclosure_conditions
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, HousingContext
 from rigdesign.coupling.housing_fluids import WettedSurface, fluid_networks
+from rigdesign.coupling.leak_by_side import side_excess
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.joints import behind_shell, foot_joint
@@ -155,12 +156,15 @@ def _condition(
 
 
 def _film(context: HousingContext, condition: SurfaceFilm, surface: str) -> Film:
-    """Film to a fluid of the case; those to room air times the factor of them all."""
+    """Film to a fluid of the case; those to room air times the factor of them all and of their wall."""
     assert condition.wetted_by is not None
     kind, usual = context.fluid(condition.wetted_by)
     law = condition.film_law(context.place(condition, surface))
     if kind == AIR:
-        law = convection.scaled(law, context.housing.ambient_film_factor)
+        housing = context.housing
+        of_wall = housing.surface_film_factors.get(surface, 1.0)
+        law = convection.scaled(law, housing.ambient_film_factor * of_wall)
+    usual += side_excess(context.rig, context.name, context.coupling_state, surface, condition.wetted_by)
     temperature = condition.fluid_temperature_given(usual)
     return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
 

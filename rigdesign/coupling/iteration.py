@@ -216,9 +216,9 @@ def solve_housings(
     }
     bearing_heat = dict.fromkeys(losses.bearings, 0.0)
     wall_heat = dict.fromkeys(losses.coupling_state.wall_heat, 0.0)
-    for field in fields.values():
-        bearing_heat |= heat_into_films(field)
-        wall_heat |= heat_into_oil(field)
+    for solved in fields.values():
+        bearing_heat |= heat_into_films(solved)
+        wall_heat |= heat_into_oil(solved)
     known: Mapping[str, HousingExpansion] = {} if before is None else before.expansion
     if before is None or final:
         expansion = {

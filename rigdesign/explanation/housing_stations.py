@@ -50,6 +50,9 @@ HOUSING_STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.housing.step_file": stations_at(rig__user_mesh="CAD part in place of the parametric box"),
     "gearboxes.*.housing.faces": stations_at(rig__user_mesh="names of the faces of a STEP file"),
     "gearboxes.*.housing.ambient_film_factor": stations_at(coupling__boundary="films to room air"),
+    "gearboxes.*.housing.surface_film_factors": stations_at(
+        coupling__boundary="film of one wall to room air"
+    ),
     "gearboxes.*.housing.bearing_film_factor": stations_at(
         coupling__boundary="conductance between bearing films and walls"
     ),

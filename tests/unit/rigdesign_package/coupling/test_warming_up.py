@@ -8,8 +8,8 @@ import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.point_losses import STORED
-from rigdesign.records.housing import cooling_balance
 from rigdesign.prediction.places import place_weights
+from rigdesign.records.housing import cooling_balance
 from rigdesign.run.warnings import _warming
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.housing_history import BranchPlan, Marching, march
