@@ -33,6 +33,7 @@ from rigdesign.case.fields import (
     TorsionalDamping,
 )
 from rigdesign.case.kinds import kind_from
+from rigdesign.case.losses import LossFactor
 from rigdesign.case.rolling_bearing import RollingBearingInput
 
 if TYPE_CHECKING:
@@ -71,6 +72,8 @@ class JournalBearingInput(Part):
     20 degrees across the load, as in a split shell (J. W. Lund, K. K. Thomsen 1978)."""
     shell_conductance: HeatTransferCoefficient | None = None
     """Between shell and housing, on the area of the bore, in series with its film; perfect when left out."""
+    friction_factor: LossFactor = 1.0
+    """Multiplies its friction, on top of ``loss_factors.bearing`` of the gearbox."""
     torsional_damping: TorsionalDamping | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None

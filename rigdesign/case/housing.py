@@ -128,6 +128,8 @@ class Housing(Part):
     """Heat exchange of volumes with each other, room air and oils."""
     ambient_film_factor: FilmFactor = 1.0
     """Multiplies every film to room air on top of the ``film_factor`` of each: draught, a badly ventilated place."""
+    surface_film_factors: Mapping[Name, FilmFactor] = {}
+    """Surface -> multiplies its film to room air on top of that: a draught on one wall."""
     bearing_film_factor: FilmFactor = 1.0
     """Multiplies the conductance between every bearing film and its walls on top of the ``film_factor`` of each."""
     radiation_included: bool

@@ -12,6 +12,7 @@ from rigdesign.case.fields import (
     LoadStage,
     Offset,
     Part,
+    Share,
     Size,
     Temperature,
     Text,
@@ -129,6 +130,8 @@ class OilPaths(Part):
 
     leak_warm_cold: PathShare = 0.0
     """Through the seals of the chamber into the oil of the bearings, and out with it."""
+    leak_front_share: Share = 0.5
+    """Part of that leak that reaches the cold chamber at the front; the rest reaches the one at the rear."""
     bypass: PathShare = 0.0
     """Round meshes and walls straight to the outlet."""
     short_circuit: PathShare = 0.0

@@ -27,6 +27,7 @@ from rigdesign.case.fields import (
     TorsionalDamping,
     fault,
 )
+from rigdesign.case.losses import LossFactor
 
 if TYPE_CHECKING:
     from dynamics.bearing.protocol import Bearing
@@ -101,6 +102,8 @@ class RollingBearingInput(Part):
     """Of the rating life."""
     seal_torque: Torque = 0.0
     """Friction torque of the bearing's own contact seals."""
+    friction_factor: LossFactor = 1.0
+    """Multiplies its friction, on top of ``loss_factors.bearing`` of the gearbox."""
     torsional_damping: TorsionalDamping | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None

@@ -35,7 +35,7 @@ class Ambient(Part):
     """At which drawings and measures of the case hold; 20 degC by ISO 1."""
     warming_time: Time | None = None
     """How long an operating point had run from a rig at the temperature of the room; steady when left out. The housings
-    then still take up heat: the whole warm-up as one implicit step, right at its start and at its end."""
+    then still take up heat: temperatures, oils and losses are marched over that time."""
 
 
 class CustomOil(Part):

@@ -64,7 +64,7 @@ def solve_bearings(
                 ),
                 heat_from_bodies=coupling_state.bearing_heat[name] if entry.has_film else 0.0,
                 friction_heat=_imposed_heat(rig, name, entry, point),
-                friction_factor=box.loss_factors.bearing,
+                friction_factor=box.loss_factors.bearing * entry.friction_factor,
                 shaft_temperature=seats[0],
                 housing_temperature=seats[1],
             )
@@ -109,5 +109,5 @@ def constant_drag(rig: Rig, box: str, entry: BearingInput, point: OperatingPoint
     """Power of a bearing whose drag the case states as constant damping [W]; None where the film decides."""
     if rig.case.losses.bearing_drag == "film" or entry.torsional_damping is None:
         return None
-    factor = rig.case.gearboxes[box].loss_factors.bearing
+    factor = rig.case.gearboxes[box].loss_factors.bearing * entry.friction_factor
     return factor * entry.torsional_damping * rig.shaft_speed(entry.shaft, point.speed) ** 2

@@ -13,6 +13,7 @@ from rigdesign.coupling.enclosures import enclosure_conditions
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, HousingContext
 from rigdesign.coupling.housing_fluids import WettedSurface, fluid_networks
+from rigdesign.coupling.leak_by_side import side_excess
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.joints import behind_shell, foot_joint
@@ -34,13 +35,9 @@ from thermal.conditions.boundary import (
     SurfaceSource,
 )
 from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
-from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
 from thermal.housing.measures import SIDES
-
-STORED = "stored"
-"""Kind of the rows of the bodies that are warming up."""
 
 
 def boundary_conditions(
@@ -81,7 +78,8 @@ def boundary_conditions(
     if context.box.gear_oil_temperature is None and not sump_given:
         conditions = _with_free_sump(context, conditions, losses.losses)
     conditions += fluid_networks(rig, name, wetted, context.link_ends(sump_given=sump_given))
-    return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
+    stored = [losses.stored[name]] if name in losses.stored else []
+    return [*conditions, *_sources(context, losses.losses), *stored]
 
 
 def _with_free_sump(
@@ -118,14 +116,6 @@ def _radiation_in_film(context: HousingContext, entry: str, surface: str) -> boo
         and condition.wetted_by == "ambient"
         and condition.radiation_included(context.place(condition, surface))
     )
-
-
-def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
-    """What the bodies take up where the case says that its points were not steady."""
-    room = rig.case.ambient
-    if room.warming_time is not None:
-        capacity = {body: m.density * m.heat_capacity for body, m in rig.body_materials(name).items()}
-        yield StoredHeat(capacity=capacity, start=room.temperature, time=room.warming_time, kind=STORED)
 
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:
@@ -166,12 +156,15 @@ def _condition(
 
 
 def _film(context: HousingContext, condition: SurfaceFilm, surface: str) -> Film:
-    """Film to a fluid of the case; those to room air times the factor of them all."""
+    """Film to a fluid of the case; those to room air times the factor of them all and of their wall."""
     assert condition.wetted_by is not None
     kind, usual = context.fluid(condition.wetted_by)
     law = condition.film_law(context.place(condition, surface))
     if kind == AIR:
-        law = convection.scaled(law, context.housing.ambient_film_factor)
+        housing = context.housing
+        of_wall = housing.surface_film_factors.get(surface, 1.0)
+        law = convection.scaled(law, housing.ambient_film_factor * of_wall)
+    usual += side_excess(context.rig, context.name, context.coupling_state, surface, condition.wetted_by)
     temperature = condition.fluid_temperature_given(usual)
     return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
 

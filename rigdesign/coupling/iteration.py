@@ -1,7 +1,7 @@
 """One iteration at an operating point: loads and losses, then temperatures, thermal expansion and oil."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
@@ -28,6 +28,7 @@ from rigdesign.coupling.temperatures import (
     sump_temperatures,
 )
 from rigdesign.rig.model import Rig
+from thermal.conduction.capacity import StoredHeat
 
 COARSE = 1e-5
 """Heat left over in the fields of an iteration that cannot be the last: some millikelvin."""
@@ -67,6 +68,8 @@ class PointProblem:
     parts: IterationParts = SOLVED
     freeze: frozenset[str] = frozenset()
     """Arrows of the loop that are cut, by field of `CouplingState`: they keep their initial values."""
+    stored: Mapping[str, StoredHeat] = field(default_factory=dict)
+    """Gearbox -> heat that its bodies take up, of a time step (`rigdesign.coupling.warm_up`); empty when steady."""
 
     @classmethod
     def braced(
@@ -187,6 +190,7 @@ def solve_loads(problem: PointProblem, coupling_state: CouplingState) -> LoadRes
         system=system,
         response=response,
         losses=losses,
+        stored=problem.stored,
     )
 
 
@@ -212,9 +216,9 @@ def solve_housings(
     }
     bearing_heat = dict.fromkeys(losses.bearings, 0.0)
     wall_heat = dict.fromkeys(losses.coupling_state.wall_heat, 0.0)
-    for field in fields.values():
-        bearing_heat |= heat_into_films(field)
-        wall_heat |= heat_into_oil(field)
+    for solved in fields.values():
+        bearing_heat |= heat_into_films(solved)
+        wall_heat |= heat_into_oil(solved)
     known: Mapping[str, HousingExpansion] = {} if before is None else before.expansion
     if before is None or final:
         expansion = {

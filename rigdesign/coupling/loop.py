@@ -11,6 +11,7 @@ from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.oil_circuits import demand_setpoints
 from rigdesign.coupling.rig_heat import demand_loss_maps
 from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.warm_up import last_step
 from rigdesign.rig.model import Rig
 
 
@@ -65,13 +66,14 @@ def solve_point(
     """
     problem = PointProblem.braced(rig, point, freeze=freeze)
     begin = problem.initial if start is None else start.freeze(freeze, problem.initial)
-    steps = acceleration or (Anderson(begin) if rig.oil_circuits else PlainRelaxation())
+    step = last_step(problem, begin, before)
+    steps = acceleration or (Anderson(step.start) if rig.oil_circuits else PlainRelaxation())
     last, residuals = solve_fixed_point(
-        problem,
+        step.problem,
         steps,
         CaseTolerances(rig.case.numerics),
-        begin,
-        before,
+        step.start,
+        step.before,
     )
     demand_setpoints(rig, last)
     demand_loss_maps(rig, last)

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.coupling.bearing_seats import bearing_seats
-from rigdesign.coupling.boundary import STORED, boundary_conditions
+from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.enclosures import CHAMBER_RADIATION
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.point_losses import STORED, PointLosses
 from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import TemperatureSolution, solve_steady

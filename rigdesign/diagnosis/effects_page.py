@@ -31,6 +31,11 @@ SENSORS = (
         "grows with the reading",
     ),
     ("torque_zero:<channel>", "zero of a torque or angle channel", "mean only, the same at any torque"),
+    (
+        "torque_lag:<channel>",
+        "first-order lag of a torque cell or its amplifier that the measurement does not state",
+        "orders fade and fall behind the more the higher their frequency, the mean stays",
+    ),
     ("angle_zero", "index pulse offset", "phase of all orders shifted in proportion to the order"),
     (
         "inlet_offset:<stream>, inlet_scale:<stream>",

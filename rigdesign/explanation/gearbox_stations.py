@@ -283,6 +283,9 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
         records__warm_gearbox="axial play that thermal expansion uses up"
     ),
     "gearboxes.*.bearings.*.shell_conductance": stations_at(rig__joints="joint between shell and housing"),
+    "gearboxes.*.bearings.*.friction_factor": stations_at(
+        coupling__bearing_films="friction heat and drag torque of one bearing"
+    ),
     "gearboxes.*.bearings.*.torsional_damping": stations_at(
         coupling__bearing_films="drag torque where losses.bearing_drag is constant"
     ),
@@ -327,6 +330,9 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "gearboxes.*.oil_paths": stations_at(
         coupling__oil="ways of the gear oil: which heat which part of it takes up"
+    ),
+    "gearboxes.*.oil_paths.leak_front_share": stations_at(
+        coupling__leak_by_side="temperature of the oil in the cold chamber of each side"
     ),
     "gearboxes.*.oil_paths.bypass": stations_at(
         case__jets="flow that reaches the jets", coupling__oil="part of the oil that takes up no heat"

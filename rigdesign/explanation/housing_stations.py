@@ -18,7 +18,7 @@ HOUSING_STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__mesh_models="cold geometry of the teeth",
     ),
     "ambient.warming_time": stations_at(
-        coupling__boundary="heat stored in bodies that still warm up, as one implicit step"
+        coupling__warm_up="heat stored in bodies that still warm up, marched from room temperature"
     ),
     "gearboxes.*.housing.bearing_seats": stations_at(rig__housing_seats=_SUPPORT),
     "rig_heat": stations_at(coupling__rig_heat="heat of the rig outside of its gearboxes"),
@@ -50,6 +50,9 @@ HOUSING_STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.housing.step_file": stations_at(rig__user_mesh="CAD part in place of the parametric box"),
     "gearboxes.*.housing.faces": stations_at(rig__user_mesh="names of the faces of a STEP file"),
     "gearboxes.*.housing.ambient_film_factor": stations_at(coupling__boundary="films to room air"),
+    "gearboxes.*.housing.surface_film_factors": stations_at(
+        coupling__boundary="film of one wall to room air"
+    ),
     "gearboxes.*.housing.bearing_film_factor": stations_at(
         coupling__boundary="conductance between bearing films and walls"
     ),

@@ -1,6 +1,6 @@
 """Changes of a case by dotted path, with bare numbers in SI where the file would want a unit."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from rigdesign.base import units
 from rigdesign.base.quantity_kinds import KINDS, QuantityKind
@@ -25,6 +25,16 @@ def changed_case(case: Case, changes: Changes) -> Case:
         return case
     plain, _, _ = take_off(dict(case.origin.tree))
     return changed_together(case, {path: _written(plain, path, value) for path, value in changes.items()})
+
+
+WARMING = "ambient.warming_time"
+"""Path of the time that a point had run where it was not steady."""
+
+
+def only_warming(changes: Changes | Sequence[Changes]) -> bool:
+    """Whether the time that points had run is all that changes."""
+    given = [changes] if isinstance(changes, Mapping) else changes
+    return any(given) and all(set(one) <= {WARMING} for one in given)
 
 
 def written(case: Case, path: str, value: object) -> object:

@@ -12,6 +12,7 @@ from rigdesign.coupling.iteration import IterationParts, IterationResult, PointP
 from rigdesign.coupling.relaxation import next_state, unrelaxed
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.state_vector import ordered, scaled
+from rigdesign.coupling.warm_up import last_step
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
 
@@ -56,10 +57,12 @@ def converge_point(
     given = start if near is None else near.last.coupling_state
     first = problem.initial if given is None else ordered(given, problem.initial)
     known = None if near is None or inverse is not None else near.differences
-    anderson = Anderson(first, known=known, inverse=inverse)
-    before = None if near is None else near.last
-    last, residuals = solve_fixed_point(problem, anderson, ScaledTolerance(tolerance), first, before)
-    return ConvergedPoint(problem, last, anderson.differences, anderson.residual, len(residuals))
+    step = last_step(problem, first, None if near is None else near.last)
+    anderson = Anderson(step.start, known=known, inverse=inverse)
+    last, residuals = solve_fixed_point(
+        step.problem, anderson, ScaledTolerance(tolerance), step.start, step.before
+    )
+    return ConvergedPoint(step.problem, last, anderson.differences, anderson.residual, len(residuals))
 
 
 def unrelaxed_vector(

@@ -3,7 +3,9 @@
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property, partial
 
+from rigdesign.base.errors import UsageError
 from rigdesign.base.parallel import BackgroundTasks
+from rigdesign.base.units import show
 from rigdesign.case.model import Case
 from rigdesign.prediction.condition_steps import moved_conditions
 from rigdesign.prediction.converged_point import ConvergedPoint
@@ -15,6 +17,7 @@ from rigdesign.prediction.housing_sensitivities import (
 from rigdesign.prediction.housings import ReducedField
 from rigdesign.prediction.reduced_rig import ReducedRig
 from rigdesign.prediction.sensitivities import PointSensitivities, SensitivityNumbers
+from rigdesign.prediction.warm_up_response import WarmUpResponse
 from thermal.fe.mesh import FloatArray
 
 
@@ -38,7 +41,19 @@ class FirstOrderModel:
 
     @cached_property
     def points(self) -> list[PointSensitivities]:
-        """Sensitivities of every point, found on all cores."""
+        """Sensitivities of every point, found on all cores.
+
+        Raises
+        ------
+        UsageError
+            A case whose points are not steady: their sensitivities depend on the whole warm-up.
+        """
+        time = self._reduced.stated.case.ambient.warming_time
+        if time is not None:
+            raise UsageError(
+                f"ambient.warming_time = {show(time, 'time')}: first-order predictions start from steady points; leave "
+                "it out, a diagnosis finds the time itself (not_steady)"
+            )
         made = partial(PointSensitivities, reads=self._reduced.reads)
         with BackgroundTasks([partial(_numbers_at, made, point) for point in self._converged]) as tasks:
             numbers = tasks.results()
@@ -56,6 +71,21 @@ class FirstOrderModel:
                 if isinstance(field, ReducedField)
             ]
             for point in self.points
+        ]
+
+    @cached_property
+    def _warm_ups(self) -> list[WarmUpResponse]:
+        """Of every point."""
+        return [
+            WarmUpResponse(point, housings, point.problem.rig.case.ambient.temperature)
+            for point, housings in zip(self.points, self._housings)
+        ]
+
+    def warming(self, times: Sequence[float | None]) -> list[FloatArray]:
+        """By point: (f,) readings after a time [s] from room temperature; None for a steady point."""
+        return [
+            point.readings if time is None else point.readings + warm_up.change(time)
+            for point, warm_up, time in zip(self.points, self._warm_ups, times)
         ]
 
     def links(self) -> list[dict[str, FloatArray]]:

@@ -86,6 +86,18 @@ def _of_field(channel: Channel, read: Reading, rig: Rig, done: IterationResult) 
     return [0.0] * count_of(channel)
 
 
+@dataclass(frozen=True)
+class HeatResponses:
+    """What one watt on each vector of the basis (m) does at a fixed coupling state."""
+
+    coefficients: FloatArray
+    """(m, m) [K/W]"""
+    unrelaxed: FloatArray
+    """(n, m) of what an iteration hands on."""
+    readings: FloatArray
+    """(f, m)"""
+
+
 class HousingSensitivities:
     """First-order response of a converged point to changes in one housing.
 
@@ -103,6 +115,27 @@ class HousingSensitivities:
         self._name = field.gearbox
         self._projection = Projection(reduced, field.conditions)
         self._links = self._projection.links(field.coefficients)
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """(m,) of the field at the point."""
+        return self._field.coefficients
+
+    def uniform(self, temperature: float) -> FloatArray:
+        """(m,) coefficients of a housing of one temperature [K]; the first vector of the basis is the constant."""
+        found = np.zeros(self._reduced.size)
+        found[0] = temperature
+        return found
+
+    def capacity(self) -> FloatArray:
+        """(m, m) heat capacities of the bodies [J/K]."""
+        materials = self._point.problem.rig.body_materials(self._name)
+        return self._reduced.capacity_of({b: m.density * m.heat_capacity for b, m in materials.items()})
+
+    def heat_responses(self) -> HeatResponses:
+        """Responses to heat on each vector of the basis."""
+        changes = self._projection.answers(self._field.coefficients, np.eye(self._reduced.size))
+        return HeatResponses(changes, self._by_coefficients() @ changes, self._derivatives.readings @ changes)
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (f,) derivative by the logarithm of every local conductance, and by how oil mixes."""

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
-from rigdesign.prediction.changes import Changes, changed_case
+from rigdesign.prediction.changes import Changes, changed_case, only_warming
 from rigdesign.prediction.converged_point import TOLERANCE, converge_point
 from rigdesign.prediction.first_order import FirstOrderModel
 from rigdesign.prediction.full import check_names, standing_values
@@ -140,6 +140,10 @@ class Predictor:
             `values` does.
         """
         made = self._changed_rigs(changes)
+        if only_warming(changes) and self._reduced.housings.bases:
+            with self._solving():
+                warm = self._first_order.warming([rig.case.ambient.warming_time for rig in made])
+                return np.concatenate([*warm, self.base[sum(map(len, warm)) :]])
         with self._solving():
             changed = [
                 point.changed(self._reduced.changed_problem(rig, setting))

@@ -18,6 +18,7 @@ from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iter
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.state_vector import SCALES, numbering, scaled, unscaled
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
+from rigdesign.prediction.housings import ReducedField
 from rigdesign.prediction.linearised_drag import Cause, LinearisedDrag
 from rigdesign.prediction.model import ORDER_QUANTITIES
 from rigdesign.prediction.order_motion import is_ideal
@@ -35,12 +36,13 @@ STEP = 0.3
 class SensitivityNumbers:
     """What the iterations of a point found out: plain numbers, so that another process can send them.
 
-    loop : (n, n) derivative of an iteration by its coupling state; readings : (f, n) of the readings; drag : those of
-    `LinearisedDrag`
+    loop : (n, n) derivative of an iteration by its coupling state; readings : (f, n) of the readings; fields : (m, n)
+    of the coefficients of all reduced fields; drag : those of `LinearisedDrag`
     """
 
     loop: FloatArray
     readings: FloatArray
+    fields: FloatArray
     drag: Mapping[Cause, FloatArray]
 
 
@@ -49,11 +51,13 @@ class FirstOrder:
     """What an iteration near a converged point gives.
 
     readings : (f,); unrelaxed : (n,) what it hands on, in units of `state_vector.SCALES`
+    coefficients : (m,) of all reduced fields, behind each other
     same_loop : whether the loop is that of the point but for its drag torques and the friction of its teeth
     """
 
     readings: FloatArray
     unrelaxed: FloatArray
+    coefficients: FloatArray
     same_loop: bool
 
 
@@ -68,6 +72,7 @@ class PointSensitivities:
     index : (field of the coupling state, name) -> number n
     loop : (n, n) derivative of an iteration by its coupling state
     by_state : (f, n) derivative of the readings by the coupling state
+    fields : (m, n) derivative of the coefficients of all reduced fields by the coupling state
     inverse : (n, n) how far the coupling state moves until the loop has converged, per change of what an iteration
         hands on
     """
@@ -86,7 +91,7 @@ class PointSensitivities:
         self.index = numbering(self.coupling_state)
         self._fields = [name for name, _ in self.index]
         numbers = known or self._found()
-        self.loop, self.by_state = numbers.loop, numbers.readings
+        self.loop, self.by_state, self.fields = numbers.loop, numbers.readings, numbers.fields
         self.inverse = np.linalg.inv(np.eye(len(self._unrelaxed)) - self.loop)
         self._closed = self.by_state @ self.inverse
         """(f, n) converged readings per change of what an iteration hands on."""
@@ -94,19 +99,22 @@ class PointSensitivities:
     @property
     def numbers(self) -> SensitivityNumbers:
         """The derivatives."""
-        return SensitivityNumbers(self.loop, self.by_state, self.drag.sensitivities)
+        return SensitivityNumbers(self.loop, self.by_state, self.fields, self.drag.sensitivities)
 
     def _found(self) -> SensitivityNumbers:
         """The derivatives, from one iteration per number of the coupling state."""
         x = scaled(self.coupling_state)
-        loop, readings = [], []
+        here = _coefficients(self.last)
+        loop, readings, fields = [], [], []
         for number in self.index.values():
             moved = x.copy()
             moved[number] += STEP
             there = self._iteration(self.problem, unscaled(moved, self.coupling_state))
             loop.append((there.unrelaxed - self._unrelaxed) / STEP)
             readings.append((there.readings - self.readings) / STEP)
-        return SensitivityNumbers(np.array(loop).T, np.array(readings).T, self.drag.sensitivities)
+            fields.append((there.coefficients - here) / STEP)
+        by_state = np.array(loop).T, np.array(readings).T, np.array(fields).T
+        return SensitivityNumbers(*by_state, self.drag.sensitivities)
 
     def scale(self, number: int) -> float:
         """Unit of a number of the coupling state [K, m, W or N m]."""
@@ -142,6 +150,7 @@ class PointSensitivities:
         return FirstOrder(
             readings=self._read(problem.rig, done, loop.causes),
             unrelaxed=self._handed_on(problem, done),
+            coefficients=_coefficients(done),
             same_loop=loop.causes is not None,
         )
 
@@ -166,6 +175,12 @@ class PointSensitivities:
             return {}
         ideal = done.response if is_ideal(rig) else None
         return shaft_orders(rig, done.loop, read, base=ideal, exact=False)
+
+
+def _coefficients(done: IterationResult) -> FloatArray:
+    """(m,) of all reduced fields of an iteration, behind each other."""
+    fields = [field.coefficients for field in done.fields.values() if isinstance(field, ReducedField)]
+    return np.concatenate(fields) if fields else np.zeros(0)
 
 
 class _LinearisedResponse:

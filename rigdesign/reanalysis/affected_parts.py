@@ -43,7 +43,15 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
         "gearboxes.*.gears.*.flank_roughness",
         *(
             f"gearboxes.*.bearings.*.{key}"
-            for key in ("width", "diametral_clearance", "feed_share", "feed", "axial_play", "locating")
+            for key in (
+                "width",
+                "diametral_clearance",
+                "feed_share",
+                "feed",
+                "friction_factor",
+                "axial_play",
+                "locating",
+            )
         ),
         "losses.chamber_density",
         "losses.squeeze_share",

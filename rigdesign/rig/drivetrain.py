@@ -18,9 +18,11 @@ from dynamics.drivetrain.periodic_load import LoadOrder
 from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
 from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
+from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
 from rigdesign.case.elastic_shafts import disc_mass
 from rigdesign.case.gear_seats import Spline
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.case.rotation import pinion_hand
 from rigdesign.properties.materials import Material
@@ -264,12 +266,15 @@ def _bearings(case: Case) -> list[BearingPlace]:
                     name=f"{box_name}.{name}",
                     shaft=bearing.shaft,
                     position=bearing.position,
-                    linear_drag=box.loss_factors.bearing * (bearing.torsional_damping or 0.0)
-                    if constant
-                    else 0.0,
+                    linear_drag=_constant_drag(box, bearing) if constant else 0.0,
                 )
             )
     return bearings
+
+
+def _constant_drag(box: Gearbox, bearing: BearingInput) -> float:
+    """Drag torque over speed [N m s] that the case states, times its factors."""
+    return box.loss_factors.bearing * bearing.friction_factor * (bearing.torsional_damping or 0.0)
 
 
 def _seals(case: Case) -> list[DragPlace]:

@@ -30,7 +30,8 @@ from rigdesign.records.solved_rig import housing_fields, solved_rig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import HousingTemperatures
 from rigdesign.rig.model import Rig
-from thermal.fe.mesh import MeshError, NamedMesh
+from thermal.conduction.capacity import StoredHeat
+from thermal.fe.mesh import FloatArray, MeshError, NamedMesh
 from thermal.housing.stations import GearboxModel
 
 COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
@@ -106,6 +107,7 @@ def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
         A solve stalls on that mesh.
     """
     last = converged.last
+    last = replace(last, stored=_stored_on(rig, last, source))
     housings = solve_housings(rig, last, _carried_over(last, source, rig))
     supplies = last.coupling_state.oil_supply
     streams = oil_streams(
@@ -131,12 +133,29 @@ def _carried_over(last: IterationResult, source: Rig, rig: Rig) -> HousingResult
 
 def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingField:
     """First guess of a field on another mesh: each node is as warm as the nearest one of its body was."""
-    temperature = np.empty(len(new.points))
+    temperature = _at_nearest(field.temperature, old, new)
+    return replace(field, solution=replace(field.solution, temperature=temperature, preconditioner=None))
+
+
+def _at_nearest(values: FloatArray, old: NamedMesh, new: NamedMesh) -> FloatArray:
+    """(n_nodes,) of the new mesh: that of the nearest node of the same body of the old one."""
+    found = np.empty(len(new.points))
     for body, cells in new.bodies.items():
         nodes, known = np.unique(new.cells[cells]), np.unique(old.cells[old.bodies[body]])
         _, nearest = cKDTree(old.points[known]).query(new.points[nodes])
-        temperature[nodes] = field.temperature[known[nearest]]
-    return replace(field, solution=replace(field.solution, temperature=temperature, preconditioner=None))
+        found[nodes] = values[known[nearest]]
+    return found
+
+
+def _stored_on(rig: Rig, last: IterationResult, source: Rig) -> dict[str, StoredHeat]:
+    """The time step of a point that still warms up, on the meshes of ``rig``: it counts from the same temperatures."""
+    found = {}
+    for name, stored in last.stored.items():
+        old, new = source.models[name].mesh, rig.models[name].mesh
+        start = stored.start
+        moved = start if old is new or not isinstance(start, np.ndarray) else _at_nearest(start, old, new)
+        found[name] = replace(stored, start=moved)
+    return found
 
 
 def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationResult:

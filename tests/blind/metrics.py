@@ -21,6 +21,15 @@ WHOLE_RIG = frozenset({"not_steady", "ambient"})
 """Kinds that the catalogue counts for all gearboxes together."""
 
 
+LOCAL = {
+    "one_bearing": ("one_bearing_loss", "wheel_rear"),
+    "leak_one_side": ("leak_one_side", "front"),
+    "x_cell_lag": ("torque_lag", ""),
+}
+"""Kind of the virtual rig at one place of a gearbox -> kind and part of the catalogue. A draught on the right-hand wall
+has none: the catalogue's walls are the surfaces of the housing, which run round it."""
+
+
 @dataclass(frozen=True)
 class Rate:
     """A share with its 95 % interval (Wilson, J. Am. Stat. Assoc. 22, 1927, 209)."""
@@ -58,6 +67,9 @@ def truths(row: Row) -> list[str]:
 def canonical(name: str, rig: str) -> str:
     """A name of the virtual rig as the catalogue writes it: losses of a mesh count by gearbox."""
     kind, _, place = name.partition(":")
+    if kind in LOCAL:
+        kind, part = LOCAL[kind]
+        place = f"{place}.{part}" if part else place
     if kind in ("mesh_loss", "squeeze_loss"):
         place = place.split(".")[0]
     if kind in WHOLE_RIG:

@@ -57,20 +57,20 @@ class Storage:
 
 @dataclass(frozen=True, kw_only=True)
 class StoredHeat:
-    """Bodies that have not got steady yet: a condition on all of them in addition to those of the surfaces.
+    """Bodies that still warm up: a condition on all of them in addition to those of the surfaces.
 
-    Every body takes up rho c (T - start)/time per volume: the whole warm-up as one implicit step. The field lies
-    between the start (no time) and the steady one (long time), with tau/(tau + time) of a rise still missing for a
-    time constant tau; the true history, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
-    not positive.
+    Every body takes up rho c (T - start)/time per volume, which is one implicit step. From room temperature alone it
+    leaves tau/(tau + time) of a rise missing for a time constant tau where exp(-time/tau) is right: march with several
+    (`thermal.transient.backward_differences`). Raises ConditionError for a time that is not positive and a start that
+    is not above 0 K.
     """
 
     capacity: Mapping[str, float]
     """Body -> density times specific heat [J/(m3 K)]."""
-    start: float
-    """Temperature of all bodies at the start [K]."""
+    start: float | FloatArray
+    """Temperature that the step counts from [K]: one value, or (n_nodes,)."""
     time: float
-    """Since then [s]."""
+    """Length of the step [s]: the rate of change at its end is (T - start)/time."""
     kind: str = "stored"
     """Row name in the heat balance."""
 
@@ -79,8 +79,9 @@ class StoredHeat:
             raise ConditionError(
                 f"stored heat: time = {self.time} s must be above 0; leave it out when steady"
             )
-        if not (math.isfinite(self.start) and self.start > 0.0):
-            raise ConditionError(f"stored heat: start = {self.start} K must be above 0 K; give kelvin")
+        if not (np.all(np.isfinite(self.start)) and np.min(self.start) > 0.0):
+            coldest = float(np.min(self.start))
+            raise ConditionError(f"stored heat: start = {coldest} K must be above 0 K; give kelvin")
 
 
 def check_capacity(bodies: Collection[str], capacity: Mapping[str, float]) -> None:

@@ -10,7 +10,7 @@ is the same. The heat balance has the rows of `thermal.conduction.balance`.
 Source: Quarteroni, Manzoni, Negri, Reduced Basis Methods for Partial Differential Equations, ch. 3 and 6.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -183,13 +183,19 @@ class ReducedConduction:
         surfaces = [self.surface(name) for name in condition.surfaces]
         return ReducedEnclosure(EnclosureTerms(self.setup.elements, condition), surfaces)
 
-    def capacity(self, condition: StoredHeat) -> FloatArray:
-        """(m, m) heat capacity matrix of the bodies [J/K]."""
-        key = tuple(sorted(condition.capacity.items()))
+    def capacity_of(self, capacity: Mapping[str, float]) -> FloatArray:
+        """(m, m) heat capacity matrix of the bodies [J/K]; capacity : body -> density times specific heat."""
+        key = tuple(sorted(capacity.items()))
         if key not in self._capacities:
-            matrix = self.setup.heat_capacity(condition.capacity).matrix
+            matrix = self.setup.heat_capacity(capacity).matrix
             self._capacities[key] = np.asarray(self.shapes.T @ (matrix @ self.shapes))
         return self._capacities[key]
+
+    def stored_load(self, condition: StoredHeat) -> FloatArray:
+        """(m,) heat content that the step counts from, on each shape [J]."""
+        matrix = self.setup.heat_capacity(condition.capacity).matrix
+        start = np.broadcast_to(condition.start, (len(self.shapes),))
+        return np.asarray(self.shapes.T @ (matrix @ start))
 
     def solve(
         self, conditions: Sequence[Condition], start: FloatArray, near: Factor | None = None
@@ -251,10 +257,8 @@ class Projection:
                 case BodySource():
                     self.source += condition.power * reduced.body(condition.body)
                 case StoredHeat():
-                    self.matrix = self.matrix + reduced.capacity(condition) / condition.time
-                    for body, per_volume in condition.capacity.items():
-                        rate = per_volume * reduced.setup.elements.volume(body) / condition.time
-                        self.source += rate * condition.start * reduced.body(body)
+                    self.matrix = self.matrix + reduced.capacity_of(condition.capacity) / condition.time
+                    self.source += reduced.stored_load(condition) / condition.time
                 case PrescribedTemperature():
                     self.held.append((reduced.surface(condition.surface).mean, condition.temperature))
                 case Enclosure():
@@ -465,10 +469,10 @@ class Projection:
                 case BodySource():
                     rows.append(self._body_row(condition.body, condition.kind, condition.power, a))
                 case StoredHeat():
-                    for body, per_volume in condition.capacity.items():
-                        rise = float(self.reduced.body(body) @ a) - condition.start
-                        volume = self.reduced.setup.elements.volume(body)
-                        power = -per_volume * volume * rise / condition.time
+                    capacity = self.reduced.setup.heat_capacity(condition.capacity)
+                    rise = self.reduced.field(a) - condition.start
+                    for body in condition.capacity:
+                        power = -capacity.stored(rise, body) / condition.time
                         rows.append(self._body_row(body, condition.kind, power, a))
         return HeatBalance(tuple(rows))
 

@@ -166,7 +166,7 @@ class ConductionProblem:
             self.setup.heat_capacity(condition.capacity),
             np.zeros(m),
             1.0 / condition.time,
-            np.full(self.n_nodes + m, condition.start),
+            np.append(np.broadcast_to(condition.start, (self.n_nodes,)), np.zeros(m)),
         )
 
     def storing(self, storage: Storage) -> "ConductionProblem":

@@ -63,6 +63,7 @@ def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list
     return [
         *_boundary(at, housing, names),
         *_on_their_surfaces(at, gearbox, housing, names),
+        *_film_factors(f"gearboxes.{name}.housing.surface_film_factors", housing, names),
         *enclosure_faults(name, gearbox, names),
         *housing_fluid_faults(name, gearbox, names),
         *flank_faults(name, gearbox, housing, names),
@@ -195,6 +196,22 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
             yield Fault(
                 f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once"
             )
+
+
+def _film_factors(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    """Factors of surfaces that have no film to room air."""
+    in_air = {
+        surface: None
+        for name, surface, _ in conditions_of(housing, names)
+        if housing.boundary[name].wetted_by == "ambient"
+    }
+    for surface, factor in housing.surface_film_factors.items():
+        if surface not in in_air:
+            meant = nearest(surface, tuple(in_air)) or tuple(in_air)
+            yield Fault(
+                f"{at}.{surface}", f"{factor:g}", "no surface of this name has a film to room air",
+                f"write one of {', '.join(meant)}, or remove it",
+            )  # fmt: skip
 
 
 def _on_their_surfaces(

@@ -1,6 +1,6 @@
 """Families of effects: what is off, and what follows from that for its healthy spread, its traces and its runs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,4 +51,8 @@ FILM = Family(name="film", amplitude="constant_film", heat=True)
 CONTACT = Family(name="contact", amplitude="constant_film", heat=True)
 FLOW = Family(name="flow", amplitude="constant_oil", heat=True)
 OIL = Family(name="oil", amplitude="constant_oil", heat=True, run_rank=6)
+ONE_FEED = replace(FLOW, name="one feed", one_sided_sizes=(0.4, 1.0))
+"""Oil of one bearing: two runs, as there are many of them."""
+ONE_JOINT = replace(CONTACT, name="one joint", one_sided_sizes=(0.12, 1.0))
+"""Joint of one shell, the same."""
 STATE = Family(name="state", amplitude="constant_loop", run_rank=5)

@@ -68,8 +68,7 @@ def not_steady(case: Case) -> Iterator[Effect]:
         name="not_steady",
         title="readings before steady temperatures",
         family=STATE,
-        signature="heavy parts too cold at every point, oil and drive torque unchanged; reported is the time of one "
-        "implicit step, about twice the true one",
+        signature="heavy parts too cold at every point; oil a little colder, drive torque a little higher",
         parameters=(
             Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
         ),
@@ -355,13 +354,14 @@ PRESSED = 2e-5
 """Resistance of a pressed metal joint with oil in its gap [m2 K/W]: less is no fault of a joint."""
 
 
-class _Resistance:
+class Resistance:
     """Puts a resistance [m2 K/W] in the way, on top of what the case has."""
 
     def __init__(self, paths: Mapping[str, float | None]) -> None:
         self._paths = paths
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        """The change at a resistance."""
         more = values[0]
         return {
             path: 1.0 / (more + (0.0 if now is None else 1.0 / now))
@@ -394,6 +394,6 @@ def _contact(name: str, title: str, most: float, paths: Mapping[str, float | Non
         family=CONTACT,
         signature="a step of temperature at one joint",
         parameters=(Parameter(name="resistance", unit="m2 K/W", low=0.0, high=most, source=PRACTICE),),
-        change=_Resistance(paths),
+        change=Resistance(paths),
         matters=PRESSED,
     )

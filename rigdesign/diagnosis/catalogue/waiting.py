@@ -144,12 +144,6 @@ WAITING = (
         "sample rate of recordings as an input",
     ),
     Waiting(
-        "draught",
-        "draught on one side of the housing",
-        "one wall colder than its neighbours",
-        "ambient films by wall",
-    ),
-    Waiting(
         "base_conduction",
         "heat into the base",
         "foot and field, slow",

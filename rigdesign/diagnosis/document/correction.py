@@ -4,6 +4,7 @@ What measurement.toml has a key for becomes a JSON Patch on it; the rest is a co
 made in the table or at the rig. No file of the user is written to.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,6 +45,13 @@ def of_sensor(sized: Sized) -> Correction:
     text = f"{sized.entry.title}: {formatted(value)}; "
     if sized.name == "angle_zero":
         text += _turned(f"{value.value:.4g} rad")
+        return Correction(name=sized.name, text=text, size=sized)
+    if sized.name.startswith("torque_lag"):
+        corner = 1.0 / (2.0 * math.pi * value.value)
+        text += (
+            f'state transfer = {{ kind = "low_pass", frequency = "{corner:.4g} Hz" }} for {channel}, or have cell and '
+            "amplifier tested for their bandwidth"
+        )
         return Correction(name=sized.name, text=text, size=sized)
     if sized.entry.kind == "input":
         text += "the rig ran at another value than was read; correct the column of this setting"

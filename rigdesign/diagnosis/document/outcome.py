@@ -172,7 +172,7 @@ def check_pick(effects: Sequence[Effect], pick: str) -> None:
         With the nearest names.
     """
     known = dict.fromkeys(name for effect in effects for name in (effect.claim, effect.name))
-    sensors = ("sensor_", "torque_zero:", "flow_", "inlet_", "speed_", "torque_")
+    sensors = ("sensor_", "torque_zero:", "torque_lag:", "flow_", "inlet_", "speed_", "torque_")
     if pick in known or pick in ("ambient", "angle_zero") or pick.startswith(sensors):
         return
     if any(effect.any_tooth and pick.rpartition("/")[0] == effect.name for effect in effects):

@@ -5,7 +5,7 @@ effect it may be many times that.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -104,7 +104,7 @@ def sensor_errors(
                     spread=one.scale,
                 )
             )
-    return (*found, *_angle_zero(library))
+    return (*found, *_angle_zero(library), *_lags(library, channels))
 
 
 ANGLE_ZERO = 2e-3
@@ -141,6 +141,50 @@ def _angle_zero(library: Library) -> list[SensorError]:
             spread=ANGLE_ZERO,
             times=LARGEST_ANGLE_ERROR / ANGLE_ZERO,
         )
+    ]
+
+
+LAG = 2e-6
+"""Healthy time constant of a torque cell beyond what its measurement states [s], one sigma."""
+
+LARGEST_LAG = 5e-4
+"""Of a carrier amplifier with a low-pass of some 300 Hz that nobody stated [s]."""
+
+USUAL_LAG = 1e-4
+"""Lag at which the column of a lag is exact [s]; below and above it grows faster and slower than in proportion."""
+
+
+def lagged(amplitude: complex, frequency: float, lag: float) -> complex:
+    """What a first-order lag [s] makes of an amplitude at a frequency [rad/s]: amplitude/(1 + i frequency lag)."""
+    return amplitude / (1.0 + 1j * frequency * lag)
+
+
+def _lags(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
+    """Orders of every torque cell through a first-order lag, per second of it."""
+    place = {feature: i for i, feature in enumerate(library.features)}
+    speeds = {setting.name: setting.speed for setting in library.settings}
+    changes = {name: np.zeros(len(place)) for name, one in channels.items() if one.quantity == "torque"}
+    for feature, i in place.items():
+        if feature.channel not in changes or feature.part != "real":
+            continue
+        j = place.get(replace(feature, part="imaginary"))
+        if j is None:
+            continue
+        amplitude = complex(library.base[i], library.base[j])
+        change = lagged(amplitude, feature.order * speeds[feature.setting], USUAL_LAG) - amplitude
+        changes[feature.channel][[i, j]] = change.real / USUAL_LAG, change.imag / USUAL_LAG
+    return [
+        SensorError(
+            name=f"torque_lag:{name}",
+            title=f"lag of the torque cell {name}",
+            kind="sensor",
+            values=values,
+            unit="s",
+            spread=LAG,
+            times=LARGEST_LAG / LAG,
+        )
+        for name, values in changes.items()
+        if values.any()
     ]
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rigdesign.measurement.quality.still_warming import still_warming
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.prediction.model import STANDING_QUANTITIES
 
@@ -13,7 +14,7 @@ LEAST_POINTS = 3
 
 def data_findings(measurement: MeasurementSet) -> tuple[frozenset[str], tuple[DataFinding, ...]]:
     """Channels that cannot be used, and everything the checks have to say."""
-    findings = [*_dead(measurement), *_without_uncertainty(measurement)]
+    findings = [*_dead(measurement), *_without_uncertainty(measurement), *still_warming(measurement)]
     dropped = {name for finding in findings if finding.weight == "dropped" for name in finding.channels}
     return frozenset(dropped), tuple(findings)
 

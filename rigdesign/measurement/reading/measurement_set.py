@@ -77,6 +77,8 @@ class MeasuredPoint:
     setting: OperatingCondition
     readings: Mapping[str, NDArray[np.float64]]
     """By setting column, SI: (repeats,), NaN where missing."""
+    times: NDArray[np.float64] | None = None
+    """(repeats,) when each was read, from any start [s], NaN where missing; None without a column of times."""
     steady: bool = True
     reassembled: bool = False
     """Put together anew since the point before."""

@@ -33,6 +33,8 @@ from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Fe
 STATIC_TESTS = "standstill"
 """Name of rows that hold numbers of the rig at rest, at the temperature of the room; they need no settings."""
 KEYS = ("point", "repeat")
+TIME = "time"
+"""Column of when each row was read, from any start, with a unit of time; it needs no entry."""
 WHOLE = re.compile(r"[0-9]{1,9}")
 """A repeat as the table may have it."""
 SHOWN = 5
@@ -76,6 +78,18 @@ class Rows:
         """Rows of an operating point in the order of their repeats."""
         return self._by_point.get(point, [])
 
+    def times_of(self, point: str) -> NDArray[np.float64] | None:
+        """(repeats,) when the rows of a point were read [s]; None without a column of times."""
+        return None if self._time_unit is None else self._columns[TIME][self.rows_of(point)]
+
+    @property
+    def _time_unit(self) -> str | None:
+        """Unit of the column of times; None where there is none, or the column is a sensor or no time."""
+        described = {*self._document.settings, *self._document.channels}
+        if TIME not in self.table.places or TIME in described:
+            return None
+        return accepted_unit(self.table.unit(TIME).strip().strip("[]()"), "time")
+
     def place(self, point: str, repeat: int) -> int | None:
         """Index of a repeat among those of its point; None when there is no such row."""
         return self._places.get((point, repeat))
@@ -112,6 +126,8 @@ class Rows:
     def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[DataFinding]:
         """What the table holds that is not used, readings that cannot be, and a last row that was cut."""
         known = {*KEYS, *self._document.settings, *channels}
+        if self._time_unit is not None:
+            known.add(TIME)
         unused = [name for name in self.table.names if name not in known]
         found = [
             DataFinding(
@@ -181,6 +197,10 @@ class Rows:
             values, wrong = numbers(self.table, name, self._document.data.decimal)
             faults += wrong
             self._keep(name, to_si(np.array(values, dtype=float), measured.kind, spelled), measured)
+        if (time_unit := self._time_unit) is not None:
+            values, wrong = numbers(self.table, TIME, self._document.data.decimal)
+            faults += wrong
+            self._columns[TIME] = to_si(np.array(values, dtype=float), "time", time_unit)
         return faults
 
     def _keep(self, name: str, values: NDArray[np.float64], measured: Measured) -> None:
@@ -241,6 +261,7 @@ def points_of(
             MeasuredPoint(
                 setting=_setting(name, sensors, means, entry.tooth_offset),
                 readings=readings,
+                times=rows.times_of(name),
                 steady=entry.steady,
                 reassembled=entry.reassembled,
             )

@@ -1,4 +1,4 @@
-"""A point that was not steady: bodies still take up heat, one implicit step from the room; the balance shows it."""
+"""A point that was not steady: bodies still take up heat, marched from the room; the balance shows it."""
 
 import math
 from types import SimpleNamespace
@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.coupling.boundary import STORED
+from rigdesign.coupling.point_losses import STORED
+from rigdesign.prediction.places import place_weights
 from rigdesign.records.housing import cooling_balance
 from rigdesign.run.warnings import _warming
+from rigdesign.transient.heating import Heating
+from rigdesign.transient.housing_history import BranchPlan, Marching, march
+from rigdesign.transient.phases import Knot, Phase
 from tests.builders.two_blocks import CONDUCTIVITY, conditions, two_blocks
-from tests.builders.warm_prototype import Settled, case_with, heat_by_kind, open_share, outlet, settled
+from tests.builders.warm_prototype import Settled, base, case_with, heat_by_kind, open_share, outlet, settled
 from thermal.conditions.boundary import ConditionError, Film
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.steady import CLOSURE, ConductionSetup, solve_steady
@@ -96,6 +100,27 @@ def test_a_point_taken_too_early_lies_between_room_and_steady() -> None:
         assert cooling_balance(rig, last).stored == pytest.approx(-heat_by_kind(last)[STORED])
         assert open_share(rig, last) < 2e-3
     assert heat_by_kind(young)[STORED] < 3.0 * heat_by_kind(old)[STORED] < 0.0
+
+
+def test_outer_walls_warm_up_as_the_thermal_history_says() -> None:
+    """The history holds the losses of the warm rig; the colder one loses more and is a little warmer: 10 %."""
+    rig, steady = base()
+    _, early = settled((TIME, "1 h"))
+    phase = Phase(name="hour", duration=3600.0, knots=(Knot(time=0.0, point=steady.point),), held=True)
+    plan = BranchPlan(name="warm-up", phases=(phase,))
+    history = march(rig, Heating(rig, [steady]), "test", plan, Marching(tolerance=0.05))
+    for place in ("test.outer_warm", "test.gear_test_pinion"):
+        nodes, weights = place_weights(rig, place, None)[1]
+        marched, exact, warm = (
+            float(weights @ field[nodes])
+            for field in (
+                early.fields["test"].temperature,
+                history.fields[-1].astype(float),
+                steady.last.fields["test"].temperature,
+            )
+        )
+        assert 0.0 < warm - marched < warm - exact + 0.02
+        assert marched - warm == pytest.approx(exact - warm, rel=0.10)
 
 
 def test_a_warming_time_is_above_zero() -> None:

@@ -23,35 +23,35 @@ def case_of(name: str) -> Case:
     return load_case(CASES / name / "case.toml")
 
 
-def draught(part: registry.GearboxPart):
+def oil_mist(part: registry.GearboxPart):
     value = UncertainValue(
         path=f"{part.path}.housing.ambient_film_factor", now=part.housing.ambient_film_factor,
         bounds=(0.5, 2.0), healthy=0.1,
     )  # fmt: skip
-    yield value.effect(f"draught:{part.name}", "draught in the room", families.FILM, "moves the housing")
+    yield value.effect(f"oil_mist:{part.name}", "oil mist in the chamber", families.FILM, "moves the housing")
 
 
 @pytest.fixture
 def registered(monkeypatch):
     monkeypatch.setattr(registry, "_ENTRIES", list(registry._ENTRIES))
-    return registry.of_gearbox(housing=True)(draught)
+    return registry.of_gearbox(housing=True)(oil_mist)
 
 
 def test_an_effect_that_registers_itself_is_in_the_catalogue_and_on_the_page(registered):
     case = case_of("uhcf_prototype")
-    (effect,) = (one for one in effects_of(case) if one.kind == "draught")
-    assert effect.name == "draught:test"
+    (effect,) = (one for one in effects_of(case) if one.kind == "oil_mist")
+    assert effect.name == "oil_mist:test"
     assert effect.changes(case, (0.0,)) == {"gearboxes.test.housing.ambient_film_factor": 1.0}
     page = effects_page([case])
-    assert "| `draught` |" in page
-    assert page.count("`draught`") == 1, "an effect with an entry waits for nothing"
+    assert "| `oil_mist` |" in page
+    assert page.count("`oil_mist`") == 1, "an effect with an entry waits for nothing"
 
 
 def test_what_an_effect_needs_keeps_it_off_other_cases(registered):
     bare = [name for name in ("loop_1to1", "uhcf_main") if _lacks(case_of(name), "housing")]
     assert bare
     for name in bare:
-        assert not [e for e in effects_of(case_of(name)) if e.kind in ("draught", "ambient_film")]
+        assert not [e for e in effects_of(case_of(name)) if e.kind in ("oil_mist", "ambient_film")]
 
 
 def _lacks(case: Case, part: str) -> bool:

@@ -61,6 +61,7 @@ BEYOND = {
         BEYOND,
         *(pytest.param({path: value}, marks=pytest.mark.slow) for path, value in BEYOND.items()),
         pytest.param({}, marks=pytest.mark.slow),
+        pytest.param({"ambient.warming_time": 3600.0}, marks=pytest.mark.slow),
     ],
 )
 def test_the_reduced_model_keeps_its_stated_error(predictor, changes):

@@ -1,0 +1,67 @@
+"""Readings of a point that was not steady: the linearised rig marched exactly over the time it had run.
+
+Close to a steady point the fields of all housings, with oils, films and losses following at once, obey
+
+    C da/dt = -K (a - a_steady),    a(0) = room temperature,
+
+with C the heat capacities on the reduced basis and 1/K the response of the coefficients to heat, the loop followed
+(`rigdesign.prediction.sensitivities`). Its solution is the exponential of the matrix; the heat -C da/dt that still goes
+into the bodies acts on the readings like any other heat. `rigdesign.coupling.warm_up` marches the model itself in time
+steps, laws of films and losses as they are on the way.
+"""
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import block_diag, expm
+
+from rigdesign.prediction.housing_sensitivities import HousingSensitivities
+from rigdesign.prediction.sensitivities import PointSensitivities
+from thermal.fe.mesh import FloatArray
+
+
+class WarmUpResponse:
+    """Warm-up of one converged steady point.
+
+    point : its sensitivities; housings : those of all its housings, in the order of its fields
+    room : temperature of all bodies at the start [K]
+    """
+
+    def __init__(
+        self, point: PointSensitivities, housings: Sequence[HousingSensitivities], room: float
+    ) -> None:
+        self._point, self._housings, self._room = point, housings, room
+
+    @cached_property
+    def _capacity(self) -> FloatArray:
+        """(m, m) [J/K]"""
+        return np.asarray(block_diag(*(housing.capacity() for housing in self._housings)))
+
+    @cached_property
+    def _answers(self) -> tuple[FloatArray, FloatArray]:
+        """(m, m) of the coefficients and (f, m) of the readings per heat on each vector of the basis, loop followed."""
+        parts = [housing.heat_responses() for housing in self._housings]
+        unrelaxed = np.hstack([part.unrelaxed for part in parts])
+        read = np.hstack([part.readings for part in parts])
+        still = block_diag(*(part.coefficients for part in parts))
+        coefficients = still + self._point.fields @ (self._point.inverse @ unrelaxed)
+        return coefficients, self._point.followed(unrelaxed, read)
+
+    def rise(self, time: float) -> FloatArray:
+        """(m,) coefficients less those of the steady point after ``time`` [s] from room temperature."""
+        steady = np.concatenate([housing.coefficients for housing in self._housings])
+        start = np.concatenate([housing.uniform(self._room) for housing in self._housings])
+        return np.asarray(expm(-self._rates * time) @ (start - steady))
+
+    def change(self, time: float) -> FloatArray:
+        """(f,) readings after ``time`` [s] from room temperature, less those of the steady point."""
+        _, readings = self._answers
+        into_bodies = self._capacity @ (-self._rates @ self.rise(time))
+        return np.asarray(-readings @ into_bodies)
+
+    @cached_property
+    def _rates(self) -> FloatArray:
+        """(m, m) K over C: what a rise falls by in a second [1/s]."""
+        coefficients, _ = self._answers
+        return np.asarray(np.linalg.inv(coefficients @ self._capacity))

@@ -1,0 +1,110 @@
+"""Effects at one place, and the lag of a torque cell: what they change, and what a column says of it."""
+
+import numpy as np
+import pytest
+
+from rigdesign.case import load_case
+from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.library.build import run_places
+from rigdesign.diagnosis.residual.sensors import LAG, LARGEST_LAG, USUAL_LAG, Stated, lagged, sensor_errors
+from rigdesign.prediction.changes import changed_case
+from rigdesign.prediction.model import Channel
+from tests.builders import diagnosis as builder
+from tests.builders.paths import CASES
+
+CASE = load_case(CASES / "uhcf_prototype")
+EFFECTS = {effect.name: effect for effect in effects_of(CASE)}
+LOCAL = ("one_bearing_loss", "one_bearing_oil", "one_bearing_joint", "leak_one_side", "draught")
+
+
+def changed(name: str, size: float):
+    return changed_case(CASE, EFFECTS[name].changes(CASE, (size,))).gearboxes["test"]
+
+
+def test_every_bearing_wall_and_side_has_its_own() -> None:
+    bearings = {f"test.{name}" for name in CASE.gearboxes["test"].bearings}
+    places = {kind: {one.place for one in EFFECTS.values() if one.kind == kind} for kind in LOCAL}
+    assert places["one_bearing_loss"] == places["one_bearing_oil"] == places["one_bearing_joint"] == bearings
+    assert places["leak_one_side"] == {"test.front", "test.rear"}
+    assert places["draught"] == {f"test.outer_{wall}" for wall in ("warm", "cold_front", "cold_rear")}
+
+
+def test_a_rig_without_a_housing_has_no_places() -> None:
+    kinds = {effect.kind for effect in effects_of(load_case(CASES / "loop_1to1"))}
+    assert not kinds & set(LOCAL)
+
+
+def test_local_effects_change_one_place_only() -> None:
+    box = changed("one_bearing_loss:test.wheel_rear", 0.5)
+    factors = {name: bearing.friction_factor for name, bearing in box.bearings.items()}
+    assert factors == {"pinion_front": 1.0, "pinion_rear": 1.0, "wheel_front": 1.0, "wheel_rear": 1.5}
+    shares = {n: b.feed_share for n, b in changed("one_bearing_oil:test.pinion_front", 0.4).bearings.items()}
+    assert shares["pinion_front"] == pytest.approx(
+        0.6 * CASE.gearboxes["test"].bearings["pinion_front"].feed_share
+    )
+    assert shares["wheel_rear"] == CASE.gearboxes["test"].bearings["wheel_rear"].feed_share
+    joints = {
+        n: b.shell_conductance
+        for n, b in changed("one_bearing_joint:test.pinion_rear", 1e-3).bearings.items()
+    }
+    assert joints["pinion_rear"] == pytest.approx(1000.0) and joints["pinion_front"] is None
+    walls = changed("draught:test.outer_warm", 1.0).housing.surface_film_factors
+    assert dict(walls) == {"outer_warm": 2.0}
+
+
+def test_a_leak_into_one_side_adds_to_what_leaks_evenly() -> None:
+    paths = changed("leak_one_side:test.front", 0.06).oil_paths
+    assert (paths.leak_warm_cold, paths.leak_front_share) == pytest.approx((0.06, 1.0))
+    leaky = changed_case(CASE, {"gearboxes.test.oil_paths.leak_warm_cold": 0.06})
+    paths = (
+        changed_case(leaky, EFFECTS["leak_one_side:test.rear"].changes(leaky, (0.02,)))
+        .gearboxes["test"]
+        .oil_paths
+    )
+    assert paths.leak_warm_cold == pytest.approx(0.08)
+    assert paths.leak_warm_cold * paths.leak_front_share == pytest.approx(0.03)
+
+
+def test_a_healthy_rig_has_none_and_few_runs_are_spent() -> None:
+    own = [effect for effect in EFFECTS.values() if effect.kind in LOCAL]
+    assert all(effect.healthy == 0.0 < effect.matters for effect in own)
+    assert sum(len(run_places(effect)) for effect in own) == 4 * (1 + 2 + 2) + 2 + 3
+
+
+def test_a_lag_is_a_first_order_low_pass() -> None:
+    gain = lagged(1.0 + 0.0j, 2.0e3, 5e-4)
+    assert abs(gain) == pytest.approx(1.0 / np.sqrt(2.0))
+    assert np.angle(gain) == pytest.approx(-np.pi / 4.0)
+
+
+def test_the_column_of_a_lag_is_exact_at_the_usual_one() -> None:
+    runs = builder.settings(4)
+    torque = Channel(name="M_wheel", quantity="torque", place="wheel_side", orders=builder.ORDERS)
+    heat = Channel(name="T_gear", quantity="oil_outlet_temperature", place="test.gear_oil")
+    library = builder.library(runs, (torque, heat))
+    found = {
+        one.name: one
+        for one in sensor_errors(library, {"M_wheel": torque, "T_gear": heat}, {"M_wheel": Stated()})
+    }
+    lag = found["torque_lag:M_wheel"]
+    assert (lag.spread, lag.bound, lag.unit) == (LAG, pytest.approx(LARGEST_LAG), "s")
+    assert not any(name.endswith("T_gear") for name in found)
+    speed = {run.name: run.speed for run in runs}
+    read = library.base + USUAL_LAG * lag.values
+    place = {feature: i for i, feature in enumerate(library.features)}
+    seen = 0
+    for feature, i in place.items():
+        if feature.channel != "M_wheel" or feature.order == 0.0:
+            assert lag.values[i] == 0.0
+        elif feature.part == "real":
+            j = next(
+                k
+                for f, k in place.items()
+                if (f.channel, f.setting, f.order, f.part)
+                == ("M_wheel", feature.setting, feature.order, "imaginary")
+            )
+            true = complex(library.base[i], library.base[j])
+            exact = true / (1.0 + 1j * feature.order * speed[feature.setting] * USUAL_LAG)
+            assert complex(read[i], read[j]) == pytest.approx(exact)
+            seen += abs(true) > 0.0
+    assert seen
