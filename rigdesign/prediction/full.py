@@ -11,27 +11,33 @@ from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import solve_point
 from rigdesign.prediction.model import (
+    OWN_MODEL,
     STANDING_QUANTITIES,
     Channel,
     OperatingCondition,
     Prediction,
+    PredictionModel,
     features_of,
 )
-from rigdesign.prediction.operating import operating_point, rig_at, torsional
+from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.readings import readings
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
 
 
 def predict_full(
-    case: Case, settings: Sequence[OperatingCondition], channels: Sequence[Channel], fidelity: Fidelity
+    case: Case,
+    settings: Sequence[OperatingCondition],
+    channels: Sequence[Channel],
+    fidelity: Fidelity,
+    circuit: PredictionModel = OWN_MODEL,
 ) -> Prediction:
     """What the channels would read by the full thermal model; see `rigdesign.prediction.predict.predict`."""
     check_names(settings, channels)
     with solver_errors(case), threadpool_limits(limits=1), one_thread():
-        rig = torsional(build_rig(case, fidelity))
+        rig = modelled_rig(case, fidelity, circuit)
         values = list(_at_points(rig, settings, channels)) + standing_values(rig, channels)
     return Prediction(features=features_of(settings, channels), values=np.array(values, dtype=np.float64))
 

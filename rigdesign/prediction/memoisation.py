@@ -1,10 +1,12 @@
-"""Memoised parts of an iteration: bearing films, meshes, responses and bracing whose inputs were met before.
+"""Memoised parts of an iteration: bearing films, meshes, matrices of the circuit, responses and bracing met before.
 
 A memoised part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
 nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
 within a tenth of a picometre: the mean over teeth that deviate is zero only to rounding.
 """
 
+import hashlib
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -27,6 +29,7 @@ from rigdesign.coupling.braced_loop import (
 )
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts
+from rigdesign.coupling.loop_system import loop_system, running_state
 from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.mesh_friction import mesh_friction
@@ -35,7 +38,14 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.rig.model import Rig
 
-MOST = {"films": 20000, "meshes": 2000, "responses": 1000, "bracings": 1000}
+MOST = {
+    "films": 20000,
+    "meshes": 2000,
+    "responses": 1000,
+    "bracings": 1000,
+    "elastic systems": 60,
+    "elastic responses": 60,
+}
 """Entries kept of each kind; all of a kind are forgotten when one more comes."""
 SAME_GAP = 13
 """Decimal places of a gap [m] that count."""
@@ -50,7 +60,9 @@ class Memoisation:
     @property
     def parts(self) -> IterationParts:
         """The memoised parts of an iteration."""
-        return IterationParts(models=self.models, bearings=self.bearings, response=self.response)
+        return IterationParts(
+            models=self.models, bearings=self.bearings, system=self.system, response=self.response
+        )
 
     def bearings(
         self, rig: Rig, point: OperatingPoint, coupling_state: CouplingState
@@ -86,24 +98,46 @@ class Memoisation:
         law = law._replace(friction=along, damping=damped[0], damping_acts_on=damped[1])
         return replace(model, friction=friction, law=law)
 
+    def system(
+        self,
+        rig: Rig,
+        point: OperatingPoint,
+        coupling_state: CouplingState,
+        bearings: Mapping[str, BearingState],
+    ) -> LinearSystem:
+        """As `loop_system`."""
+        if rig.shaft_model == "torsional":
+            return loop_system(rig, point, coupling_state, bearings)
+        state = running_state(rig, point, coupling_state, bearings)
+        key = (
+            id(rig.elastic),
+            state.speed,
+            tuple((name, one.stiffness.tobytes(), one.damping.tobytes()) for name, one in state.bearings.items()),
+            tuple(state.torques.items()),
+        )
+        known = self._room("elastic systems")
+        if key not in known:
+            known[key] = rig.elastic, rig.elastic.seen.system(state)
+        found: LinearSystem = known[key][1]
+        return found
+
     def bracing(self, rig: Rig, point: OperatingPoint) -> BracingState | None:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
         initial = initial_state(rig, point)
-        assert rig.system is not None
         models = self.models(rig, point, initial)
+        system = self.system(rig, point, initial, self.bearings(rig, point, initial))
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
         key = (
-            rig.system.stiffness.tobytes(),
-            rig.system.twist_load.tobytes(),
+            hashlib.sha256(system.stiffness.tobytes() + system.twist_load.tobytes()).digest(),
             tuple(map(law_key, at_rest)),
             signed_torque(rig, point),
             rig.case.drivetrain.bracing,
         )
         known = self._room("bracings")
         if key not in known:
-            known[key] = brace_initial(rig, point, initial, models)
+            known[key] = brace_initial(rig, point, initial, models, system)
         found: BracingState = known[key]
         return found
 
@@ -120,7 +154,7 @@ class Memoisation:
             rig.case.numerics.response_period,
             tuple(circuit.drags.items()),
         )
-        known = self._room("responses")
+        known = self._room("responses" if rig.shaft_model == "torsional" else "elastic responses")
         if key not in known:
             known[key] = circuit.system, respond(rig, circuit)
         found: tuple[LinearSystem, CurvePoint] = known[key]

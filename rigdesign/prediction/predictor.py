@@ -18,7 +18,14 @@ from rigdesign.prediction.changes import Changes, changed_case
 from rigdesign.prediction.converged_point import TOLERANCE, converge_point
 from rigdesign.prediction.first_order import FirstOrderModel
 from rigdesign.prediction.full import check_names, standing_values
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition, features_of
+from rigdesign.prediction.model import (
+    ORDER_QUANTITIES,
+    OWN_MODEL,
+    Channel,
+    OperatingCondition,
+    PredictionModel,
+    features_of,
+)
 from rigdesign.prediction.operating import like, rig_at
 from rigdesign.prediction.oscillation import OscillatingPart
 from rigdesign.prediction.reduced_rig import ReducedRig
@@ -40,6 +47,7 @@ class Predictor:
     Parameters
     ----------
     case, settings, channels : as `predict`
+    circuit : shafts and teeth of the power circuit; left out, the shafts of the case
     fidelity : size of the models
 
     Attributes
@@ -61,10 +69,11 @@ class Predictor:
         settings: Iterable[OperatingCondition],
         channels: Iterable[Channel],
         *,
+        circuit: PredictionModel = OWN_MODEL,
         fidelity: Fidelity = "quick",
     ) -> None:
         self.case, self.settings, self.channels = case, tuple(settings), tuple(channels)
-        self.fidelity: Fidelity = fidelity
+        self.circuit, self.fidelity = circuit, fidelity
         check_names(self.settings, self.channels)
         self.features = features_of(self.settings, self.channels)
         if not self.settings:
@@ -72,7 +81,7 @@ class Predictor:
         _require_held_sumps(case)
         _require_no_own_fluids(case)
         with self._solving():
-            self._reduced = ReducedRig(case, self.settings, self.channels, fidelity)
+            self._reduced = ReducedRig(case, self.settings, self.channels, circuit, fidelity)
             self._points = self._reduced.converged_base()
             self.base = self._reduced.values(self._reduced.stated, self._reduced.rigs, self._points)
         self._start()
@@ -250,6 +259,7 @@ class Predictor:
             "case": self.case,
             "settings": self.settings,
             "channels": self.channels,
+            "circuit": self.circuit,
             "fidelity": self.fidelity,
             "base": self.base,
             "housings": self._reduced.housings.numbers(),
@@ -259,11 +269,11 @@ class Predictor:
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         """Make rig and points again; the numbers of the base are those that were sent."""
         self.case, self.settings, self.channels = state["case"], state["settings"], state["channels"]
-        self.fidelity, self.base = state["fidelity"], state["base"]
+        self.circuit, self.fidelity, self.base = state["circuit"], state["fidelity"], state["base"]
         self.features = features_of(self.settings, self.channels)
         with self._solving():
             self._reduced = ReducedRig(
-                self.case, self.settings, self.channels, self.fidelity, state["housings"]
+                self.case, self.settings, self.channels, self.circuit, self.fidelity, state["housings"]
             )
             self._points = self._reduced.converged_base(state["coupling_states"])
         self._start()

@@ -18,11 +18,11 @@ from rigdesign.prediction.converged_point import ConvergedPoint, converge_point
 from rigdesign.prediction.full import standing_values
 from rigdesign.prediction.housings import HousingNumbers, ReducedHousings
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.prediction.model import Channel, OperatingCondition
-from rigdesign.prediction.operating import operating_point, rig_at, torsional
+from rigdesign.prediction.model import Channel, OperatingCondition, PredictionModel
+from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.fe.mesh import FloatArray
 
@@ -48,11 +48,12 @@ class ReducedRig:
         case: Case,
         conditions: Sequence[OperatingCondition],
         channels: Sequence[Channel],
+        circuit: PredictionModel,
         fidelity: Fidelity,
         housings: Mapping[str, HousingNumbers] | None = None,
     ) -> None:
         self.conditions, self.channels = conditions, channels
-        self.stated = torsional(build_rig(case, fidelity))
+        self.stated = modelled_rig(case, fidelity, circuit)
         self.reads = readings(self.stated, channels)
         if housings is None:
             self.housings = ReducedHousings(self.stated, self._boundary_conditions(), self._sensors())

@@ -164,7 +164,7 @@ class PointSensitivities:
         read = [channel for channel, _ in self._reads if channel.quantity in ORDER_QUANTITIES]
         if not read:
             return {}
-        ideal = done.response if is_ideal(rig) else None
+        ideal = done.response if is_ideal(rig, done.loop) else None
         return shaft_orders(rig, done.loop, read, base=ideal, exact=False)
 
 
