@@ -72,7 +72,8 @@ def case_at(case: Case, setting: OperatingCondition) -> Case:
 
 
 def modelled_rig(case: Case, fidelity: Fidelity, model: PredictionModel) -> Rig:
-    """The rig that channels are predicted with.
+    """The rig that channels are predicted with; without the unbalance that a balance grade leaves, whose angles are
+    unknown.
 
     Raises
     ------
@@ -87,6 +88,7 @@ def modelled_rig(case: Case, fidelity: Fidelity, model: PredictionModel) -> Rig:
         rig,
         shaft_model=model.shafts or power.shaft_model,
         mesh_stiffness=model.teeth or rig.mesh_stiffness,
+        residual_unbalance=False,
     )
 
 
@@ -105,6 +107,7 @@ def like(stated: Rig, case: Case) -> Rig:
         shaft_model=stated.shaft_model,
         mesh_stiffness=stated.mesh_stiffness,
         tooth_influence=stated.tooth_influence,
+        residual_unbalance=stated.residual_unbalance,
     )
     if same_housings(rig, stated):
         take_over(rig, stated, HOUSINGS)

@@ -11,6 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from dynamics.drivetrain.modes import SEEN_GAIN
+from dynamics.elastic_rig.mode_names import NamedMode
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -29,7 +31,7 @@ from rigdesign.prediction.model import (
 from rigdesign.prediction.operating import like, rig_at
 from rigdesign.prediction.oscillation import OscillatingPart
 from rigdesign.prediction.reduced_rig import ReducedRig
-from rigdesign.prediction.static_tests import standing_modes
+from rigdesign.prediction.static_tests import loaded_modes, standing_modes
 from rigdesign.rig.model import Rig
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
@@ -186,11 +188,21 @@ class Predictor:
                     part.base()
 
     def natural_frequencies(self) -> FloatArray:
-        """(k,) of the rig at rest, all of them, rising [rad/s]; none without a drivetrain."""
-        if self._reduced.stated.drivetrain is None:
+        """(k,) near which the orders of a torque are steep, rising [rad/s]; none without a drivetrain.
+
+        Of shafts that only twist all of the rig at rest; of shafts that bend those of the loop under the most torque of
+        all operating points, torsional ones and any other that a mesh excites by `SEEN_GAIN` or more.
+        """
+        stated = self._reduced.stated
+        if stated.drivetrain is None:
             return np.zeros(0)
         with self._solving():
-            return np.array([2.0 * np.pi * mode.frequency for mode in standing_modes(self._reduced.stated)])
+            if stated.shaft_model == "torsional":
+                modes = standing_modes(stated)
+            else:
+                point = max(self._points, key=lambda one: (abs(one.last.point.torque), one.last.point.speed))
+                modes = [one for one in loaded_modes(point.problem.rig, point.last.loop) if _excited(one)]
+            return np.array([2.0 * np.pi * mode.frequency for mode in modes])
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.
@@ -297,6 +309,11 @@ class Predictor:
         """Errors of the tool, linear algebra on one thread."""
         with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
             yield
+
+
+def _excited(mode: NamedMode) -> bool:
+    """Whether orders of torque rise near a mode."""
+    return mode.name.startswith("torsional ") or mode.mesh_gain >= SEEN_GAIN
 
 
 def _require_no_own_fluids(case: Case) -> None:
