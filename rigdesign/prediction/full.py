@@ -1,6 +1,6 @@
 """What the sensors of a rig would read: the solve of a check at single operating points."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -21,10 +21,14 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.readings import readings
+from rigdesign.prediction.static_tests import standing_modes, standing_value
 from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
+from dynamics.elastic_rig.mode_names import NamedMode
 from thermal.fe.kernels import one_thread
+
+ModesAtRest = Callable[[Rig], Sequence[NamedMode]]
 
 
 def predict_full(
@@ -60,15 +64,13 @@ def _at_points(rig: Rig, settings: Sequence[OperatingCondition], channels: Seque
     return values
 
 
-def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
-    """Numbers of the channels of the rig at rest, in their order."""
+def standing_values(rig: Rig, channels: Iterable[Channel], modes_of: ModesAtRest = standing_modes) -> list[float]:
+    """Numbers of the channels of the rig at rest, in their order; modes_of : finds its modes, as `standing_modes`."""
     standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
     if not standing:
         return []
-    from rigdesign.prediction.static_tests import standing_modes, standing_value
-
     oscillating = any(channel.quantity == "natural_frequency" for channel in standing)
-    modes = standing_modes(rig) if oscillating else ()
+    modes = modes_of(rig) if oscillating else ()
     return [standing_value(rig, channel, modes) for channel in standing]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.elastic_rig.mode_names import NamedMode
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
@@ -27,7 +28,6 @@ from rigdesign.coupling.braced_loop import (
     shifted_laws,
     signed_torque,
 )
-from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.loop_system import loop_system, running_state
 from rigdesign.coupling.mesh_axes import axes_in_mesh
@@ -36,13 +36,16 @@ from rigdesign.coupling.mesh_friction import mesh_friction
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_model, mesh_phase
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.prediction.static_tests import modes_at_rest, rig_at_rest
 from rigdesign.rig.model import Rig
+from thermal.fe.mesh import FloatArray
 
 MOST = {
     "films": 20000,
     "meshes": 2000,
     "responses": 1000,
     "bracings": 1000,
+    "modes at rest": 1000,
     "elastic systems": 60,
     "elastic responses": 60,
 }
@@ -121,16 +124,15 @@ class Memoisation:
         found: LinearSystem = known[key][1]
         return found
 
-    def bracing(self, rig: Rig, point: OperatingPoint) -> BracingState | None:
+    def bracing(self, rig: Rig, point: OperatingPoint, initial: CouplingState) -> BracingState | None:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
-        initial = initial_state(rig, point)
         models = self.models(rig, point, initial)
         system = self.system(rig, point, initial, self.bearings(rig, point, initial))
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
         key = (
-            hashlib.sha256(system.stiffness.tobytes() + system.twist_load.tobytes()).digest(),
+            _digest(system.stiffness, system.twist_load),
             tuple(map(law_key, at_rest)),
             signed_torque(rig, point),
             rig.case.drivetrain.bracing,
@@ -139,6 +141,21 @@ class Memoisation:
         if key not in known:
             known[key] = brace_initial(rig, point, initial, models, system)
         found: BracingState = known[key]
+        return found
+
+    def standing_modes(self, rig: Rig) -> tuple[NamedMode, ...]:
+        """As `rigdesign.prediction.static_tests.standing_modes`."""
+        rest = rig_at_rest(rig, self.parts)
+        system = rest.system
+        key = (
+            _digest(system.inertia, system.damping, system.stiffness),
+            tuple(map(law_key, rest.laws)),
+            signed_torque(rig, rest.point),
+        )
+        known = self._room("modes at rest")
+        if key not in known:
+            known[key] = modes_at_rest(rig, rest)
+        found: tuple[NamedMode, ...] = known[key]
         return found
 
     def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
@@ -166,6 +183,11 @@ class Memoisation:
         if len(known) >= MOST[kind]:
             known.clear()
         return known
+
+
+def _digest(*matrices: FloatArray) -> bytes:
+    """What matrices are known by."""
+    return hashlib.sha256(b"".join(matrix.tobytes() for matrix in matrices)).digest()
 
 
 def shape_key(

@@ -19,7 +19,7 @@ from rigdesign.case.model import Case
 from rigdesign.prediction.changes import Changes, changed_case
 from rigdesign.prediction.converged_point import TOLERANCE, converge_point
 from rigdesign.prediction.first_order import FirstOrderModel
-from rigdesign.prediction.full import check_names, standing_values
+from rigdesign.prediction.full import check_names
 from rigdesign.prediction.model import (
     ORDER_QUANTITIES,
     OWN_MODEL,
@@ -160,7 +160,7 @@ class Predictor:
             rest = sum(map(len, numbers))
             if all(found.same_loop for found in changed):
                 return np.concatenate([*numbers, self.base[rest:]])
-            return np.concatenate([*numbers, standing_values(made[0], self.channels)])
+            return np.concatenate([*numbers, self._reduced.standing_values(made[0])])
 
     def oscillating(self, changes: Changes) -> FloatArray:
         """(n_features,) linear prediction for a case whose change only oscillates: waves over the teeth, torques.

@@ -85,11 +85,12 @@ class ReducedRig:
     def changed_problem(self, rig: Rig, condition: OperatingCondition) -> PointProblem:
         """The coupled problem of a changed rig at an operating condition; its bracing is looked up where it was met."""
         here, point = rig_at(rig, condition), operating_point(condition)
+        initial = initial_state(here, point, self.memoisation.bearings)
         return PointProblem(
             rig=here,
             point=point,
-            initial=initial_state(here, point),
-            bracing=self.memoisation.bracing(here, point),
+            initial=initial,
+            bracing=self.memoisation.bracing(here, point, initial),
             parts=self._parts,
         )
 
@@ -99,7 +100,11 @@ class ReducedRig:
         for here, point in zip(rigs, points, strict=True):
             for _, read in self.reads:
                 numbers += read(here, point.last)
-        return np.array([*numbers, *standing_values(rig, self.channels)])
+        return np.array([*numbers, *self.standing_values(rig)])
+
+    def standing_values(self, rig: Rig) -> list[float]:
+        """Numbers of the channels of a rig at rest, in their order."""
+        return standing_values(rig, self.channels, self.memoisation.standing_modes)
 
     def _sensors(self) -> dict[str, list[Weights]]:
         """Temperature channels by gearbox."""

@@ -11,7 +11,7 @@ mode, ``lateral test_pinion 1`` (`dynamics.elastic_rig.mode_names`).
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,16 +20,13 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.elastic_rig.mode_names import NamedMode, elastic_named_modes, torsional_modes
-from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loop_system import running_state
-from rigdesign.coupling.mesh_models import mesh_models
+from rigdesign.coupling.iteration import SOLVED, IterationParts
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig
@@ -82,23 +79,51 @@ def standing_modes(rig: Rig) -> tuple[NamedMode, ...]:
 
     Raises UsageError for a case without drivetrain.
     """
+    return modes_at_rest(rig, rig_at_rest(rig))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigAtRest:
+    """The rig at rest under its first torque: its meshes, all teeth alike, and the matrices of its power circuit."""
+
+    point: OperatingPoint
+    laws: tuple[MeshLaw, ...]
+    system: LinearSystem
+
+
+def rig_at_rest(rig: Rig, parts: IterationParts = SOLVED) -> RigAtRest:
+    """What the modes at rest depend on; parts : solve meshes, bearings and matrices.
+
+    Raises UsageError for a case without drivetrain.
+    """
     if rig.drivetrain is None:
         raise UsageError("natural frequencies need the drivetrain, which this case leaves out")
+    assert rig.system is not None
+    point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
+    initial = initial_state(rig, point, parts.bearings)
+    models = parts.models(rig, point, initial)
+    system = rig.system
+    if rig.shaft_model == "elastic":
+        system = parts.system(rig, point, initial, parts.bearings(rig, point, initial))
+    bracing = brace_initial(rig, point, initial, models, system)
+    laws = tuple(alike_teeth(law) for law in shifted_laws(rig, models, bracing))
+    return RigAtRest(point=point, laws=laws, system=system)
+
+
+def modes_at_rest(rig: Rig, rest: RigAtRest) -> tuple[NamedMode, ...]:
+    """Oscillating modes by rising frequency, meshes as stiff in the mean as the standstill torque makes them."""
+    assert rig.drivetrain is not None
+    laws = standing_laws(rig, rest)
     undragged = replace(
         rig.drivetrain,
         bearings=tuple(replace(bearing, linear_drag=0.0) for bearing in rig.drivetrain.bearings),
     )
     twisting = assemble(undragged)
     if rig.shaft_model == "torsional":
-        assert rig.system is not None
-        return torsional_modes(twisting, standing_laws(rig, rig.system), HIGHEST_FREQUENCY)
+        return torsional_modes(twisting, laws, HIGHEST_FREQUENCY)
     seen = rig.elastic.seen
-    if seen.reduced.drag.any():
-        seen = SeenRig(reduced=replace(seen.reduced, drag=np.zeros_like(seen.reduced.drag)), ports=seen.ports)
-    point = standing_point(rig)
-    initial = initial_state(rig, point)
-    system = seen.system(running_state(rig, point, initial, solve_bearings(rig, point, initial)))
-    return elastic_named_modes(seen, system, standing_laws(rig, system), twisting, HIGHEST_FREQUENCY)
+    system = replace(rest.system, damping=rest.system.damping - seen.drag)
+    return elastic_named_modes(seen, system, laws, twisting, HIGHEST_FREQUENCY)
 
 
 def loaded_modes(rig: Rig, loop: LoadedCircuit) -> tuple[NamedMode, ...]:
@@ -110,33 +135,18 @@ def loaded_modes(rig: Rig, loop: LoadedCircuit) -> tuple[NamedMode, ...]:
     return elastic_named_modes(rig.elastic.seen, loop.system, laws, rig.system, HIGHEST_FREQUENCY)
 
 
-def standing_laws(rig: Rig, system: LinearSystem) -> list[MeshLaw]:
-    """Mesh laws of the rig at rest with the mean stiffness that the standstill torque makes, all teeth alike.
-
-    system : of the power circuit at rest
-    """
-    point = standing_point(rig)
-    initial = initial_state(rig, point)
-    models = mesh_models(rig, point, initial)
-    laws = [
-        alike_teeth(law)
-        for law in shifted_laws(rig, models, brace_initial(rig, point, initial, models, system))
-    ]
-    loop = port_model(system, laws)
-    state = solve_static(loop, LoopLoad(torque=signed_torque(rig, point)))
+def standing_laws(rig: Rig, rest: RigAtRest) -> list[MeshLaw]:
+    """Mesh laws of the rig at rest with the mean stiffness that the standstill torque makes."""
+    loop = port_model(rest.system, rest.laws)
+    state = solve_static(loop, LoopLoad(torque=signed_torque(rig, rest.point)))
     found = []
-    for m, (law, packed) in enumerate(zip(laws, loop.packed)):
+    for m, (law, packed) in enumerate(zip(rest.laws, loop.packed)):
         pinion = loop.pinions[m]
         angle = loop.ratios[pinion] * state.angles + state.ports[:, pinion]
         reaction = evaluate_mesh(packed, angle, state.approach[:, m], 0.0, 0.0)
         stiffness = -float(np.mean(reaction.torque_1_per_approach)) / law.base_radius_1
         found.append(law._replace(mean_stiffness=stiffness))
     return found
-
-
-def standing_point(rig: Rig) -> OperatingPoint:
-    """The rig at rest under its first torque."""
-    return OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
 
 
 def standstill_torque(rig: Rig) -> float:
