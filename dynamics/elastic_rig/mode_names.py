@@ -48,9 +48,7 @@ class NamedMode:
     mesh_gain: float
 
 
-def torsional_modes(
-    system: LinearSystem, laws: Sequence[MeshLaw], highest: float
-) -> tuple[NamedMode, ...]:
+def torsional_modes(system: LinearSystem, laws: Sequence[MeshLaw], highest: float) -> tuple[NamedMode, ...]:
     """Modes up to a frequency [Hz] of a loop whose shafts only twist, by rising frequency."""
     form = modal_form(*closed_matrices(system, laws), system.rigid)
     found = _oscillating(form, highest)
@@ -102,7 +100,9 @@ def _mesh_gains(form: ModalForm, found: Integers, system: LinearSystem, laws: Se
     poles = form.poles[found]
     gains = []
     for law, (pinion, wheel) in zip(laws, system.mesh_ports):
-        reach = law.base_radius_1 * form.velocity_shapes[pinion] - law.base_radius_2 * form.velocity_shapes[wheel]
+        reach = (
+            law.base_radius_1 * form.velocity_shapes[pinion] - law.base_radius_2 * form.velocity_shapes[wheel]
+        )
         load = law.base_radius_1 * form.loads[:, pinion] - law.base_radius_2 * form.loads[:, wheel]
         damping = np.maximum(np.abs(poles.real), LEAST_DAMPING * np.abs(poles))
         gains.append(law.mean_stiffness * np.abs(reach[found] * load[found]) / (damping * np.abs(poles)))

@@ -132,13 +132,12 @@ class DeviationResponse:
             torque = here.torque[:, reach + h].copy()
             if residue == 0.0:
                 torque[: loop.bodies.size] += loop.torque[:, h]
-            whole = np.zeros(len(loop.system.inertia), complex)
-            np.add.at(whole, loop.bodies, torque[: loop.bodies.size])
+            whole: Complex = np.zeros(len(loop.system.inertia), np.complex128)
+            whole[loop.bodies] = torque[: loop.bodies.size]
             for row, amplitude in zip(here.rows, torque[loop.bodies.size :]):
                 whole += amplitude * row
-            found.append(
-                OrderLoads(order=order, omega=order * loop.speed, torque=whole * (2.0 if order else 1.0))
-            )
+            sides = 2.0 if order else 1.0
+            found.append(OrderLoads(order=order, omega=order * loop.speed, torque=sides * whole))
         return found
 
     def _class(
@@ -185,7 +184,13 @@ class _Class(NamedTuple):
 
 
 def mean_windup(
-    system: LinearSystem, torque: Array, *, twist: float, drive: float, speed: Array, drags: Mapping[str, float]
+    system: LinearSystem,
+    torque: Array,
+    *,
+    twist: float,
+    drive: float,
+    speed: Array,
+    drags: Mapping[str, float],
 ) -> Array:
     """Mean windup of all freedoms (n,) [rad] under mean torques; no branch turned as a whole.
 

@@ -123,7 +123,11 @@ class _MeshMotion(NamedTuple):
 
 
 def _over_cycle(
-    system: LinearSystem, laws: Sequence[MeshLaw], speed: float, motion: _MeshMotion, held: tuple[float, float]
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    speed: float,
+    motion: _MeshMotion,
+    held: tuple[float, float],
 ) -> ExactMotion:
     """Torques on the gear bodies along a motion.
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from dynamics.elastic_rig.mode_names import NamedMode
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -25,10 +26,10 @@ from rigdesign.prediction.static_tests import standing_modes, standing_value
 from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
-from dynamics.elastic_rig.mode_names import NamedMode
 from thermal.fe.kernels import one_thread
 
 ModesAtRest = Callable[[Rig], Sequence[NamedMode]]
+"""Finds the modes of a rig at rest."""
 
 
 def predict_full(
@@ -64,7 +65,9 @@ def _at_points(rig: Rig, settings: Sequence[OperatingCondition], channels: Seque
     return values
 
 
-def standing_values(rig: Rig, channels: Iterable[Channel], modes_of: ModesAtRest = standing_modes) -> list[float]:
+def standing_values(
+    rig: Rig, channels: Iterable[Channel], modes_of: ModesAtRest = standing_modes
+) -> list[float]:
     """Numbers of the channels of the rig at rest, in their order; modes_of : finds its modes, as `standing_modes`."""
     standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
     if not standing:

@@ -115,7 +115,9 @@ class Memoisation:
         key = (
             id(rig.elastic),
             state.speed,
-            tuple((name, one.stiffness.tobytes(), one.damping.tobytes()) for name, one in state.bearings.items()),
+            tuple(
+                (name, one.stiffness.tobytes(), one.damping.tobytes()) for name, one in state.bearings.items()
+            ),
             tuple(state.torques.items()),
         )
         known = self._room("elastic systems")

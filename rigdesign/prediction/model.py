@@ -22,6 +22,7 @@ Quantity = Literal[
 ]
 Part = Literal["value", "real", "imaginary"]
 
+
 @dataclass(frozen=True, kw_only=True)
 class PredictionModel:
     """Shafts and teeth of the power circuit in a prediction.

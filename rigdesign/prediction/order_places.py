@@ -114,9 +114,7 @@ def _shaft_end(rig: Rig, channel: Channel) -> OfShaft:
     drivetrain, system = rig.drivetrain, rig.system
     assert drivetrain is not None and system is not None
     stations = [
-        name
-        for name in system.dofs
-        if name.rpartition("/")[0] == channel.place and name.endswith(" mm")
+        name for name in system.dofs if name.rpartition("/")[0] == channel.place and name.endswith(" mm")
     ]
     if not stations:
         known = ", ".join(shaft.name for shaft in drivetrain.shafts)

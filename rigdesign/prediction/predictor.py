@@ -198,7 +198,7 @@ class Predictor:
             return np.zeros(0)
         with self._solving():
             if stated.shaft_model == "torsional":
-                modes = standing_modes(stated)
+                modes = list(standing_modes(stated))
             else:
                 point = max(self._points, key=lambda one: (abs(one.last.point.torque), one.last.point.speed))
                 modes = [one for one in loaded_modes(point.problem.rig, point.last.loop) if _excited(one)]

@@ -1,4 +1,4 @@
-"""Shipped loops with deviations, braced without heat, for the tests of orders; shafts that twist, bend or are locked."""
+"""Shipped loops with deviations, braced without heat, for the tests of orders: shafts that twist, bend, are locked."""
 
 from dataclasses import dataclass, replace
 from functools import cache

@@ -47,7 +47,9 @@ def test_locked_bending_gives_the_natural_frequencies_of_shafts_that_only_twist(
     assert [same[name] for name in known] == pytest.approx(list(known.values()), rel=1e-6)
 
 
-@pytest.mark.parametrize(("name", "rpm", "torque"), [("loop_1to1", 2900.0, 200.0), ("loop_hunting", 1800.0, 150.0)])
+@pytest.mark.parametrize(
+    ("name", "rpm", "torque"), [("loop_1to1", 2900.0, 200.0), ("loop_hunting", 1800.0, 150.0)]
+)
 def test_mesh_orders_are_those_that_the_check_reads_of_its_periodic_response(name, rpm, torque):
     """Section torques go over time samples and the whole spectrum of the mesh torques, not over loads by order."""
     case = settled(changed(name), rpm, torque, "elastic")
@@ -66,7 +68,9 @@ def test_mesh_orders_are_those_that_the_check_reads_of_its_periodic_response(nam
         scale = abs(spectrum[0])
         assert read[place, 0.0].real == pytest.approx(spectrum[0].real, abs=1e-3 * scale)
         for k in (1, 2):
-            assert abs(read[place, float(k * teeth)]) == pytest.approx(2.0 * abs(spectrum[k]), rel=1e-3, abs=1e-5 * scale)
+            assert abs(read[place, float(k * teeth)]) == pytest.approx(
+                2.0 * abs(spectrum[k]), rel=1e-3, abs=1e-5 * scale
+            )
 
 
 @pytest.mark.parametrize(
