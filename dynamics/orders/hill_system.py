@@ -134,8 +134,8 @@ class MeshPeriodic:
 class ClassSolution(NamedTuple):
     """Two-sided changes of one class at cell orders -reach to reach beyond its residue.
 
-    torque : (n_loads, n) on the bodies [N m], then of the further loads; approach : (n_meshes, n) [m]; angle : (n_meshes, n) of the
-    pinions, their mean left out [rad]
+    torque : (n_loads, n) on the bodies [N m], then of the further loads; approach : (n_meshes, n) [m]
+    angle : (n_meshes, n) of the pinions, their mean left out [rad]
     """
 
     torque: Complex

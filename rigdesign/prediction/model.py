@@ -71,9 +71,9 @@ class Channel:
 
     place : of ``temperature`` a surface or body of a housing, ``test.outer_warm``, or the gearbox alone where
         ``at`` gives coordinates; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
-        coupling; of ``angle`` a shaft; of ``natural_frequency`` its number from 1, rig at rest; of ``backlash``
-        a mesh, ``test.main``; of ``seal_gap`` a seal as results name it; of ``motor_power`` and
-        ``drive_torque`` the motor
+        coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
+        or the name of any mode (`dynamics.elastic_rig.mode_names`); of ``backlash`` a mesh, ``test.main``; of
+        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor
     """
 
     name: str
