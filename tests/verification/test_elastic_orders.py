@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from dynamics.response.section_torque import section_torques
+from rigdesign.base.errors import UsageError
 from rigdesign.coupling.braced_loop import respond, shifted_laws
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
+from rigdesign.prediction.model import Channel
+from rigdesign.prediction.operating import like
 from rigdesign.prediction.orders import shaft_orders
-from rigdesign.prediction.static_tests import standing_modes
+from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.builders.order import DRAGS, changed, channels, settled
 from tests.builders.order_errors import order_errors
 
@@ -115,3 +118,33 @@ def test_mesh_order_without_friction_is_nearly_that_of_the_march_in_time():
     )
     assert corrected[1.0] < 5e-3
     assert corrected[28.0] < 5e-2
+
+
+def test_modes_of_shafts_that_bend_keep_torsional_numbers_and_have_names():
+    case = changed("loop_1to1")
+    twisting, bending = (settled(case, 2900.0, 200.0, shafts).rig for shafts in ("torsional", "elastic"))
+    known, modes = standing_modes(twisting), standing_modes(bending)
+    names = [mode.name for mode in modes]
+    assert len(set(names)) == len(names)
+    assert [mode.frequency for mode in modes] == sorted(mode.frequency for mode in modes)
+    torsional = [mode for mode in modes if mode.name.startswith("torsional ")]
+    assert [mode.name for mode in torsional] == [mode.name for mode in known]
+    for own, other in zip(torsional[:5], known):
+        assert own.frequency == pytest.approx(other.frequency, rel=0.05)
+        assert own.likeness > 0.8
+
+    def value(place):
+        return standing_value(bending, Channel(name="x", quantity="natural_frequency", place=place), modes)
+
+    assert value("2") == value("torsional 2") == torsional[1].frequency
+    # a bar of 26 mm and half a metre between the shafts of two gearboxes: below all torsional modes
+    assert value("lateral test_wheel 1") < value("1")
+    with pytest.raises(UsageError, match="other modes are lateral"):
+        value("lateral test_wheel 999")
+
+
+def test_a_changed_case_keeps_the_shafts_that_it_leaves_alone():
+    rig = settled(changed("loop_1to1"), 2900.0, 200.0, "elastic").rig
+    stiff = {"drivetrain__couplings__wheel_side__torsional_stiffness": "3e6 N m/rad"}
+    assert like(rig, changed("loop_1to1", **RUN_OUT)).elastic is rig.elastic
+    assert like(rig, changed("loop_1to1", **stiff)).elastic is not rig.elastic
