@@ -48,8 +48,14 @@ class ModalForm:
 
         omega : (n_omega,) [rad/s], all > 0; dofs : (n_dofs,). Returns (n_omega, n_dofs, n_dofs) [rad/(N m)].
         """
+        return self._receptance(omega, dofs, self.loads[:, dofs])
+
+    def receptance_to(self, omega: Array, dofs: NDArray[np.int64], rows: Array) -> Complex:
+        """Displacement of some freedoms per unit of loads on rows (k, n) of all freedoms, (n_omega, n_dofs, k)."""
+        return self._receptance(omega, dofs, self.loads @ rows.T)
+
+    def _receptance(self, omega: Array, dofs: NDArray[np.int64], into: Complex) -> Complex:
         out = self.velocity_shapes[dofs]
-        into = self.loads[:, dofs]
         s = 1j * np.asarray(omega)
         gain = 1.0 / (s[:, None] - self.poles)
         mobility = np.einsum("im,wm,mj->wij", out, gain, into, optimize=True)

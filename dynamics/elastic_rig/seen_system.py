@@ -79,6 +79,11 @@ class SeenRig:
             mesh_wrench=self._mesh_wrench,
         )
 
+    @cached_property
+    def drag(self) -> Array:
+        """(n, n) linear drag of the bearings in the damping of every system [N m s/rad]."""
+        return np.asarray(self._back.T @ self.reduced.drag @ self._back)
+
     def on_freedoms(self, rows: Array) -> Array:
         """Rows (m, n) on the freedoms of the system of rows (m, n_full) on those of the whole rig."""
         return np.asarray(self.reduced.rows(rows) @ self._back)

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,26 +38,28 @@ CYCLE_STEPS = 30
 """Steps at most that correct for what the contacts do beyond first order."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class OrderTorque:
-    """Torque Re(amplitude exp(i order phi)) on one freedom [N m]; order per turn of the pinion of the first mesh."""
+    """Load Re(amplitude exp(i order phi)) times one row; order per turn of the pinion of the first mesh.
 
-    dof: int
+    load : (n,) on each freedom per unit of the amplitude
+    """
+
+    load: Array
     order: float
     amplitude: complex
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class OrderLoads:
     """Loads of one order on the linear drivetrain, one-sided amplitudes [N m].
 
     order : per turn of the pinion of the first mesh; omega [rad/s]
-    dofs : (n,) freedoms that are loaded; torque : (n,)
+    torque : (n,) on every freedom
     """
 
     order: float
     omega: float
-    dofs: Integers
     torque: Complex
 
 
@@ -98,7 +101,7 @@ class DeviationResponse:
     def loads(self, orders: Iterable[float], torques: Sequence[OrderTorque] = ()) -> list[OrderLoads]:
         """Loads on the drivetrain at each order (per turn of the pinion of the first mesh, >= 0).
 
-        torques : further torques on any freedoms, in first order
+        torques : further loads, in first order
 
         Raises DynamicsInputError for a negative order, a torque without a positive one, or an order above the samples.
         """
@@ -117,32 +120,36 @@ class DeviationResponse:
                 f"{loop.samples} samples of a mesh hold; ask for less"
             )
         reach = min(reach, most)
-        outer = sorted({torque.dof for torque in torques} - set(loop.bodies.tolist()))
-        dofs = np.concatenate([loop.bodies, np.array(outer, np.int64)])
         tangent = loop.tangent(reach)
-        changes: dict[float, Complex] = {}
+        changes: dict[float, _Class] = {}
         found = []
         for order in wanted:
             residue = loop.residue(order)
             if residue not in changes:
-                changes[residue] = self._class(residue, reach, dofs, torques, tangent)
+                changes[residue] = self._class(residue, reach, torques, tangent)
             h = round(order / loop.cell_order - residue)
-            torque = changes[residue][:, reach + h].copy()
+            here = changes[residue]
+            torque = here.torque[:, reach + h].copy()
             if residue == 0.0:
                 torque[: loop.bodies.size] += loop.torque[:, h]
-            found.append(
-                OrderLoads(
-                    order=order, omega=order * loop.speed, dofs=dofs, torque=torque * (2.0 if order else 1.0)
-                )
-            )
+            whole: Complex = np.zeros(len(loop.system.inertia), np.complex128)
+            whole[loop.bodies] = torque[: loop.bodies.size]
+            for row, amplitude in zip(here.rows, torque[loop.bodies.size :]):
+                whole += amplitude * row
+            sides = 2.0 if order else 1.0
+            found.append(OrderLoads(order=order, omega=order * loop.speed, torque=sides * whole))
         return found
 
     def _class(
-        self, residue: float, reach: int, dofs: Integers, torques: Sequence[OrderTorque], tangent: Complex
-    ) -> Complex:
-        """Changes of the torques on ``dofs`` (n_dofs, 2 reach + 1), two-sided, of one class."""
+        self, residue: float, reach: int, torques: Sequence[OrderTorque], tangent: Complex
+    ) -> "_Class":
+        """Changes of the loads of one class."""
         number = np.arange(-reach, reach + 1)
-        given = self._given(residue, number, dofs, torques)
+        waves = [(torque, self._wave(residue, number, torque)) for torque in torques]
+        waves = [(torque, wave) for torque, wave in waves if np.any(wave)]
+        rows = np.array([torque.load for torque, _ in waves]).reshape(-1, len(self.loop.system.inertia))
+        bodies = np.zeros((self.loop.bodies.size, number.size), complex)
+        given = np.vstack([bodies, *(wave for _, wave in waves)])
         if self.steps:
             forces = sum(
                 (cycle.of_class(residue, number) for cycle in self.cycles), start=self.forcing.none(reach)
@@ -150,37 +157,47 @@ class DeviationResponse:
         else:
             forces = self.forcing.of_class(residue, number)
         if not (np.any(given) or np.any(forces)):
-            return given
-        receptance = self.loop.receptance(self.loop.omega(residue, reach), dofs)
-        return HillSystem(self.loop, residue, tangent, receptance).solve(forces, given).torque
+            return _Class(given, rows)
+        receptance = self.loop.receptance(self.loop.omega(residue, reach), rows)
+        return _Class(HillSystem(self.loop, residue, tangent, receptance).solve(forces, given).torque, rows)
 
-    def _given(
-        self, residue: float, number: Integers, dofs: Integers, torques: Sequence[OrderTorque]
-    ) -> Complex:
-        """Two-sided given torques of a class (n_dofs, n)."""
-        given = np.zeros((dofs.size, number.size), complex)
-        for torque in torques:
-            for sign in (1.0, -1.0):
-                share = sign * torque.order / self.loop.cell_order - residue
-                h = round(share)
-                if abs(share - h) < SAME_CLASS and abs(h) <= number[-1]:
-                    amplitude = torque.amplitude if sign > 0.0 else torque.amplitude.conjugate()
-                    given[int(np.flatnonzero(dofs == torque.dof)[0]), h - number[0]] += 0.5 * amplitude
-        return given
+    def _wave(self, residue: float, number: Integers, torque: OrderTorque) -> Complex:
+        """Two-sided amplitudes of a further load in a class (1, n)."""
+        wave = np.zeros((1, number.size), complex)
+        for sign in (1.0, -1.0):
+            share = sign * torque.order / self.loop.cell_order - residue
+            h = round(share)
+            if abs(share - h) < SAME_CLASS and abs(h) <= number[-1]:
+                amplitude = torque.amplitude if sign > 0.0 else torque.amplitude.conjugate()
+                wave[0, h - number[0]] += 0.5 * amplitude
+        return wave
+
+
+class _Class(NamedTuple):
+    """Changes of the loads of one class, two-sided.
+
+    torque : (n_bodies + k, 2 reach + 1) on the bodies, then of k further loads; rows : (k, n) of these
+    """
+
+    torque: Complex
+    rows: Array
 
 
 def mean_windup(
-    system: LinearSystem, torque: Mapping[int, float], *, twist: float, drive: float, speed: Array,
+    system: LinearSystem,
+    torque: Array,
+    *,
+    twist: float,
+    drive: float,
+    speed: Array,
     drags: Mapping[str, float],
-) -> Array:  # fmt: skip
+) -> Array:
     """Mean windup of all freedoms (n,) [rad] under mean torques; no branch turned as a whole.
 
-    torque : mean of mesh torque by freedom [N m]; twist : bracing [rad]; drive : motor torque [N m]; speed : (n,)
+    torque : (n,) mean torque of the meshes [N m]; twist : bracing [rad]; drive : motor torque [N m]; speed : (n,)
     mean speed of every freedom [rad/s]; drags : torque by name of ``drag_loads`` [N m]
     """
-    load = system.twist_load * twist - system.damping @ speed
-    for dof, value in torque.items():
-        load[dof] += value
+    load = system.twist_load * twist - system.damping @ speed + torque
     load[system.drive_dof] += drive
     for name, value in drags.items():
         load = load + system.drag_loads[name] * value

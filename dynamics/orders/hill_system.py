@@ -111,10 +111,16 @@ class MeshPeriodic:
         """Frequencies of a class, cell orders -reach to reach beyond the residue [rad/s]."""
         return np.asarray((np.arange(-reach, reach + 1) + residue) * self.cell_order * self.speed)
 
-    def receptance(self, omega: Array, dofs: Integers) -> Complex:
-        """(n, n_dofs, n_dofs) at signed frequencies (n,); nothing at frequency zero."""
+    def receptance(self, omega: Array, rows: Array | None = None) -> Complex:
+        """Of the bodies to themselves and to loads on rows (k, n) of all freedoms, (n, n_bodies, n_bodies + k).
+
+        At signed frequencies (n,); nothing at frequency zero.
+        """
         still = omega == 0.0
-        found = self.system.form.receptance(np.where(still, 1.0, np.abs(omega)), dofs)
+        form, size = self.system.form, np.where(still, 1.0, np.abs(omega))
+        found = form.receptance(size, self.bodies)
+        if rows is not None and len(rows):
+            found = np.concatenate([found, form.receptance_to(size, self.bodies, rows)], axis=2)
         found = np.where((omega < 0.0)[:, None, None], found.conj(), found)
         found[still] = 0.0
         return np.asarray(found)
@@ -128,8 +134,8 @@ class MeshPeriodic:
 class ClassSolution(NamedTuple):
     """Two-sided changes of one class at cell orders -reach to reach beyond its residue.
 
-    torque : (n_dofs, n) on the loaded freedoms [N m]; approach : (n_meshes, n) [m]; angle : (n_meshes, n) of the
-    pinions, their mean left out [rad]
+    torque : (n_loads, n) on the bodies [N m], then of the further loads; approach : (n_meshes, n) [m]
+    angle : (n_meshes, n) of the pinions, their mean left out [rad]
     """
 
     torque: Complex
@@ -143,8 +149,8 @@ class HillSystem:
     def __init__(self, loop: MeshPeriodic, residue: float, tangent: Complex, receptance: Complex) -> None:
         """Prepare a class.
 
-        tangent : ``loop.tangent(reach)``; receptance : at ``loop.omega(residue, reach)``, for the freedoms that may be
-        loaded, the bodies first
+        tangent : ``loop.tangent(reach)``; receptance : at ``loop.omega(residue, reach)``, of the bodies to themselves
+        and to further loads
         """
         self.loop, self.n = loop, tangent.shape[-1]
         reach = self.n // 2
@@ -164,7 +170,7 @@ class HillSystem:
         self.factors = lu_factor(block if self.still < 0 else self._with_mean(block), check_finite=False)
 
     def solve(self, forces: Complex, given: Complex) -> ClassSolution:
-        """Answer to what acts on the gears of each mesh (n_meshes, 2, n) and on the freedoms (n_dofs, n) [N m]."""
+        """Answer to what acts on the gears of each mesh (n_meshes, 2, n) and on bodies and rows (n_loads, n) [N m]."""
         acting = forces
         for step in range(ANGLE_STEPS + 1):
             torque = given.copy()

@@ -98,9 +98,7 @@ class _Cycle:
         self.number = number
         classes = np.arange(cells // 2 + 1) / cells
         omega = np.concatenate([loop.omega(residue, self.reach) for residue in classes])
-        receptance = loop.receptance(omega, loop.bodies).reshape(
-            classes.size, number.size, *2 * (loop.bodies.size,)
-        )
+        receptance = loop.receptance(omega).reshape(classes.size, number.size, *2 * (loop.bodies.size,))
         self.systems = [HillSystem(loop, *of_class) for of_class in zip(classes, repeat(tangent), receptance)]
         self.first = np.zeros((classes.size, len(loop.ideal), 2, number.size), complex)
         for m, side in gears:

@@ -1,7 +1,9 @@
 """Where the coupling loop starts: all of the rig at room temperature, its oil as it is fed."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
+from dynamics.bearing.protocol import BearingState
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_seats import initial_seats
 from rigdesign.coupling.braced_loop import first_torques
@@ -16,10 +18,12 @@ FIRST_SUMP_RISE = 40.0
 """First guess of a sump that finds its own temperature, above room temperature [K]; the loop leaves it behind."""
 
 
-def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
+def initial_state(
+    rig: Rig, point: OperatingPoint, bearings: Callable[..., dict[str, BearingState]] = solve_bearings
+) -> CouplingState:
     """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses.
 
-    Elastic shafts already stand in their turning bearings.
+    Elastic shafts already stand in their turning bearings; bearings : solves these, as `solve_bearings`
     """
     case = rig.case
     names = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
@@ -49,7 +53,7 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
         return state
     as_set = warm_misalignment(rig, {})
     state = replace(state, coupling_offset=as_set.offset, coupling_angle=as_set.angle)
-    placements = mesh_placements(rig, point, state, solve_bearings(rig, point, state))
+    placements = mesh_placements(rig, point, state, bearings(rig, point, state))
     return replace(
         state,
         centre_distance={

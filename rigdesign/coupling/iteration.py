@@ -80,7 +80,7 @@ class PointProblem:
         freeze: frozenset[str] = frozenset(),
     ) -> "PointProblem":
         """The problem of a rig that is braced in its initial state."""
-        initial = initial_state(rig, point)
+        initial = initial_state(rig, point, parts.bearings)
         bracing = None
         power = rig.case.drivetrain
         if power is not None and power.bracing.mode == "torque_controlled":

@@ -1,5 +1,6 @@
 """What a rig offers to measure: the places of every quantity, and the orders its tooth numbers make."""
 
+import re
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
@@ -29,7 +30,7 @@ class Places:
     def of(self, quantity: str) -> tuple[str, ...]:
         """Places where a channel or setting of this quantity can sit; empty when the rig has none.
 
-        Of ``natural_frequency`` the first three; any higher number is one, too.
+        Of ``natural_frequency`` the first three; any higher number and the name of a mode is one, too (`is_mode`).
         """
         power = self._case.drivetrain
         known = {
@@ -46,6 +47,19 @@ class Places:
             "seal_gap": self.seals,
         }
         return known.get(quantity, ())
+
+    def is_mode(self, place: str) -> bool:
+        """Whether a place is the number of a torsional natural frequency, or a mode named by how it moves.
+
+        ``3`` or ``torsional 3``, ``lateral test_pinion 1``, ``axial test_pinion 1``, ``housing 2``.
+        """
+        name, _, number = place.rpartition(" ")
+        if not re.fullmatch(r"[1-9][0-9]{0,3}", number):
+            return False
+        kind, _, shaft = name.partition(" ")
+        if kind in ("lateral", "axial", "torsion"):
+            return shaft in self.of("angle")
+        return name in ("", "torsional", "housing")
 
     def _driven(self, *places: str) -> tuple[str, ...]:
         """Places that need a power circuit."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.errors import DynamicsNotConverged
@@ -34,7 +35,7 @@ class ExactMotion:
     """Torques of the meshes over one cycle.
 
     speed : of the first pinion [rad/s]; turns : of it in the cycle; phi : (n,) its mean angle [rad]
-    dofs : (n_bodies,) freedoms of the gears; torque : (n_bodies, n) on them [N m]
+    dofs : (n_bodies,) freedoms of the gears, of ``size`` in all; torque : (n_bodies, n) on them [N m]
     twist [rad], drive [N m]
     """
 
@@ -42,6 +43,7 @@ class ExactMotion:
     turns: float
     phi: Array
     dofs: Integers
+    size: int
     torque: Array
     twist: float
     drive: float
@@ -50,10 +52,9 @@ class ExactMotion:
         """Loads at an order of the first pinion; zero if the cycle does not hold it."""
         whole = abs(order * self.turns - round(order * self.turns)) < 1e-6
         wave = np.exp(-1j * order * self.phi) / self.phi.size if whole else np.zeros(self.phi.size, complex)
-        return OrderLoads(
-            order=order, omega=order * self.speed, dofs=self.dofs,
-            torque=np.asarray(self.torque @ wave * (2.0 if order else 1.0), complex),
-        )  # fmt: skip
+        torque = np.zeros(self.size, complex)
+        torque[self.dofs] = self.torque @ wave * (2.0 if order else 1.0)
+        return OrderLoads(order=order, omega=order * self.speed, torque=torque)
 
 
 def exact_motion(
@@ -68,16 +69,15 @@ def exact_motion(
     laws : of the meshes of ``loop`` as they are braced; march : take the one or the other
     Raises DynamicsNotConverged if neither converges.
     """
-    assert rig.system is not None
     point, setting = loop.point, loop.bracing
     controlled = setting.mode == "torque_controlled"
     torque, twist = (signed_torque(rig, point), None) if controlled else (None, setting.twist)
     speed = rig.pinion_speed(point.speed)
     if march is None:
-        march = mesh_cells(port_model(rig.system, laws), "hunting_cycle", 0)[0] > MOST_CELLS
+        march = mesh_cells(port_model(loop.system, laws), "hunting_cycle", 0)[0] > MOST_CELLS
     if not march:
         curve = periodic_response(
-            rig.system,
+            loop.system,
             laws,
             [speed],
             LoopLoad(torque=torque, twist=twist),
@@ -90,9 +90,9 @@ def exact_motion(
             found = curve.points[0]
             wave = found.wave
             motion = _MeshMotion(wave.time, wave.angle, wave.approach, wave.omega_1, wave.omega_2)
-            return _over_cycle(rig, laws, speed, motion, (found.twist, found.drive_torque))
+            return _over_cycle(loop.system, laws, speed, motion, (found.twist, found.drive_torque))
     marched = periodic_by_time(
-        rig.system,
+        loop.system,
         laws,
         speed=speed,
         drag_torques=loop.drags,
@@ -106,7 +106,7 @@ def exact_motion(
     radius_1, radius_2 = np.array([(law.base_radius_1, law.base_radius_2) for law in laws]).T[..., None]
     omega_2 = (radius_1 * marched.omega_1 - marched.approach_rate) / radius_2
     motion = _MeshMotion(marched.time, marched.angle_1, marched.approach, marched.omega_1, omega_2)
-    return _over_cycle(rig, laws, speed, motion, (marched.twist, marched.drive_torque))
+    return _over_cycle(loop.system, laws, speed, motion, (marched.twist, marched.drive_torque))
 
 
 class _MeshMotion(NamedTuple):
@@ -123,15 +123,18 @@ class _MeshMotion(NamedTuple):
 
 
 def _over_cycle(
-    rig: Rig, laws: Sequence[MeshLaw], speed: float, motion: _MeshMotion, held: tuple[float, float]
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    speed: float,
+    motion: _MeshMotion,
+    held: tuple[float, float],
 ) -> ExactMotion:
     """Torques on the gear bodies along a motion.
 
     held : bracing twist [rad] and motor torque [N m]
     """
-    assert rig.system is not None
     torque: dict[int, Array] = {}
-    for m, (law, ports) in enumerate(zip(laws, rig.system.mesh_ports.tolist())):
+    for m, (law, ports) in enumerate(zip(laws, system.mesh_ports.tolist())):
         reaction = evaluate_mesh(law, *(values[m] for values in motion[1:]))
         for dof, wave in zip(ports, (reaction.torque_1, reaction.torque_2)):
             torque[dof] = torque[dof] + wave if dof in torque else wave
@@ -140,5 +143,6 @@ def _over_cycle(
     step = float(time[1] - time[0])
     return ExactMotion(
         speed=speed, turns=speed * step * time.size / (2.0 * pi), phi=start + speed * time,
-        dofs=np.array(list(torque), np.int64), torque=np.array(list(torque.values())), twist=held[0], drive=held[1],
+        dofs=np.array(list(torque), np.int64), size=len(system.inertia), torque=np.array(list(torque.values())),
+        twist=held[0], drive=held[1],
     )  # fmt: skip

@@ -1,37 +1,48 @@
 """What the sensors of a rig would read: the solve of a check at single operating points."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from dynamics.elastic_rig.mode_names import NamedMode
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import solve_point
 from rigdesign.prediction.model import (
+    OWN_MODEL,
     STANDING_QUANTITIES,
     Channel,
     OperatingCondition,
     Prediction,
+    PredictionModel,
     features_of,
 )
-from rigdesign.prediction.operating import operating_point, rig_at, torsional
+from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.readings import readings
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.prediction.static_tests import standing_modes, standing_value
+from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
 
+ModesAtRest = Callable[[Rig], Sequence[NamedMode]]
+"""Finds the modes of a rig at rest."""
+
 
 def predict_full(
-    case: Case, settings: Sequence[OperatingCondition], channels: Sequence[Channel], fidelity: Fidelity
+    case: Case,
+    settings: Sequence[OperatingCondition],
+    channels: Sequence[Channel],
+    fidelity: Fidelity,
+    circuit: PredictionModel = OWN_MODEL,
 ) -> Prediction:
     """What the channels would read by the full thermal model; see `rigdesign.prediction.predict.predict`."""
     check_names(settings, channels)
     with solver_errors(case), threadpool_limits(limits=1), one_thread():
-        rig = torsional(build_rig(case, fidelity))
+        rig = modelled_rig(case, fidelity, circuit)
         values = list(_at_points(rig, settings, channels)) + standing_values(rig, channels)
     return Prediction(features=features_of(settings, channels), values=np.array(values, dtype=np.float64))
 
@@ -54,15 +65,15 @@ def _at_points(rig: Rig, settings: Sequence[OperatingCondition], channels: Seque
     return values
 
 
-def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
-    """Numbers of the channels of the rig at rest, in their order."""
+def standing_values(
+    rig: Rig, channels: Iterable[Channel], modes_of: ModesAtRest = standing_modes
+) -> list[float]:
+    """Numbers of the channels of the rig at rest, in their order; modes_of : finds its modes, as `standing_modes`."""
     standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
     if not standing:
         return []
-    from rigdesign.prediction.static_tests import standing_modes, standing_value
-
     oscillating = any(channel.quantity == "natural_frequency" for channel in standing)
-    modes = standing_modes(rig) if oscillating else ()
+    modes = modes_of(rig) if oscillating else ()
     return [standing_value(rig, channel, modes) for channel in standing]
 
 

@@ -1,12 +1,15 @@
 """A converged point whose loop changes in nothing but what brakes it: drags and the friction of its teeth.
 
 Those move torques by a per cent or less, so that the changes of the periodic response with each of them, found once,
-add up. What leaves loop, bracing and flanks alone (losses, oil, flows, films) then needs no response of its own.
+add up. Of shafts that bend the same holds for small changes of their films (`LinearisedFilms`) and for what these do to
+the twist of the bracing. What leaves loop and flanks alone (losses, oil, flows, films) then needs no response of its
+own.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +18,7 @@ from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, signed_torque
 from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.mesh_models import MeshModel
+from rigdesign.prediction.linearised_films import WAYS, Film, LinearisedFilms
 from rigdesign.prediction.model import ORDER_QUANTITIES
 from rigdesign.prediction.readings import Readings
 from rigdesign.rig.model import Rig
@@ -30,7 +34,12 @@ LEAST_FRICTION = 0.01
 """Friction coefficient of which that share is taken at least."""
 
 Cause = tuple[str, str]
-"""``drag`` and a place of the drivetrain, or ``friction`` and a mesh."""
+"""``drag`` and a place of the drivetrain, ``friction`` and a mesh, ``bracing`` and its ``twist`` or ``shift``, or one
+of `rigdesign.prediction.linearised_films.WAYS` and a bearing."""
+BRACING_STEP = 1e-3
+"""Share of a twist or shift over which a difference is taken."""
+MOST_BRACING = 1e-2
+"""Share of it up to which the difference serves."""
 
 
 class LinearisedDrag:
@@ -51,13 +60,25 @@ class LinearisedDrag:
         self._orders = [reading for channel, reading in reads if channel.quantity in ORDER_QUANTITIES]
         self.sensitivities = dict(sensitivities or {})
 
-    def causes(self, rig: Rig, circuit: LoadedCircuit) -> dict[Cause, float] | None:
-        """By how much drags [N m] and frictions differ; None where more than they do."""
+    @cached_property
+    def films(self) -> LinearisedFilms | None:
+        """Bearings near those of the point; None for shafts that only twist, or without a power circuit."""
+        if self.problem.bracing is None or self.problem.rig.shaft_model == "torsional":
+            return None
+        return LinearisedFilms(self.problem, self.last)
+
+    def causes(
+        self, rig: Rig, circuit: LoadedCircuit, films: Mapping[Film, float] | None = None
+    ) -> dict[Cause, float] | None:
+        """By how much drags [N m], frictions, films and bracing differ; None where more than they do.
+
+        films : changes of the bearings that the system of the circuit leaves out
+        """
         own_rig, last = self.problem.rig, self.last
         point, models, drags = circuit.point, circuit.models, circuit.drags
         if (
             circuit.system is not last.system
-            or not _same_bracing(circuit.bracing, self.problem.bracing)
+            or not self._near_bracing(circuit.bracing)
             or rig.pinion_speed(point.speed) != own_rig.pinion_speed(last.point.speed)
             or signed_torque(rig, point) != signed_torque(own_rig, last.point)
             or not all(_alike(model.law, own.law) for model, own in zip(models, last.models))
@@ -68,6 +89,11 @@ class LinearisedDrag:
             found["drag", place] = drags.get(place, 0.0) - last.drags.get(place, 0.0)
         for model, own in zip(models, last.models):
             found["friction", model.name] = model.law.friction - own.law.friction
+        found |= {(way, bearing): size for (bearing, way), size in (films or {}).items()}
+        if self.films is not None and self.problem.bracing is not None:
+            own_bracing = self.problem.bracing
+            found["bracing", "twist"] = circuit.bracing.twist - own_bracing.twist
+            found["bracing", "shift"] = circuit.bracing.shift - own_bracing.shift
         return {cause: size for cause, size in found.items() if size != 0.0}
 
     def response(self, causes: Mapping[Cause, float]) -> CurvePoint:
@@ -111,10 +137,13 @@ class LinearisedDrag:
     def _sensitivity(self, kind: str, place: str) -> FloatArray:
         """(2, n) first derivative by a drag [N m] or a friction coefficient, and half the second."""
         last = self.last
+        if kind == "bracing":
+            return self._one_sided(*self._braced(place))
+        if kind in WAYS:
+            return self._of_film(place, kind)
         if kind == "drag":
             more = {**last.drags, place: last.drags.get(place, 0.0) + DRAG_STEP}
-            first = (self._solved(last.models, more) - self._base) / DRAG_STEP
-            return np.stack([first, np.zeros_like(first)])
+            return self._one_sided(self._solved(last.models, more), DRAG_STEP)
         number = [model.name for model in last.models].index(place)
         stated = last.models[number].law.friction
         step = FRICTION_STEP * max(stated, LEAST_FRICTION)
@@ -125,12 +154,44 @@ class LinearisedDrag:
         ]
         return np.linalg.solve(np.stack([sizes, sizes**2], axis=1), np.array(moved))
 
+    def _of_film(self, bearing: str, way: str) -> FloatArray:
+        """(2, n) derivatives by the share of a step of a bearing, from both sides."""
+        assert self.films is not None
+        less, more = (
+            self._in_loop(system=self.films.system((bearing, way), share)) - self._base
+            for share in (-1.0, 1.0)
+        )
+        return np.stack([0.5 * (more - less), 0.5 * (more + less)])
+
+    def _one_sided(self, moved: FloatArray, step: float) -> FloatArray:
+        """(2, n) first derivative by one difference."""
+        first = (moved - self._base) / step
+        return np.stack([first, np.zeros_like(first)])
+
+    def _braced(self, kind: str) -> tuple[FloatArray, float]:
+        """Numbers with another twist [rad] or shift [m], and by how much it differs."""
+        own = self.problem.bracing
+        assert own is not None
+        if kind == "twist":
+            step = BRACING_STEP * own.twist
+            return self._in_loop(bracing=replace(own, twist=own.twist + step)), step
+        step = BRACING_STEP * own.shift
+        return self._in_loop(bracing=replace(own, shift=own.shift + step)), step
+
+    def _near_bracing(self, setting: BracingState) -> bool:
+        """Whether a bracing is that of the point; of shafts that bend, or nearly."""
+        near = SAME_BRACING if self.films is None else MOST_BRACING
+        return _same_bracing(setting, self.problem.bracing, near)
+
     def _solved(self, models: tuple[MeshModel, ...], drags: Mapping[str, float]) -> FloatArray:
-        problem, last = self.problem, self.last
-        assert problem.bracing is not None and last.system is not None
-        circuit = LoadedCircuit(last.point, models, drags, problem.bracing, last.system)
-        response = problem.parts.response(problem.rig, circuit)
-        return self._numbers(replace(last, models=models, drags=drags, response=response))
+        return self._in_loop(models=models, drags=drags)
+
+    def _in_loop(self, **changed: Any) -> FloatArray:
+        """Numbers of the loop of the point with some fields of its `IterationResult` changed."""
+        problem = self.problem
+        last = replace(self.last, **{"bracing": problem.bracing, **changed})
+        response = problem.parts.response(problem.rig, last.loop)
+        return self._numbers(replace(last, response=response))
 
     def _numbers(self, done: IterationResult) -> FloatArray:
         """Mean torques, losses, drive torque and orders."""
@@ -148,12 +209,12 @@ def _rubbed(models: tuple[MeshModel, ...], number: int, friction: float) -> tupl
     return (*models[:number], changed, *models[number + 1 :])
 
 
-def _same_bracing(setting: BracingState, own: BracingState | None) -> bool:
-    """Whether two bracings are the same but for rounding."""
+def _same_bracing(setting: BracingState, own: BracingState | None, near: float) -> bool:
+    """Whether two bracings are the same but for a share."""
     if own is None or setting.mode != own.mode:
         return False
     pairs = (setting.twist, own.twist), (setting.shift, own.shift)
-    return all(abs(one - other) <= SAME_BRACING * abs(other) for one, other in pairs)
+    return all(abs(one - other) <= near * abs(other) for one, other in pairs)
 
 
 def _alike(law: MeshLaw, own: MeshLaw) -> bool:

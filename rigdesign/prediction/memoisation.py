@@ -1,10 +1,12 @@
-"""Memoised parts of an iteration: bearing films, meshes, responses and bracing whose inputs were met before.
+"""Memoised parts of an iteration: bearing films, meshes, matrices of the circuit, responses and bracing met before.
 
 A memoised part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
 nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
 within a tenth of a picometre: the mean over teeth that deviate is zero only to rounding.
 """
 
+import hashlib
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +14,7 @@ import numpy as np
 
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.elastic_rig.mode_names import NamedMode
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
@@ -25,17 +28,27 @@ from rigdesign.coupling.braced_loop import (
     shifted_laws,
     signed_torque,
 )
-from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts
+from rigdesign.coupling.loop_system import loop_system, running_state
 from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.mesh_friction import mesh_friction
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_model, mesh_phase
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.prediction.static_tests import modes_at_rest, rig_at_rest
 from rigdesign.rig.model import Rig
+from thermal.fe.mesh import FloatArray
 
-MOST = {"films": 20000, "meshes": 2000, "responses": 1000, "bracings": 1000}
+MOST = {
+    "films": 20000,
+    "meshes": 2000,
+    "responses": 1000,
+    "bracings": 1000,
+    "modes at rest": 1000,
+    "elastic systems": 60,
+    "elastic responses": 60,
+}
 """Entries kept of each kind; all of a kind are forgotten when one more comes."""
 SAME_GAP = 13
 """Decimal places of a gap [m] that count."""
@@ -50,7 +63,9 @@ class Memoisation:
     @property
     def parts(self) -> IterationParts:
         """The memoised parts of an iteration."""
-        return IterationParts(models=self.models, bearings=self.bearings, response=self.response)
+        return IterationParts(
+            models=self.models, bearings=self.bearings, system=self.system, response=self.response
+        )
 
     def bearings(
         self, rig: Rig, point: OperatingPoint, coupling_state: CouplingState
@@ -86,25 +101,63 @@ class Memoisation:
         law = law._replace(friction=along, damping=damped[0], damping_acts_on=damped[1])
         return replace(model, friction=friction, law=law)
 
-    def bracing(self, rig: Rig, point: OperatingPoint) -> BracingState | None:
+    def system(
+        self,
+        rig: Rig,
+        point: OperatingPoint,
+        coupling_state: CouplingState,
+        bearings: Mapping[str, BearingState],
+    ) -> LinearSystem:
+        """As `loop_system`."""
+        if rig.shaft_model == "torsional":
+            return loop_system(rig, point, coupling_state, bearings)
+        state = running_state(rig, point, coupling_state, bearings)
+        key = (
+            id(rig.elastic),
+            state.speed,
+            tuple(
+                (name, one.stiffness.tobytes(), one.damping.tobytes()) for name, one in state.bearings.items()
+            ),
+            tuple(state.torques.items()),
+        )
+        known = self._room("elastic systems")
+        if key not in known:
+            known[key] = rig.elastic, rig.elastic.seen.system(state)
+        found: LinearSystem = known[key][1]
+        return found
+
+    def bracing(self, rig: Rig, point: OperatingPoint, initial: CouplingState) -> BracingState | None:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
-        initial = initial_state(rig, point)
-        assert rig.system is not None
         models = self.models(rig, point, initial)
+        system = self.system(rig, point, initial, self.bearings(rig, point, initial))
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
         key = (
-            rig.system.stiffness.tobytes(),
-            rig.system.twist_load.tobytes(),
+            _digest(system.stiffness, system.twist_load),
             tuple(map(law_key, at_rest)),
             signed_torque(rig, point),
             rig.case.drivetrain.bracing,
         )
         known = self._room("bracings")
         if key not in known:
-            known[key] = brace_initial(rig, point, initial, models)
+            known[key] = brace_initial(rig, point, initial, models, system)
         found: BracingState = known[key]
+        return found
+
+    def standing_modes(self, rig: Rig) -> tuple[NamedMode, ...]:
+        """As `rigdesign.prediction.static_tests.standing_modes`."""
+        rest = rig_at_rest(rig, self.parts)
+        system = rest.system
+        key = (
+            _digest(system.inertia, system.damping, system.stiffness),
+            tuple(map(law_key, rest.laws)),
+            signed_torque(rig, rest.point),
+        )
+        known = self._room("modes at rest")
+        if key not in known:
+            known[key] = modes_at_rest(rig, rest)
+        found: tuple[NamedMode, ...] = known[key]
         return found
 
     def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
@@ -120,7 +173,7 @@ class Memoisation:
             rig.case.numerics.response_period,
             tuple(circuit.drags.items()),
         )
-        known = self._room("responses")
+        known = self._room("responses" if rig.shaft_model == "torsional" else "elastic responses")
         if key not in known:
             known[key] = circuit.system, respond(rig, circuit)
         found: tuple[LinearSystem, CurvePoint] = known[key]
@@ -132,6 +185,11 @@ class Memoisation:
         if len(known) >= MOST[kind]:
             known.clear()
         return known
+
+
+def _digest(*matrices: FloatArray) -> bytes:
+    """What matrices are known by."""
+    return hashlib.sha256(b"".join(matrix.tobytes() for matrix in matrices)).digest()
 
 
 def shape_key(

@@ -7,6 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
+
 Quantity = Literal[
     "temperature",
     "oil_outlet_temperature",
@@ -19,6 +21,24 @@ Quantity = Literal[
     "seal_gap",
 ]
 Part = Literal["value", "real", "imaginary"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PredictionModel:
+    """Shafts and teeth of the power circuit in a prediction.
+
+    shafts : that only twist, or that bend on their bearings in six degrees of freedom; None as the case says
+    teeth : tooth model of the meshes; None as a check of the same fidelity has it, at ``quick`` the analytic one
+    """
+
+    shafts: ShaftModel | None = None
+    teeth: MeshStiffness | None = None
+
+
+OWN_MODEL = PredictionModel()
+"""What the case asks for."""
+TORSIONAL = PredictionModel(shafts="torsional")
+"""The quick variant: shafts that only twist."""
 
 ORDER_QUANTITIES = frozenset({"torque", "angle"})
 """Quantities that are read as a mean and complex orders of the rotating shaft."""
@@ -51,9 +71,9 @@ class Channel:
 
     place : of ``temperature`` a surface or body of a housing, ``test.outer_warm``, or the gearbox alone where
         ``at`` gives coordinates; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
-        coupling; of ``angle`` a shaft; of ``natural_frequency`` its number from 1, rig at rest; of ``backlash``
-        a mesh, ``test.main``; of ``seal_gap`` a seal as results name it; of ``motor_power`` and
-        ``drive_torque`` the motor
+        coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
+        or the name of any mode (`dynamics.elastic_rig.mode_names`); of ``backlash`` a mesh, ``test.main``; of
+        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor
     """
 
     name: str

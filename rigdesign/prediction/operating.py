@@ -7,24 +7,22 @@ a copy of the tree without validating the rest of the case again.
 from dataclasses import replace
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import OperatingCondition
+from rigdesign.prediction.model import OperatingCondition, PredictionModel
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+from rigdesign.rig.reuse import HOUSINGS, TWISTING, same_housings, share_elastic, take_over
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
 UNMOVED = (
     *HOUSINGS,
+    *TWISTING,
     "geometries",
     "speed_ratios",
-    "drivetrain",
     "mesh_forces",
-    "twisting",
-    "system",
-    "joints",
 )
 """Cached parts of a rig that no setting of an operating point touches."""
 
@@ -46,7 +44,8 @@ def rig_at(rig: Rig, setting: OperatingCondition) -> Rig:
     if case is rig.case:
         return rig
     placed = replace(rig, case=case)
-    return take_over(placed, rig, UNMOVED)
+    bending = ("axes", "elastic") if rig.shaft_model == "elastic" else ()
+    return take_over(placed, rig, (*UNMOVED, *bending))
 
 
 def case_at(case: Case, setting: OperatingCondition) -> Case:
@@ -72,9 +71,25 @@ def case_at(case: Case, setting: OperatingCondition) -> Case:
     return case.model_copy(update=update) if update else case
 
 
-def torsional(rig: Rig) -> Rig:
-    """The rig that channels are predicted with: shafts that only twist, whatever the case asks for."""
-    return replace(rig, shaft_model="torsional")
+def modelled_rig(case: Case, fidelity: Fidelity, model: PredictionModel) -> Rig:
+    """The rig that channels are predicted with; without the unbalance that a balance grade leaves, whose angles are
+    unknown.
+
+    Raises
+    ------
+    CaseError, ValueError
+        As `build_rig`.
+    """
+    rig = build_rig(case, fidelity)
+    power = case.drivetrain
+    if power is None:
+        return rig
+    return replace(
+        rig,
+        shaft_model=model.shafts or power.shaft_model,
+        mesh_stiffness=model.teeth or rig.mesh_stiffness,
+        residual_unbalance=False,
+    )
 
 
 def like(stated: Rig, case: Case) -> Rig:
@@ -87,11 +102,19 @@ def like(stated: Rig, case: Case) -> Rig:
     """
     if case is stated.case:
         return stated
-    rig = replace(build_rig(case, stated.fidelity), shaft_model=stated.shaft_model)
+    rig = replace(
+        build_rig(case, stated.fidelity),
+        shaft_model=stated.shaft_model,
+        mesh_stiffness=stated.mesh_stiffness,
+        tooth_influence=stated.tooth_influence,
+        residual_unbalance=stated.residual_unbalance,
+    )
     if same_housings(rig, stated):
         take_over(rig, stated, HOUSINGS)
     if rig.drivetrain == stated.drivetrain:
-        take_over(rig, stated, ("drivetrain", "twisting", "system", "joints"))
+        take_over(rig, stated, TWISTING)
+    if rig.shaft_model == "elastic":
+        share_elastic(rig, stated)
     return rig
 
 

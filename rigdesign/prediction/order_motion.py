@@ -9,13 +9,16 @@ import numpy as np
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.periodic_load import within_period
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import DeviationResponse, OrderLoads, OrderTorque
+from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.periodic_response import period_length
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws, signed_torque
-from rigdesign.coupling.mesh_models import MeshModel
+from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.prediction.exact_orders import ExactMotion
 from rigdesign.prediction.order_places import OscillatingTorque
 from rigdesign.rig.model import Rig
@@ -29,10 +32,9 @@ def ideal_response(rig: Rig, loop: LoadedCircuit) -> CurvePoint:
 
     Raises DynamicsNotConverged.
     """
-    assert rig.system is not None
     controlled = loop.bracing.mode == "torque_controlled"
     curve = periodic_response(
-        _without_periodic_loads(rig.system),
+        _without_periodic_loads(loop.system),
         [alike_teeth(law) for law in shifted_laws(rig, loop.models, loop.bracing)],
         [rig.pinion_speed(loop.point.speed)],
         LoopLoad(
@@ -53,9 +55,19 @@ def ideal_response(rig: Rig, loop: LoadedCircuit) -> CurvePoint:
     return found
 
 
-def is_ideal(rig: Rig) -> bool:
-    """Whether the response of an iteration is the ideal one: it takes all teeth alike where it runs over one mesh."""
-    return rig.case.numerics.response_period == "mesh" and not (rig.system and rig.system.periodic_loads)
+def is_ideal(rig: Rig, loop: LoadedCircuit) -> bool:
+    """Whether the response of an iteration is the ideal one: it takes all teeth alike where it runs over one mesh, and
+    leaves out what turns with a shaft where no order of it repeats from mesh to mesh."""
+    if rig.case.numerics.response_period != "mesh":
+        return False
+    loads = loop.system.periodic_loads
+    if not loads:
+        return True
+    laws = laws_of(loop.models)
+    ratios = pinion_ratios(loop.system, laws)
+    pinions = [float(ratios[port]) for port in loop.system.mesh_ports[:, 0]]
+    held = within_period(loads, ratios, period_length(laws, pinions, "mesh"))
+    return not any(load.parts for load in held)
 
 
 def _without_periodic_loads(system: LinearSystem) -> LinearSystem:
@@ -111,11 +123,8 @@ class DeviatingMotion:
     def loads(self, orders: Sequence[float], torques: Sequence[OscillatingTorque]) -> Sequence[OrderLoads]:
         """Loads of the meshes and of the oscillating torques."""
         acting = [
-            OrderTorque(
-                dof=int(dof), order=torque.order, amplitude=torque.amplitude * float(torque.load[dof])
-            )
+            OrderTorque(load=torque.load, order=torque.order, amplitude=torque.amplitude)
             for torque in torques
-            for dof in np.flatnonzero(torque.load)
         ]
         return self.response.loads(orders, acting)
 
@@ -138,9 +147,4 @@ class CycleMotion:
         if not here:
             return loads
         whole = np.sum([torque.amplitude * torque.load for torque in here], axis=0)
-        dofs = np.flatnonzero(whole)
-        return replace(
-            loads,
-            dofs=np.concatenate([loads.dofs, dofs]),
-            torque=np.concatenate([loads.torque, whole[dofs]]),
-        )
+        return replace(loads, torque=loads.torque + whole)

@@ -1,4 +1,8 @@
-"""Where the channels of torque and angle read the drivetrain, and what they read of its loads."""
+"""Where the channels of torque and angle read the power circuit, and what they read of its loads.
+
+A place is a row over the freedoms of the linear system: of shafts that only twist its stations, of shafts that bend the
+freedoms of the reduced elastic rig (`dynamics.elastic_rig.seen_system`). Both measure turns in the running direction.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import TorsionalJoint
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.orders.deviation_response import OrderLoads
 from rigdesign.base.errors import UsageError
@@ -19,7 +22,9 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True)
 class OscillatingTorque:
-    """Torque of a motor or coupling that oscillates with a shaft: Re(amplitude load exp(i order phi)) on all freedoms.
+    """Load that oscillates with a shaft: Re(amplitude load exp(i order phi)) on all freedoms.
+
+    Torque of a motor or coupling; of shafts that bend, unbalance, bow, run-out and cross joints as well.
 
     name : of its part; order : per turn of the pinion of the first mesh; load : (n,) per unit
     """
@@ -30,33 +35,38 @@ class OscillatingTorque:
     load: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class InCoupling:
-    """Torque that a coupling transmits, positive where its first shaft is ahead."""
+    """Torque that a coupling transmits, positive where its first shaft is ahead.
 
-    joint: TorsionalJoint
+    row : (n,) its twist per freedom; stiffness [N m/rad], damping [N m s/rad]; twisted : it makes the bracing twist
+    """
+
+    name: str
+    row: Array
+    stiffness: float
+    damping: float
     twisted: bool
 
     def mean(self, windup: Array, twist: float) -> float:
         """Mean torque [N m] from the windup of all freedoms and the bracing twist [rad]."""
-        turned = float(windup[self.joint.dof_a] - windup[self.joint.dof_b])
-        return self.joint.stiffness * (turned - (twist if self.twisted else 0.0))
+        turned = float(self.row @ windup)
+        return self.stiffness * (turned - (twist if self.twisted else 0.0))
 
     def amplitude(self, motion: Complex, omega: float, torques: Sequence[OscillatingTorque]) -> complex:
-        """Complex torque [N m] from the angles of all freedoms (n,) [rad] at a frequency [rad/s].
+        """Complex torque [N m] from the motion of all freedoms (n,) at a frequency [rad/s].
 
         What the coupling itself adds between its ends is transmitted too.
         """
-        turned = motion[self.joint.dof_a] - motion[self.joint.dof_b]
-        sprung = (self.joint.stiffness + 1j * omega * self.joint.damping) * turned
-        return complex(sprung - sum(torque.amplitude for torque in torques if torque.name == self.joint.name))
+        sprung = (self.stiffness + 1j * omega * self.damping) * (self.row @ motion)
+        return complex(sprung - sum(torque.amplitude for torque in torques if torque.name == self.name))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class OfShaft:
-    """Angle of a place of a shaft beyond its uniform rotation."""
+    """Angle of a place of a shaft beyond its uniform rotation; row : (n,) its turn per freedom."""
 
-    dof: int
+    row: Array
 
     def mean(self, windup: Array, twist: float) -> float:
         """Zero: an encoder counts from where it stands."""
@@ -64,17 +74,14 @@ class OfShaft:
 
     def amplitude(self, motion: Complex, omega: float, torques: Sequence[OscillatingTorque]) -> complex:
         """Complex angle [rad]."""
-        return complex(motion[self.dof])
+        return complex(self.row @ motion)
 
 
 def motions(system: LinearSystem, loads: Sequence[OrderLoads]) -> Complex:
-    """One-sided amplitudes of the angles of all freedoms under the loads of orders above 0 (n_orders, n) [rad].
-
-    As `dynamics.orders.deviation_response.motion_orders`, of all orders at once.
-    """
+    """One-sided amplitudes of all freedoms under the loads of orders above 0 (n_orders, n) [rad]."""
     acting = np.zeros((len(system.inertia), len(loads)), complex)
     for column, one in zip(acting.T, loads):
-        np.add.at(column, one.dofs, one.torque)
+        column += one.torque
     form = system.form
     s = 1j * np.array([one.omega for one in loads])
     moved = form.velocity_shapes @ ((form.loads @ acting) / (s - form.poles[:, None]))
@@ -83,18 +90,31 @@ def motions(system: LinearSystem, loads: Sequence[OrderLoads]) -> Complex:
 
 def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft:
     """Where a channel of torque or angle reads; UsageError for a place that the drivetrain does not have."""
+    return _coupling(rig, channel) if channel.quantity == "torque" else _shaft_end(rig, channel)
+
+
+def _coupling(rig: Rig, channel: Channel) -> InCoupling:
+    drivetrain = rig.drivetrain
+    assert drivetrain is not None
+    for coupling in drivetrain.couplings:
+        if coupling.name == channel.place:
+            return InCoupling(
+                name=coupling.name,
+                row=_twist_row(rig, coupling.name),
+                stiffness=coupling.stiffness,
+                damping=coupling.damping,
+                twisted=drivetrain.bracing_coupling == coupling.name,
+            )
+    known = ", ".join(coupling.name for coupling in drivetrain.couplings) or "none"
+    raise UsageError(f"channel {channel.name!r}: {channel.place!r} is no coupling; there are {known}")
+
+
+def _shaft_end(rig: Rig, channel: Channel) -> OfShaft:
+    """The end that no coupling takes; the start, if both or none are free."""
     drivetrain, system = rig.drivetrain, rig.system
     assert drivetrain is not None and system is not None
-    if channel.quantity == "torque":
-        for joint in rig.joints:
-            if joint.kind == "coupling" and joint.name == channel.place:
-                return InCoupling(joint, drivetrain.bracing_coupling == joint.name)
-        known = ", ".join(coupling.name for coupling in drivetrain.couplings) or "none"
-        raise UsageError(f"channel {channel.name!r}: {channel.place!r} is no coupling; there are {known}")
     stations = [
-        i
-        for i, name in enumerate(system.dofs)
-        if name.rpartition("/")[0] == channel.place and name.endswith(" mm")
+        name for name in system.dofs if name.rpartition("/")[0] == channel.place and name.endswith(" mm")
     ]
     if not stations:
         known = ", ".join(shaft.name for shaft in drivetrain.shafts)
@@ -105,4 +125,27 @@ def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft:
         for shaft, end in zip(coupling.shafts, coupling.ends)
         if shaft == channel.place
     }
-    return OfShaft(stations[-1] if taken == {"left"} else stations[0])
+    return OfShaft(row=_turn_row(rig, stations[-1] if taken == {"left"} else stations[0]))
+
+
+def _twist_row(rig: Rig, coupling: str) -> Array:
+    """(n,) twist of a coupling, its first shaft ahead."""
+    if rig.shaft_model == "elastic":
+        seen = rig.elastic.seen
+        return seen.on_freedoms(seen.reduced.model.joint(coupling, "coupling").row("turn"))
+    assert rig.system is not None
+    row = np.zeros(len(rig.system.dofs))
+    for joint in rig.joints:
+        if joint.kind == "coupling" and joint.name == coupling:
+            row[joint.dof_a], row[joint.dof_b] = 1.0, -1.0
+    return row
+
+
+def _turn_row(rig: Rig, station: str) -> Array:
+    """(n,) turn of a station; shafts that bend are divided at the same ones."""
+    assert rig.system is not None
+    if rig.shaft_model == "elastic":
+        seen = rig.elastic.seen
+        names = np.array(seen.reduced.model.names)
+        return seen.on_freedoms(np.asarray(names == f"{station} turn", float))
+    return np.asarray(np.array(rig.system.dofs) == station, float)

@@ -86,9 +86,8 @@ class PointOrders:
         steps : corrections at most for what the contacts do beyond first order; 0 is the linear response about the
             motion with all teeth alike
         """
-        assert rig.system is not None and rig.drivetrain is not None
         self.rig, self.loop = rig, loop
-        self.system: LinearSystem = rig.system
+        self.system: LinearSystem = loop.system
         self.laws = shifted_laws(rig, loop.models, loop.bracing)
         self._base, self.exact, self.steps = base, exact, steps
         self._loads: dict[float, OrderLoads] = {}
@@ -122,12 +121,14 @@ class PointOrders:
 
     @cached_property
     def torques(self) -> tuple[OscillatingTorque, ...]:
-        """Torques that oscillate with a shaft, in turns of the first pinion and the phase of its mean angle."""
+        """Loads that oscillate with a shaft, in turns of the first pinion and the phase of its mean angle."""
+        speed = self.rig.pinion_speed(self.loop.point.speed)
         return tuple(
             OscillatingTorque(
                 name=torques.name,
                 order=part.order * float(self.ratios[torques.dof]),
-                amplitude=part.amplitude * complex(np.exp(-1j * part.phase)),
+                amplitude=part.at_speed(float(self.ratios[torques.dof]) * speed)
+                * complex(np.exp(-1j * part.phase)),
                 load=torques.load,
             )
             for torques in self.system.periodic_loads
@@ -171,8 +172,8 @@ class PointOrders:
         self.prepare([0.0])
         mean = self._loads[0.0]
         return mean_windup(
-            self.system, dict(zip(mean.dofs.tolist(), mean.torque.real.tolist())), twist=self.solved.twist,
-            drive=self.solved.drive, speed=self.solved.speed * self.ratios, drags=self.loop.drags,
+            self.system, mean.torque.real, twist=self.solved.twist, drive=self.solved.drive,
+            speed=self.solved.speed * self.ratios, drags=self.loop.drags,
         )  # fmt: skip
 
 

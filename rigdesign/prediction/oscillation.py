@@ -46,7 +46,8 @@ class OscillatingPart:
         """(f,) numbers of the channels of orders of a changed rig; zeros for the others."""
         last = self._converged.last
         models = self._memoisation.models(rig, last.point, last.coupling_state)
-        loop = replace(last.loop, models=models)
+        system = self._memoisation.system(rig, last.point, last.coupling_state, last.bearings)
+        loop = replace(last.loop, models=models, system=system)
         orders = shaft_orders(rig, loop, self._channels, base=self._ideal_motion(), steps=CORRECTIONS)
         read = []
         for feature in self._features:
@@ -58,6 +59,6 @@ class OscillatingPart:
         """The response of the point with all teeth alike and no oscillating torque."""
         if self._ideal is None:
             rig, last = self._converged.problem.rig, self._converged.last
-            own = last.response if is_ideal(rig) else None
+            own = last.response if is_ideal(rig, last.loop) else None
             self._ideal = own or ideal_response(rig, last.loop)
         return self._ideal

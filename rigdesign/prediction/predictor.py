@@ -11,18 +11,27 @@ from typing import Any, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from dynamics.drivetrain.modes import SEEN_GAIN
+from dynamics.elastic_rig.mode_names import NamedMode
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.prediction.changes import Changes, changed_case, only_warming
 from rigdesign.prediction.converged_point import TOLERANCE, converge_point
 from rigdesign.prediction.first_order import FirstOrderModel
-from rigdesign.prediction.full import check_names, standing_values
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition, features_of
+from rigdesign.prediction.full import check_names
+from rigdesign.prediction.model import (
+    ORDER_QUANTITIES,
+    OWN_MODEL,
+    Channel,
+    OperatingCondition,
+    PredictionModel,
+    features_of,
+)
 from rigdesign.prediction.operating import like, rig_at
 from rigdesign.prediction.oscillation import OscillatingPart
 from rigdesign.prediction.reduced_rig import ReducedRig
-from rigdesign.prediction.static_tests import standing_modes
+from rigdesign.prediction.static_tests import loaded_modes, standing_modes
 from rigdesign.rig.model import Rig
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
@@ -40,6 +49,7 @@ class Predictor:
     Parameters
     ----------
     case, settings, channels : as `predict`
+    circuit : shafts and teeth of the power circuit; left out, the shafts of the case
     fidelity : size of the models
 
     Attributes
@@ -61,10 +71,11 @@ class Predictor:
         settings: Iterable[OperatingCondition],
         channels: Iterable[Channel],
         *,
+        circuit: PredictionModel = OWN_MODEL,
         fidelity: Fidelity = "quick",
     ) -> None:
         self.case, self.settings, self.channels = case, tuple(settings), tuple(channels)
-        self.fidelity: Fidelity = fidelity
+        self.circuit, self.fidelity = circuit, fidelity
         check_names(self.settings, self.channels)
         self.features = features_of(self.settings, self.channels)
         if not self.settings:
@@ -72,7 +83,7 @@ class Predictor:
         _require_held_sumps(case)
         _require_no_own_fluids(case)
         with self._solving():
-            self._reduced = ReducedRig(case, self.settings, self.channels, fidelity)
+            self._reduced = ReducedRig(case, self.settings, self.channels, circuit, fidelity)
             self._points = self._reduced.converged_base()
             self.base = self._reduced.values(self._reduced.stated, self._reduced.rigs, self._points)
         self._start()
@@ -153,7 +164,7 @@ class Predictor:
             rest = sum(map(len, numbers))
             if all(found.same_loop for found in changed):
                 return np.concatenate([*numbers, self.base[rest:]])
-            return np.concatenate([*numbers, standing_values(made[0], self.channels)])
+            return np.concatenate([*numbers, self._reduced.standing_values(made[0])])
 
     def oscillating(self, changes: Changes) -> FloatArray:
         """(n_features,) linear prediction for a case whose change only oscillates: waves over the teeth, torques.
@@ -181,11 +192,21 @@ class Predictor:
                     part.base()
 
     def natural_frequencies(self) -> FloatArray:
-        """(k,) of the rig at rest, all of them, rising [rad/s]; none without a drivetrain."""
-        if self._reduced.stated.drivetrain is None:
+        """(k,) near which the orders of a torque are steep, rising [rad/s]; none without a drivetrain.
+
+        Of shafts that only twist all of the rig at rest; of shafts that bend those of the loop under the most torque of
+        all operating points, torsional ones and any other that a mesh excites by `SEEN_GAIN` or more.
+        """
+        stated = self._reduced.stated
+        if stated.drivetrain is None:
             return np.zeros(0)
         with self._solving():
-            return np.array([2.0 * np.pi * mode.frequency for mode in standing_modes(self._reduced.stated)])
+            if stated.shaft_model == "torsional":
+                modes = list(standing_modes(stated))
+            else:
+                point = max(self._points, key=lambda one: (abs(one.last.point.torque), one.last.point.speed))
+                modes = [one for one in loaded_modes(point.problem.rig, point.last.loop) if _excited(one)]
+            return np.array([2.0 * np.pi * mode.frequency for mode in modes])
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.
@@ -254,6 +275,7 @@ class Predictor:
             "case": self.case,
             "settings": self.settings,
             "channels": self.channels,
+            "circuit": self.circuit,
             "fidelity": self.fidelity,
             "base": self.base,
             "housings": self._reduced.housings.numbers(),
@@ -263,11 +285,11 @@ class Predictor:
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         """Make rig and points again; the numbers of the base are those that were sent."""
         self.case, self.settings, self.channels = state["case"], state["settings"], state["channels"]
-        self.fidelity, self.base = state["fidelity"], state["base"]
+        self.circuit, self.fidelity, self.base = state["circuit"], state["fidelity"], state["base"]
         self.features = features_of(self.settings, self.channels)
         with self._solving():
             self._reduced = ReducedRig(
-                self.case, self.settings, self.channels, self.fidelity, state["housings"]
+                self.case, self.settings, self.channels, self.circuit, self.fidelity, state["housings"]
             )
             self._points = self._reduced.converged_base(state["coupling_states"])
         self._start()
@@ -291,6 +313,11 @@ class Predictor:
         """Errors of the tool, linear algebra on one thread."""
         with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
             yield
+
+
+def _excited(mode: NamedMode) -> bool:
+    """Whether orders of torque rise near a mode."""
+    return mode.name.startswith("torsional ") or mode.mesh_gain >= SEEN_GAIN
 
 
 def _require_no_own_fluids(case: Case) -> None:

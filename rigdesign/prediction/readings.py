@@ -135,7 +135,7 @@ class _Orders:
     def at(self, rig: Rig, done: IterationResult) -> Mapping[tuple[str, float], complex]:
         """(channel, order) -> amplitude."""
         if self._known is None or self._known[0] is not done:
-            base = done.response if is_ideal(rig) else None
+            base = done.response if is_ideal(rig, done.loop) else None
             self._known = done, shaft_orders(rig, done.loop, self._channels, base=base)
         return self._known[1]
 

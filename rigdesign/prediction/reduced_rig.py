@@ -18,11 +18,11 @@ from rigdesign.prediction.converged_point import ConvergedPoint, converge_point
 from rigdesign.prediction.full import standing_values
 from rigdesign.prediction.housings import HousingNumbers, ReducedHousings
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.prediction.model import Channel, OperatingCondition
-from rigdesign.prediction.operating import operating_point, rig_at, torsional
+from rigdesign.prediction.model import Channel, OperatingCondition, PredictionModel
+from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.fe.mesh import FloatArray
 
@@ -48,11 +48,12 @@ class ReducedRig:
         case: Case,
         conditions: Sequence[OperatingCondition],
         channels: Sequence[Channel],
+        circuit: PredictionModel,
         fidelity: Fidelity,
         housings: Mapping[str, HousingNumbers] | None = None,
     ) -> None:
         self.conditions, self.channels = conditions, channels
-        self.stated = torsional(build_rig(case, fidelity))
+        self.stated = modelled_rig(case, fidelity, circuit)
         self.reads = readings(self.stated, channels)
         if housings is None:
             self.housings = ReducedHousings(self.stated, self._boundary_conditions(), self._sensors())
@@ -84,11 +85,12 @@ class ReducedRig:
     def changed_problem(self, rig: Rig, condition: OperatingCondition) -> PointProblem:
         """The coupled problem of a changed rig at an operating condition; its bracing is looked up where it was met."""
         here, point = rig_at(rig, condition), operating_point(condition)
+        initial = initial_state(here, point, self.memoisation.bearings)
         return PointProblem(
             rig=here,
             point=point,
-            initial=initial_state(here, point),
-            bracing=self.memoisation.bracing(here, point),
+            initial=initial,
+            bracing=self.memoisation.bracing(here, point, initial),
             parts=self._parts,
         )
 
@@ -98,7 +100,11 @@ class ReducedRig:
         for here, point in zip(rigs, points, strict=True):
             for _, read in self.reads:
                 numbers += read(here, point.last)
-        return np.array([*numbers, *standing_values(rig, self.channels)])
+        return np.array([*numbers, *self.standing_values(rig)])
+
+    def standing_values(self, rig: Rig) -> list[float]:
+        """Numbers of the channels of a rig at rest, in their order."""
+        return standing_values(rig, self.channels, self.memoisation.standing_modes)
 
     def _sensors(self) -> dict[str, list[Weights]]:
         """Temperature channels by gearbox."""

@@ -12,14 +12,17 @@ from itertools import islice
 
 import numpy as np
 
+from dynamics.bearing.protocol import BearingState
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import LoadedCircuit
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
-from rigdesign.coupling.state import CouplingState
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.state_vector import SCALES, numbering, scaled, unscaled
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
 from rigdesign.prediction.housings import ReducedField
 from rigdesign.prediction.linearised_drag import Cause, LinearisedDrag
+from rigdesign.prediction.linearised_films import Film
 from rigdesign.prediction.model import ORDER_QUANTITIES
 from rigdesign.prediction.order_motion import is_ideal
 from rigdesign.prediction.orders import Orders, shaft_orders
@@ -144,9 +147,11 @@ class PointSensitivities:
     def _iteration(self, problem: PointProblem, coupling_state: CouplingState) -> FirstOrder:
         """An iteration with what it hands on and what is read of it; the periodic response is linearised where the
         loop is nearly the same."""
-        loop = _LinearisedResponse(self.drag, problem)
-        parts = replace(problem.parts, response=loop.response)
+        loop = _LinearisedResponse(self.drag, problem, coupling_state)
+        parts = replace(problem.parts, system=loop.system, response=loop.response)
         done = run_iteration(replace(problem, parts=parts), coupling_state, self.last)
+        if loop.solved_system is not None:
+            done = replace(done, system=loop.solved_system)
         return FirstOrder(
             readings=self._read(problem.rig, done, loop.causes),
             unrelaxed=self._handed_on(problem, done),
@@ -173,7 +178,7 @@ class PointSensitivities:
         read = [channel for channel, _ in self._reads if channel.quantity in ORDER_QUANTITIES]
         if not read:
             return {}
-        ideal = done.response if is_ideal(rig) else None
+        ideal = done.response if is_ideal(rig, done.loop) else None
         return shaft_orders(rig, done.loop, read, base=ideal, exact=False)
 
 
@@ -184,16 +189,38 @@ def _coefficients(done: IterationResult) -> FloatArray:
 
 
 class _LinearisedResponse:
-    """The periodic response of one iteration: linearised where drag torques and friction alone differ."""
+    """The periodic response of one iteration: linearised where drag torques, friction and films alone differ."""
 
-    def __init__(self, drag: LinearisedDrag, problem: PointProblem) -> None:
-        self._drag, self._problem = drag, problem
+    def __init__(self, drag: LinearisedDrag, problem: PointProblem, coupling_state: CouplingState) -> None:
+        self._drag, self._problem, self._state = drag, problem, coupling_state
         self.causes: dict[Cause, float] | None = None
         """By how much they differ; None where the response was solved."""
+        self.solved_system: LinearSystem | None = None
+        """Of the circuit, where `system` gave that of the point and the response was solved all the same."""
+        self._films: dict[Film, float] | None = None
+        self._bearings: Mapping[str, BearingState] = {}
+
+    def system(
+        self,
+        rig: Rig,
+        point: OperatingPoint,
+        coupling_state: CouplingState,
+        bearings: Mapping[str, BearingState],
+    ) -> LinearSystem:
+        """As `rigdesign.coupling.loop_system.loop_system`; that of the point where its films alone differ a little."""
+        near, own = self._drag.films, self._drag.last.system
+        self._bearings = bearings
+        self._films = None if near is None else near.shares(rig, point, coupling_state, bearings)
+        if self._films is None or own is None:
+            return self._problem.parts.system(rig, point, coupling_state, bearings)
+        return own
 
     def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
         """As `rigdesign.coupling.braced_loop.respond`."""
-        self.causes = self._drag.causes(rig, circuit)
-        if self.causes is None:
-            return self._problem.parts.response(rig, circuit)
-        return self._drag.response(self.causes)
+        self.causes = self._drag.causes(rig, circuit, self._films)
+        if self.causes is not None:
+            return self._drag.response(self.causes)
+        if self._films:
+            self.solved_system = self._problem.parts.system(rig, circuit.point, self._state, self._bearings)
+            circuit = replace(circuit, system=self.solved_system)
+        return self._problem.parts.response(rig, circuit)

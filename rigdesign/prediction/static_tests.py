@@ -2,33 +2,42 @@
 
 The loop stands braced with its first torque, its journals on the shells: no film, no friction of rotation. The teeth
 carry by that torque alone, so that the mesh is as stiff as the pairs it presses together, mean over the places where
-the teeth may have come to rest.
+the teeth may have come to rest. Shafts that bend stand on what their bearings are at rest: a journal in the contact
+with its shell and the oil squeezed out of it, as `dynamics.bearing.journal_lateral` has it, rolling elements under
+their load.
+
+A natural frequency is asked for by the number of its torsional mode, ``3`` or ``torsional 3``, or by the name of any
+mode, ``lateral test_pinion 1`` (`dynamics.elastic_rig.mode_names`).
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modes import LoopMode, loop_modes
 from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.elastic_rig.mode_names import NamedMode, elastic_named_modes, torsional_modes
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.braced_loop import brace_initial, shifted_laws, signed_torque
+from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.mesh_models import mesh_models
+from rigdesign.coupling.iteration import SOLVED, IterationParts
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig
 
 HIGHEST_FREQUENCY = 20e3
 """Natural frequencies are counted up to here [Hz]."""
+NAMED = 6
+"""Modes that a message names at most."""
 
 
-def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None = None) -> float:
+def standing_value(rig: Rig, channel: Channel, modes: Sequence[NamedMode] | None = None) -> float:
     """Natural frequency [Hz] or circumferential backlash on the working pitch circle [m] of the rig at rest.
 
     modes : `standing_modes`, where they are known
@@ -36,7 +45,7 @@ def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None 
     Raises
     ------
     UsageError
-        A number beyond the natural frequencies, a mesh that the case does not have, another quantity.
+        A natural frequency that the rig does not have, a mesh that the case does not have, another quantity.
     NotConverged
         The standstill torque leaves the flanks open.
     """
@@ -45,13 +54,17 @@ def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None 
     if channel.quantity != "natural_frequency":
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is not measured on the rig at rest")
     modes = standing_modes(rig) if modes is None else modes
-    number = int(channel.place) if channel.place.isdecimal() else 0
-    if not 1 <= number <= len(modes):
-        raise UsageError(
-            f"channel {channel.name!r}: place = {channel.place!r}: natural frequencies at rest are counted from 1 to "
-            f"{len(modes)}"
-        )
-    return modes[number - 1].frequency
+    wanted = f"torsional {int(channel.place)}" if channel.place.isdecimal() else channel.place
+    for mode in modes:
+        if mode.name == wanted:
+            return mode.frequency
+    count = sum(mode.name.startswith("torsional ") for mode in modes)
+    others = [mode.name for mode in modes if not mode.name.startswith("torsional ")][:NAMED]
+    named = f"; other modes are {', '.join(others)}, ..." if others else ""
+    raise UsageError(
+        f"channel {channel.name!r}: place = {channel.place!r}: torsional natural frequencies at rest are counted from "
+        f"1 to {count}{named}"
+    )
 
 
 def assembly_backlash(rig: Rig, mesh: str) -> float:
@@ -61,34 +74,73 @@ def assembly_backlash(rig: Rig, mesh: str) -> float:
     return rig.pairs[mesh].transverse_backlash
 
 
-def standing_modes(rig: Rig) -> tuple[LoopMode, ...]:
+def standing_modes(rig: Rig) -> tuple[NamedMode, ...]:
     """Oscillating modes of the braced loop at rest, by rising frequency.
+
+    Raises UsageError for a case without drivetrain.
+    """
+    return modes_at_rest(rig, rig_at_rest(rig))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigAtRest:
+    """The rig at rest under its first torque: its meshes, all teeth alike, and the matrices of its power circuit."""
+
+    point: OperatingPoint
+    laws: tuple[MeshLaw, ...]
+    system: LinearSystem
+
+
+def rig_at_rest(rig: Rig, parts: IterationParts = SOLVED) -> RigAtRest:
+    """What the modes at rest depend on; parts : solve meshes, bearings and matrices.
 
     Raises UsageError for a case without drivetrain.
     """
     if rig.drivetrain is None:
         raise UsageError("natural frequencies need the drivetrain, which this case leaves out")
-    drivetrain = replace(
+    assert rig.system is not None
+    point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
+    initial = initial_state(rig, point, parts.bearings)
+    models = parts.models(rig, point, initial)
+    system = rig.system
+    if rig.shaft_model == "elastic":
+        system = parts.system(rig, point, initial, parts.bearings(rig, point, initial))
+    bracing = brace_initial(rig, point, initial, models, system)
+    laws = tuple(alike_teeth(law) for law in shifted_laws(rig, models, bracing))
+    return RigAtRest(point=point, laws=laws, system=system)
+
+
+def modes_at_rest(rig: Rig, rest: RigAtRest) -> tuple[NamedMode, ...]:
+    """Oscillating modes by rising frequency, meshes as stiff in the mean as the standstill torque makes them."""
+    assert rig.drivetrain is not None
+    laws = standing_laws(rig, rest)
+    undragged = replace(
         rig.drivetrain,
         bearings=tuple(replace(bearing, linear_drag=0.0) for bearing in rig.drivetrain.bearings),
     )
-    modes = loop_modes(drivetrain, standing_laws(rig), HIGHEST_FREQUENCY)
-    return tuple(mode for mode in modes if mode.frequency > 0.0)
+    twisting = assemble(undragged)
+    if rig.shaft_model == "torsional":
+        return torsional_modes(twisting, laws, HIGHEST_FREQUENCY)
+    seen = rig.elastic.seen
+    system = replace(rest.system, damping=rest.system.damping - seen.drag)
+    return elastic_named_modes(seen, system, laws, twisting, HIGHEST_FREQUENCY)
 
 
-def standing_laws(rig: Rig) -> list[MeshLaw]:
-    """Mesh laws of the rig at rest with the mean stiffness that the standstill torque makes, all teeth alike."""
+def loaded_modes(rig: Rig, loop: LoadedCircuit) -> tuple[NamedMode, ...]:
+    """Oscillating modes of the loop at an operating point, its bearings as they run there, by rising frequency."""
     assert rig.system is not None
-    point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
-    initial = initial_state(rig, point)
-    laws = [
-        alike_teeth(law)
-        for law in shifted_laws(rig, mesh_models(rig, point, initial), brace_initial(rig, point, initial))
-    ]
-    loop = port_model(rig.system, laws)
-    state = solve_static(loop, LoopLoad(torque=signed_torque(rig, point)))
+    laws = [alike_teeth(law) for law in shifted_laws(rig, loop.models, loop.bracing)]
+    if rig.shaft_model == "torsional":
+        return torsional_modes(loop.system, laws, HIGHEST_FREQUENCY)
+    return elastic_named_modes(rig.elastic.seen, loop.system, laws, rig.system, HIGHEST_FREQUENCY)
+
+
+def standing_laws(rig: Rig, rest: RigAtRest) -> list[MeshLaw]:
+    """Mesh laws of the rig at rest with the mean stiffness that the standstill torque makes."""
+    loop = port_model(rest.system, rest.laws)
+    state = solve_static(loop, LoopLoad(torque=signed_torque(rig, rest.point)))
     found = []
-    for m, (law, packed) in enumerate(zip(laws, loop.packed)):
+    for m, (law, packed) in enumerate(zip(rest.laws, loop.packed)):
         pinion = loop.pinions[m]
         angle = loop.ratios[pinion] * state.angles + state.ports[:, pinion]
         reaction = evaluate_mesh(packed, angle, state.approach[:, m], 0.0, 0.0)

@@ -38,6 +38,7 @@ from rigdesign.rig.resolution import (
     highest_mode,
     with_elements,
 )
+from rigdesign.rig.rotating_parts import without_residual_unbalance
 from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, shaft_axes
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
@@ -62,6 +63,7 @@ class Rig:
     shaft_model : of the power circuit; that of the case, torsional at fidelity quick
     tooth_influence : influence numbers of the cold gears, from the store or computed when they are asked for
     coarsening : of the loop, for estimates of its discretisation error
+    residual_unbalance : whether shafts that bend have what their balance grade leaves, at the worst angles
     """
 
     case: Case
@@ -73,6 +75,7 @@ class Rig:
     shaft_model: ShaftModel = "torsional"
     tooth_influence: ToothInfluence = field(default_factory=ToothInfluence)
     coarsening: Coarsening = AS_RULED
+    residual_unbalance: bool = True
 
     @cached_property
     def speed_ratios(self) -> Mapping[str, float]:
@@ -261,8 +264,9 @@ class Rig:
     def elastic(self) -> ElasticDrivetrain:
         """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
         assert self.drivetrain is not None
+        case = self.case if self.residual_unbalance else without_residual_unbalance(self.case)
         return ElasticDrivetrain(
-            rig=elastic_rig(self.case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
+            rig=elastic_rig(case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
             cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain))
             / self.coarsening.modes,

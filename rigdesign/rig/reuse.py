@@ -1,10 +1,17 @@
 """What one rig may take over from another: cached parts that the difference between their cases leaves as they are."""
 
+from dataclasses import fields
+
+import numpy as np
+
+from dynamics.elastic_rig.layout import ElasticRig, HousingSupport
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.rig.model import Rig
 
 HOUSINGS = ("models", "conduction", "chamber_views")
 """Cached parts of a rig that depend on geometry and materials of its housings alone, as ``expansion`` does."""
+TWISTING = ("drivetrain", "twisting", "system", "joints")
+"""Cached parts that depend on the parts of the power circuit alone."""
 
 
 def take_over(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
@@ -17,6 +24,44 @@ def take_over(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
     if "models" in parts and not any(model.no_expansion for model in source.models.values()):
         rig.__dict__["expansion"] = source.expansion
     return rig
+
+
+def share_elastic(rig: Rig, source: Rig) -> None:
+    """Let ``rig`` use what ``source`` knows of shafts that bend, as far as their parts are the same."""
+    if _seated(rig) == _seated(source) and same_housings(rig, source):
+        take_over(rig, source, ("_seats",))
+    own, other = rig.elastic, source.elastic
+    if (own.faces, own.cutoff, own.pressed) == (other.faces, other.cutoff, other.pressed) and _same_parts(
+        own.rig, other.rig
+    ):
+        rig.__dict__["elastic"] = other
+
+
+def _seated(rig: Rig) -> tuple[object, ...]:
+    """Where the bearings stand in their housings, and which of these yield."""
+    boxes = rig.case.gearboxes.values()
+    yielding = [box.housing is not None and box.housing.bearing_seats == "elastic" for box in boxes]
+    if not any(yielding):
+        return ()
+    places = [(one.shaft, one.side) for box in boxes for one in box.bearings.values()]
+    return (yielding, places, dict(rig.axes))
+
+
+def _same_parts(one: ElasticRig, other: ElasticRig) -> bool:
+    """Whether two rigs have the same parts."""
+    for entry in fields(one):
+        if entry.name != "supports" and getattr(one, entry.name) != getattr(other, entry.name):
+            return False
+    return len(one.supports) == len(other.supports) and all(map(_same_support, one.supports, other.supports))
+
+
+def _same_support(one: HousingSupport, other: HousingSupport) -> bool:
+    if one is other:
+        return True
+    if (one.name, one.bearings) != (other.name, other.bearings):
+        return False
+    pairs = (one.stiffness, other.stiffness), (one.mass, other.mass), (one.damping, other.damping)
+    return all(np.array_equal(np.asarray(a), np.asarray(b)) for a, b in pairs)
 
 
 def same_housings(rig: Rig, stated: Rig) -> bool:

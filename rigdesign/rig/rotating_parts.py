@@ -56,6 +56,16 @@ def rotating_parts(
             )
 
 
+def without_residual_unbalance(case: Case) -> Case:
+    """The case with the unbalances that it states alone: what a balance grade leaves turns at angles nobody knows."""
+    power = case.drivetrain
+    assert power is not None
+    shafts = {name: shaft.model_copy(update={"balance_grade": None}) for name, shaft in power.shafts.items()}
+    return case.model_copy(
+        update={"drivetrain": power.model_copy(update={"balance_grade": 0.0, "shafts": shafts})}
+    )
+
+
 def misalignments(case: Case) -> Iterator[AxisMisalignment]:
     """Couplings that resist the offset or angle in which their axes were set up."""
     assert case.drivetrain is not None

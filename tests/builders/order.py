@@ -1,17 +1,27 @@
-"""Shipped loops with deviations, braced without heat, for the tests of orders."""
+"""Shipped loops with deviations, braced without heat, for the tests of orders: shafts that twist, bend, are locked."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
+from typing import Literal
 
+import numpy as np
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.elastic_rig.freedoms import FAMILIES
+from dynamics.elastic_rig.reduction import reduce_rig
+from dynamics.elastic_rig.running_state import isotropic_bearing
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial
 from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import Channel
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.prediction.model import Channel, PredictionModel
+from rigdesign.prediction.operating import modelled_rig
+from rigdesign.rig.model import Rig
 
 DRAGS = {"test.pinion": 0.4, "reference.wheel": 0.6}
 
@@ -35,17 +45,49 @@ class BracedCase:
     point: OperatingPoint
     models: tuple[MeshModel, ...]
     setting: BracingState
+    system: LinearSystem
 
     @property
     def arguments(self):
-        return self.rig, LoadedCircuit(self.point, self.models, DRAGS, self.setting, self.rig.system)
+        return self.rig, LoadedCircuit(self.point, self.models, DRAGS, self.setting, self.system)
 
 
-def settled(case: Case, rpm: float, torque: float) -> BracedCase:
-    rig = build_rig(case, "quick")
+def settled(
+    case: Case, rpm: float, torque: float, shafts: Literal["torsional", "elastic", "locked"] = "torsional"
+) -> BracedCase:
+    """locked : shafts in six degrees of freedom, held in all but their turns."""
+    model = PredictionModel(shafts="torsional" if shafts == "torsional" else "elastic")
+    rig = modelled_rig(case, "quick", model)
+    if shafts == "locked":
+        lock(rig)
     point = OperatingPoint(stage="test", speed=rpm * pi / 30.0, torque=torque)
     cold = initial_state(rig, point)
-    return BracedCase(rig, point, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
+    models = mesh_models(rig, point, cold)
+    system = loop_system(rig, point, cold, solve_bearings(rig, point, cold))
+    return BracedCase(rig, point, models, brace_initial(rig, point, cold, models, system), system)
+
+
+def lock(rig: Rig) -> None:
+    """Hold a rig in everything but its turns: of its modes those that turn alone are left, all of them."""
+    model = rig.elastic.model
+    reference = {bearing.name: isotropic_bearing(1e8) for bearing in rig.elastic.rig.drivetrain.bearings}
+    whole = reduce_rig(model, reference)
+    sideways = np.flatnonzero(np.array(model.freedoms.family) != FAMILIES.index("torsion"))
+    own = np.flatnonzero(~np.any(whole.basis[sideways], axis=0))
+    block = np.ix_(own, own)
+    held = replace(
+        whole,
+        basis=whole.basis[:, own],
+        squared=whole.squared[own],
+        damping=whole.damping[block],
+        gyroscopic=whole.gyroscopic[block],
+        circulation=whole.circulation[block],
+        drag=whole.drag[block],
+        ports={name: port[:, own] for name, port in whole.ports.items()},
+        components=whole.components[own],
+        attached=whole.attached[own],
+    )
+    rig.elastic.__dict__["reduced"] = held
 
 
 def channels(*orders: float) -> tuple[Channel, ...]:

@@ -7,15 +7,12 @@ the complex amplitude, relative to it, the larger of both couplings; those of th
 import numpy as np
 import pytest
 
-from rigdesign.prediction.exact_orders import exact_motion
-from rigdesign.prediction.order_motion import CycleMotion, ideal_response
 from rigdesign.prediction.orders import PointOrders
 from tests.builders.order import changed, channels, settled
+from tests.builders.order_errors import order_errors
 
 PINION = "gearboxes__test__gears__pinion__flank__"
 WHEEL = "gearboxes__test__gears__wheel__flank__"
-TABLES = 3e-5
-"""Error of an order by the contact tables of the march, per torque."""
 ORDERS = (1.0, 2.0, 3.0, 27.0, 28.0, 29.0)
 """Shaft orders and the mesh order with its neighbours, z = 28."""
 JUMPS = [f"{(-1) ** tooth * (tooth % 5)} um" for tooth in range(28)]
@@ -28,31 +25,6 @@ BACK = {
 """On the gears that carry on their back flanks."""
 WAVES = {PINION + "pitch_waves": [{"order": 2, "amplitude": "5 um"}, {"order": 3, "amplitude": "5 um"}]}
 WEAK = {PINION + "weak_tooth": {"tooth": 3, "stiffness": 0.8}}
-
-
-def errors(name, values, rpm, torque, orders, *, march, steps=(0, 30)):
-    """Error by order of each number of corrections at most."""
-    case = settled(changed(name, **values), rpm, torque)
-    exact = PointOrders(*case.arguments)
-    motion = exact_motion(case.rig, exact.loop, exact.laws, march=march)
-    exact.__dict__["solved"] = CycleMotion(motion)
-    places = [channel for channel in channels(*orders) if channel.quantity == "torque"]
-    known = {channel.name: exact.read(channel) for channel in places}
-    base = ideal_response(*case.arguments)
-    rows = []
-    # the contact tables of the march hold the forces to 1e-4, and sidebands to 5 mN m of 200
-    floor = TABLES * torque if march else 0.0
-    for most in steps:
-        fast = PointOrders(*case.arguments, base=base, steps=most)
-        rows.append(dict.fromkeys(orders, 0.0))
-        for channel in places:
-            for order, value in fast.read(channel).items():
-                exact_value = known[channel.name][order]
-                error = max(abs(value - exact_value) - floor, 0.0) / abs(exact_value)
-                rows[-1][order] = max(rows[-1][order], error)
-        told = ", ".join(f"{order:g}: {error:.4f}" for order, error in rows[-1].items())
-        print(f"{name} {rpm:g} rpm {torque:g} N m, {most} corrections at most: {told}")
-    return rows
 
 
 @pytest.mark.parametrize(
@@ -68,7 +40,7 @@ def errors(name, values, rpm, torque, orders, *, march, steps=(0, 30)):
 )
 def test_orders_of_the_1_to_1_loop_are_those_of_the_march(values, rpm, torque, whole, sides):
     """Sidebands are a few millinewton metres of two hundred: the march itself settles to a per cent of them."""
-    first, corrected = errors("loop_1to1", values, rpm, torque, ORDERS, march=True)
+    first, corrected = order_errors("loop_1to1", values, rpm, torque, ORDERS, march=True)
     for order in whole:
         assert corrected[order] < 5e-3
         assert first[order] < 0.2
@@ -102,7 +74,7 @@ def test_hunting_pair_over_its_whole_cycle():
     wheel, mesh = 16.0 / 25.0, 16.0
     values = {PINION + "run_out": "10 um", WHEEL + "run_out": "10 um", WHEEL + "run_out_phase": "2 rad"}
     orders = (1.0, wheel, mesh, mesh - 1.0, mesh - wheel, mesh + wheel, mesh + 1.0)
-    first, corrected = errors("loop_hunting", values, 2500.0, 200.0, orders, march=False)
+    first, corrected = order_errors("loop_hunting", values, 2500.0, 200.0, orders, march=False)
     assert max(first[order] for order in (1.0, wheel, mesh)) < 1e-3
     # mesh + 1 nearly cancels in one coupling: 0.3 mN m beside the 11 mN m of the other
     assert max(error for order, error in corrected.items() if order != mesh + 1.0) < 3e-2
@@ -114,13 +86,13 @@ def test_error_of_first_order_grows_with_the_deviation_over_the_deflection():
     firsts = []
     for share in (0.95, 0.8, 0.5):
         values = {PINION + "weak_tooth": {"tooth": 3, "stiffness": share}}
-        first, corrected = errors("loop_1to1", values, 2900.0, 200.0, (1.0, 2.0, 29.0), march=False)
+        first, corrected = order_errors("loop_1to1", values, 2900.0, 200.0, (1.0, 2.0, 29.0), march=False)
         firsts.append(first[1.0])
         assert max(corrected.values()) < 1e-2
     assert firsts[0] < 0.05 < firsts[1] < firsts[2]
     for torque in (50.0, 200.0):
         values = {PINION + "single_pitch": JUMPS}
-        first, corrected = errors("loop_1to1", values, 2900.0, torque, (1.0, 2.0, 29.0), march=False)
+        first, corrected = order_errors("loop_1to1", values, 2900.0, torque, (1.0, 2.0, 29.0), march=False)
         assert max(corrected[order] for order in (1.0, 2.0)) < 1e-2
 
 
@@ -128,7 +100,7 @@ def test_error_of_first_order_grows_with_the_deviation_over_the_deflection():
 def test_mesh_orders_move_with_the_bracing_held_or_controlled(mode):
     """A soft tooth in 28 changes the mean of the mesh: what the bracing does about it is part of the answer."""
     values = {PINION + "weak_tooth": {"tooth": 3, "stiffness": 0.5}, "drivetrain__bracing__mode": mode}
-    first, corrected = errors("loop_1to1", values, 2900.0, 100.0, (28.0, 56.0), march=False)
+    first, corrected = order_errors("loop_1to1", values, 2900.0, 100.0, (28.0, 56.0), march=False)
     assert max(corrected.values()) < 2e-3 < max(first.values())
 
 
@@ -147,7 +119,7 @@ def test_swinging_torques_beside_the_whole_turn():
         "drivetrain__motor__ripple": [{"order": 6.0, "torque": "1 N m", "phase": "0.4 rad"}],
         "drivetrain__couplings__pinion_side__excitation": [{"order": 2.0, "torque": "5 N m"}],
     }
-    [first] = errors("loop_1to1", values, 2500.0, 200.0, (2.0, 6.0, 28.0), march=False, steps=(0,))
+    [first] = order_errors("loop_1to1", values, 2500.0, 200.0, (2.0, 6.0, 28.0), march=False, steps=(0,))
     assert max(first.values()) < 5e-3
     # what the coupling itself adds is transmitted beside what it is twisted by: at a slow turn they balance
     slow = settled(changed("loop_1to1", **values), 60.0, 200.0)

@@ -67,7 +67,7 @@ class Library:
     exponents, links, sources, dry_sources : name -> (n,): by the exponent of a loss over speed or torque; by the
         logarithm of a local conductance; per watt at a place, paid by the motor; the same unpaid
     powers : setting -> losses [W]
-    modes : natural frequencies of the rig at rest [rad/s]; none without a drivetrain
+    modes : natural frequencies near which orders of torque are steep [rad/s]; none without a drivetrain
     error : stated error of the temperatures [K]
     """
 

@@ -1,6 +1,5 @@
 """What measurement.toml says of columns and points, held against the rig: places, units, uncertainties."""
 
-import re
 from collections.abc import Iterator, Mapping
 
 from rigdesign.base import units
@@ -173,10 +172,11 @@ def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
         )  # fmt: skip
         return
     if entry.quantity == "natural_frequency" and known:
-        if not re.fullmatch(r"[1-9][0-9]{0,3}", entry.place):
+        if not places.is_mode(entry.place):
             yield Fault(
-                at, written(entry.place), "not the number of a natural frequency", 'write "1", "2", …'
-            )
+                at, written(entry.place), "neither the number of a torsional natural frequency nor the name of a mode",
+                f'write "1", "2", … or a name such as "lateral {places.of("angle")[0]} 1"',
+            )  # fmt: skip
         return
     if known == (MOTOR,) and entry.place in ("", MOTOR):
         return

@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import changed_together, load_case
-from rigdesign.prediction import Channel, OperatingCondition
+from rigdesign.prediction import OWN_MODEL, TORSIONAL, Channel, OperatingCondition
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 from tests.builders.fzg_case import HELD, fzg_case
@@ -38,9 +38,20 @@ WETTED = ("chamber_wall", "chamber_top", "partition_warm_front", "partition_warm
 TIGHT = {"numerics.temperature_tolerance": "0.005 K", "numerics.coupling_passes": 60}
 
 
+LEAST_POWER = {TORSIONAL: 1e-4, OWN_MODEL: 3e-4}
+"""Error of the power by the reduced expansion. Shafts that bend carry what couplings out of line push with as bearing
+loads: a tenth of a micrometre of reduced expansion there is some newtons, and watts of single bearings that nearly
+cancel."""
+
+
 @pytest.fixture(scope="module")
 def predictor():
     return Predictor(CASE, SETTINGS, CHANNELS)
+
+
+@pytest.fixture(scope="module")
+def twisting():
+    return Predictor(CASE, SETTINGS, CHANNELS, circuit=TORSIONAL)
 
 
 def _by_point(values):
@@ -55,6 +66,7 @@ BEYOND = {
 }
 
 
+@pytest.mark.parametrize("circuit", [OWN_MODEL, TORSIONAL], ids=["elastic", "torsional"])
 @pytest.mark.parametrize(
     "changes",
     [
@@ -64,17 +76,19 @@ BEYOND = {
         pytest.param({"ambient.warming_time": 3600.0}, marks=pytest.mark.slow),
     ],
 )
-def test_the_reduced_model_keeps_its_stated_error(predictor, changes):
+def test_the_reduced_model_keeps_its_stated_error(request, circuit, changes):
     """Full solves with the coupling settled to 5 mK, under changes as large as a diagnosis seeks."""
     from rigdesign.prediction.changes import changed_case
 
-    full = predict(changed_together(changed_case(CASE, changes), TIGHT), SETTINGS, CHANNELS)
+    predictor = request.getfixturevalue("twisting" if circuit is TORSIONAL else "predictor")
+    tight = changed_together(changed_case(CASE, changes), TIGHT)
+    full = predict(tight, SETTINGS, CHANNELS, circuit=circuit)
     off = np.abs(_by_point(predictor.values(changes)) - _by_point(full.values))
     assert predictor.error <= 0.1
     assert off[:, KELVIN].max() <= predictor.error + 0.01
     assert off[:, CHANNELS.index(CHANNELS[7])].max() < 2e-7
     power = [n for n, channel in enumerate(CHANNELS) if channel.quantity == "motor_power"]
-    assert (off[:, power] / _by_point(full.values)[:, power]).max() < 1e-4
+    assert (off[:, power] / _by_point(full.values)[:, power]).max() < LEAST_POWER[circuit]
 
 
 def test_no_change_is_the_base(predictor):
