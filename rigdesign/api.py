@@ -156,4 +156,4 @@ def diagnose(
         check_pick(effects_of(case), name)
     used = DEFAULT if calibration is None else load_rig_calibration(Path(calibration), case)
     found = diagnose_measurement(case, Path(measurement), calibration=used)
-    return outcome(found, pick=name, proposals=found.proposals)
+    return outcome(found, pick=name)

@@ -57,6 +57,13 @@ SOURCES: Mapping[str, Source] = {
         "-", "fit", "development split of the blind score; evidence: largest of healthy pairs"
     ),
     "decision.decision.PRIOR": Source("-", "choice", _TRIALS),
+    "catalogue.local_heat.TIGHT": Source("-", "choice", _PRACTICE),
+    "catalogue.local_heat.UNEVEN": Source("-", "choice", _PRACTICE),
+    "catalogue.local_heat.FAN": Source("-", "choice", _PRACTICE),
+    "catalogue.local_heat.DRAUGHTY": Source("-", "choice", _PRACTICE),
+    "residual.sensors.LAG": Source("s", "choice", _PRACTICE),
+    "residual.sensors.LARGEST_LAG": Source("s", "choice", _PRACTICE),
+    "residual.sensors.USUAL_LAG": Source("s", "choice", _PRACTICE),
     "decision.suspicion.REMAINDER": Source("-", "choice", _JUDGEMENT),
     "decision.suspicion.AGREEMENT": Source("-", "choice", _JUDGEMENT),
     "decision.suspicion.INCLUSION": Source("-", "choice", "as large as for a name"),

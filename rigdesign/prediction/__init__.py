@@ -1,6 +1,7 @@
 """What sensors on the rig would read: the models of a check at single operating points."""
 
 from rigdesign.prediction.model import (
+    MEASURED_AGAINST,
     OWN_MODEL,
     TORSIONAL,
     Channel,
@@ -12,6 +13,7 @@ from rigdesign.prediction.model import (
 )
 
 __all__ = [
+    "MEASURED_AGAINST",
     "OWN_MODEL",
     "TORSIONAL",
     "Channel",

@@ -39,6 +39,8 @@ OWN_MODEL = PredictionModel()
 """What the case asks for."""
 TORSIONAL = PredictionModel(shafts="torsional")
 """The quick variant: shafts that only twist."""
+MEASURED_AGAINST = TORSIONAL
+"""Model that measured data are held against, and that the constants of the diagnosis were fitted with."""
 
 ORDER_QUANTITIES = frozenset({"torque", "angle"})
 """Quantities that are read as a mean and complex orders of the rotating shaft."""

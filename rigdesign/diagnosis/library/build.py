@@ -13,7 +13,7 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition
+from rigdesign.prediction.model import MEASURED_AGAINST, ORDER_QUANTITIES, Channel, OperatingCondition
 from rigdesign.prediction.predictor import Predictor
 
 Progress = Callable[[str], None]
@@ -47,7 +47,7 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     metered = (POWER,) if case.drivetrain is not None else ()
-    predictor = Predictor(case, tuple(settings), (*channels, *metered))
+    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=MEASURED_AGAINST)
     predictor.prepare()
     base = predictor.base
     parts = Parts.of(case, settings, channels, effects)
