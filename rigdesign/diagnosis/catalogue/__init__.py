@@ -9,12 +9,15 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.registry import registered_effects
 
 
-def effects_of(case: Case) -> tuple[Effect, ...]:
-    """All entries for this case, in a fixed order; names are unique.
+def effects_of(case: Case, *, local: bool = False) -> tuple[Effect, ...]:
+    """Entries for this case, in a fixed order; names are unique.
 
     Each has a healthy spread or a smallest size that matters.
+
+    local : with those at one place of a gearbox (`local_heat`), which a diagnosis does not evaluate yet: its constants
+        were fitted without them, and they leave the traces of the same effects of the whole gearbox
     """
-    found = tuple(registered_effects(case))
+    found = tuple(registered_effects(case, local=local))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)
     assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)

@@ -40,6 +40,7 @@ class _Entry:
     of_gearbox: OfGearbox | None = None
     drivetrain: bool = False
     housing: bool = False
+    local: bool = False
 
     def of_case(self, case: Case) -> Iterator[Effect]:
         if self.of_rig is not None and (case.drivetrain is not None or not self.drivetrain):
@@ -65,19 +66,22 @@ def of_rig(*, drivetrain: bool = False) -> Callable[[OfRig], OfRig]:
     return register
 
 
-def of_gearbox(*, drivetrain: bool = False, housing: bool = False) -> Callable[[OfGearbox], OfGearbox]:
-    """Register effects of every gearbox; ``drivetrain``, ``housing``: they need one."""
+def of_gearbox(
+    *, drivetrain: bool = False, housing: bool = False, local: bool = False
+) -> Callable[[OfGearbox], OfGearbox]:
+    """Register effects of every gearbox; ``drivetrain``, ``housing``: they need one; ``local``: at one place of it."""
 
     def register(make: OfGearbox) -> OfGearbox:
-        _ENTRIES.append(_Entry(of_gearbox=make, drivetrain=drivetrain, housing=housing))
+        _ENTRIES.append(_Entry(of_gearbox=make, drivetrain=drivetrain, housing=housing, local=local))
         return make
 
     return register
 
 
-def registered_effects(case: Case) -> Iterator[Effect]:
-    """All effects of a case in the order of registration, those of one gearbox together."""
-    for by_gearbox, group in groupby(_ENTRIES, lambda entry: entry.of_gearbox is not None):
+def registered_effects(case: Case, *, local: bool) -> Iterator[Effect]:
+    """Effects of a case in the order of registration, those of one gearbox together; ``local``: at one place as well."""
+    wanted = [entry for entry in _ENTRIES if local or not entry.local]
+    for by_gearbox, group in groupby(wanted, lambda entry: entry.of_gearbox is not None):
         entries = list(group)
         if not by_gearbox:
             for entry in entries:

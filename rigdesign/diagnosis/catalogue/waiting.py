@@ -144,6 +144,12 @@ WAITING = (
         "sample rate of recordings as an input",
     ),
     Waiting(
+        "local_heat",
+        "one bearing alone (loss, oil, joint), leak into one side, draught on one wall",
+        "one place warmer or colder than the gearbox as a whole would be",
+        "constants of the diagnosis fitted with them: the model and its case keys have them",
+    ),
+    Waiting(
         "base_conduction",
         "heat into the base",
         "foot and field, slow",

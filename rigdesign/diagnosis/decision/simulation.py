@@ -53,8 +53,9 @@ class Simulation:
         )
         points = {feature.setting for feature in cut.features}
         run = tuple(one for one in cut.library.settings if one.name in points)
+        inputs = {key: column for key, column in cut.library.inputs.items() if key[2] in points}
         return replace(
             cut,
             values=np.concatenate([self.whole.values[: self.measured], new]),
-            library=replace(cut.library, settings=run),
+            library=replace(cut.library, settings=run, inputs=inputs),
         )
