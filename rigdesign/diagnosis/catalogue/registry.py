@@ -79,7 +79,7 @@ def of_gearbox(
 
 
 def registered_effects(case: Case, *, local: bool) -> Iterator[Effect]:
-    """Effects of a case in the order of registration, those of one gearbox together; ``local``: at one place as well."""
+    """Effects of a case as registered, those of one gearbox together; ``local``: with those at one place of it."""
     wanted = [entry for entry in _ENTRIES if local or not entry.local]
     for by_gearbox, group in groupby(wanted, lambda entry: entry.of_gearbox is not None):
         entries = list(group)
