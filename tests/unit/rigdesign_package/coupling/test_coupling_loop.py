@@ -41,7 +41,9 @@ def solved(monkeypatch: pytest.MonkeyPatch, slow: str, most: int = 40) -> loop.P
         coupling_passes=most, temperature_tolerance=TOLERANCE["temperature"], growth_tolerance=TOLERANCE["length"],
         torque_tolerance=TOLERANCE["torque"],
     )  # fmt: skip
-    rig: Any = SimpleNamespace(case=SimpleNamespace(numerics=numerics, drivetrain=None), oil_circuits={})
+    steady = SimpleNamespace(warming_time=None)
+    case = SimpleNamespace(numerics=numerics, drivetrain=None, ambient=steady)
+    rig: Any = SimpleNamespace(case=case, oil_circuits={})
     done: list[int] = []
 
     def run_iteration(*_: object, **__: object) -> int:

@@ -20,7 +20,7 @@ from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
-from rigdesign.prediction import Channel, OperatingCondition
+from rigdesign.prediction import MEASURED_AGAINST, Channel, OperatingCondition
 from rigdesign.prediction.changes import changed_case
 from rigdesign.prediction.predict import predict
 from rigdesign.report.pages.diagnosis import diagnosis_page
@@ -358,8 +358,9 @@ def test_the_full_run_is_that_of_a_check():
         Channel(name="T", quantity="oil_outlet_temperature", place="test.gear_oil"),
     )
     full = FullRun(case=case, settings=(setting,), channels=channels, effects=effects_of(case))
-    before = predict(case, [setting], channels)
-    after = predict(changed_case(case, {"gearboxes.test.loss_factors.mesh": 1.5}), [setting], channels)
+    before = predict(case, [setting], channels, circuit=MEASURED_AGAINST)
+    changed = changed_case(case, {"gearboxes.test.loss_factors.mesh": 1.5})
+    after = predict(changed, [setting], channels, circuit=MEASURED_AGAINST)
     found = full(before.features[::-1], {"mesh_loss:test": (log(1.5),)})
     assert found[::-1] == pytest.approx(after.values - before.values, rel=1e-9)
     assert found.min() > 0.0

@@ -141,7 +141,7 @@ WRONG = [
     ('uncertainty = "5 W"', 'uncertainty = "-5 W"', "channels.P.uncertainty", "below zero"),
     ('uncertainty = "0.3 K"', 'uncertainty = "0.3 degC"', "settings.T_in.uncertainty", "not a difference"),
     ('quantity = "speed"', 'quantity = "sped"', "settings.n.quantity", 'did you mean "speed"'),
-    ('place = "1"', 'place = "first"', "channels.f1.place", "number of a natural frequency"),
+    ('place = "1"', 'place = "first"', "channels.f1.place", "torsional natural frequency"),
     ('at = ["0.120 m", "0 m", "0.280 m"]', "", "channels.TC2.place", "add coordinates"),
     ('title = "trial"', 'title = "trial"\nbaseline = "../nowhere"', "baseline", "no measurement.toml"),
     ("[settings.n]", "[points.P77]\n[settings.n]", "points.P77", "no such point"),
