@@ -4,7 +4,7 @@ Sets of one rig share its constants, so that they are one draw of the model erro
 N (N - 1) ordered pairs can be made, but only N - 1 changes are independent: each pair counts as one N-th as well.
 
 A value found larger than shipped is used as found. A smaller drift is used with one standard deviation added, as one
-too small gives false alarms and one too large only hides small effects. What all numbers of a session have in common
+too small gives false alarms and one too large only hides small effects. What all numbers of a set have in common
 was drawn N - 1 times, which leaves the logarithm of a drift open by at least (1/1.5^2 + 2 (N - 1))^-1/2: two sets lower
 a drift to no less than 1.9 times the value found, four to 1.5 times. Errors of model and channels are never lowered: a
 rig is one draw of them, and single orders or channels stand out of their kind. With lower ones two of six healthy sets
@@ -124,7 +124,7 @@ def _drift(changes: Sequence[Change], shipped: Drift, sets: int) -> list[Estimat
     found = fit_with_channels(changes, shipped, 1.0 / sets)
     estimates = []
     for name, fitted in found.values.items():
-        spread = session_spread(found.spreads[name], sets)
+        spread = spread_of_sets(found.spreads[name], sets)
         if name.startswith(CHANNEL):
             key = f"channels.{name.removeprefix(CHANNEL)}"
             used = fitted * float(np.exp(spread))
@@ -136,8 +136,8 @@ def _drift(changes: Sequence[Change], shipped: Drift, sets: int) -> list[Estimat
     return estimates
 
 
-def session_spread(spread: float, sets: int) -> float:
-    """Standard deviation of the logarithm of a drift, at least what so many sessions leave open."""
+def spread_of_sets(spread: float, sets: int) -> float:
+    """Standard deviation of the logarithm of a drift, at least what so many sets leave open."""
     prior = PRIOR**-2
     seen = np.inf if spread == 0.0 else max(spread**-2 - prior, 0.0)
     return float((prior + min(seen, 2.0 * (sets - 1))) ** -0.5)

@@ -18,7 +18,7 @@ from rigdesign.diagnosis.residual.calibration import fit_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.rig_calibration import healthy_sets
 from rigdesign.diagnosis.rig_calibration.channels import fit_with_channels
-from rigdesign.diagnosis.rig_calibration.estimate import changes_of, estimate, session_spread, with_values
+from rigdesign.diagnosis.rig_calibration.estimate import changes_of, estimate, spread_of_sets, with_values
 from rigdesign.diagnosis.rig_calibration.healthy_sets import calibrate_rig
 from rigdesign.diagnosis.rig_calibration.leave_one_out import QUIET, HealthySet, leave_one_out, odd_sets
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
@@ -49,7 +49,7 @@ def values(sets, **keys) -> dict:
     return {one.name: one for one in estimate([one.residuals for one in sets], DEFAULT, **keys).estimates}
 
 
-def sessions(true: Drift, count: int, seed: int) -> list[tuple[ResidualProblem, ResidualProblem]]:
+def healthy_pairs(true: Drift, count: int, seed: int) -> list[tuple[ResidualProblem, ResidualProblem]]:
     """Pairs of one healthy rig each, drawn with a known drift."""
     rng = np.random.default_rng(seed)
     problem = story("mesh loss").problem
@@ -96,7 +96,7 @@ def test_a_known_drift_is_found_again_within_its_spread() -> None:
     true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05)
     start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02)
     off = []
-    for residuals, before in sessions(true, 8, seed=5):
+    for residuals, before in healthy_pairs(true, 8, seed=5):
         change = Change.of(residuals, before, Amplitudes())
         found = fit_drift([change], start)
         off += [
@@ -109,7 +109,7 @@ def test_a_known_drift_is_found_again_within_its_spread() -> None:
 
 
 def test_changes_that_are_not_independent_count_less() -> None:
-    pair = sessions(Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05), 1, seed=2)[0]
+    pair = healthy_pairs(Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05), 1, seed=2)[0]
     start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02)
     change = Change.of(*pair, Amplitudes())
     once, twice = fit_drift([change], start), fit_drift([change, change], start, weight=0.5)
@@ -119,10 +119,10 @@ def test_changes_that_are_not_independent_count_less() -> None:
 
 
 @pytest.mark.parametrize(("sets", "factor"), [(2, 1.90), (3, 1.61), (4, 1.48)])
-def test_few_sessions_leave_a_drift_open(sets: int, factor: float) -> None:
-    assert exp(session_spread(0.0, sets)) == pytest.approx(factor, abs=0.01)
-    assert session_spread(PRIOR, sets) == pytest.approx(PRIOR)
-    assert session_spread(0.1, sets) == session_spread(0.0, sets)
+def test_few_sets_leave_a_drift_open(sets: int, factor: float) -> None:
+    assert exp(spread_of_sets(0.0, sets)) == pytest.approx(factor, abs=0.01)
+    assert spread_of_sets(PRIOR, sets) == pytest.approx(PRIOR)
+    assert spread_of_sets(0.1, sets) == spread_of_sets(0.0, sets)
 
 
 def test_a_value_is_lowered_by_no_more_than_is_proven_and_raised_as_found() -> None:
