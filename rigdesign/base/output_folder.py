@@ -5,7 +5,7 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -69,8 +69,19 @@ def staged(out: Path) -> Iterator[Path]:
 
 def write_whole(path: Path, text: str) -> None:
     """Write one text file (UTF-8, newline ``\\n``) whole or not at all."""
-    with staged(path.parent) as scratch:
-        (scratch / path.name).write_text(text, encoding="utf-8", newline="\n")
+    write_texts(path.parent, {path.name: text})
+
+
+def write_texts(out: Path, texts: Mapping[str, str]) -> None:
+    """Write text files (UTF-8, newline ``\\n``) by their path below ``out``, all whole or none.
+
+    Raises OutputError as `staged`.
+    """
+    with staged(out) as scratch:
+        for name, text in texts.items():
+            file = scratch / name
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(text, encoding="utf-8", newline="\n")
 
 
 def remove_published(out: Path, names: list[str]) -> None:

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from rigdesign.base.json_text import to_plain, to_text
-from rigdesign.base.output_folder import remove_published, staged
+from rigdesign.base.output_folder import remove_published, write_texts
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.decision.patch import case_patch, variant_text
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
@@ -34,11 +34,7 @@ def write_diagnosis(outcome: Outcome, out: Path) -> None:
         If a number of the document is not finite; nothing is written then.
     """
     texts = diagnosis_texts(outcome, out)
-    with staged(out) as scratch:
-        for name, text in texts.items():
-            file = scratch / name
-            file.parent.mkdir(exist_ok=True)
-            file.write_text(text, encoding="utf-8", newline="\n")
+    write_texts(out, texts)
     remove_published(out, [name for name in PATCHES if name not in texts])
     for folder in ("patched", "suspected"):
         if f"{folder}/case.toml" not in texts and _is_empty(out / folder):

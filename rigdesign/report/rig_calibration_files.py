@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rigdesign.base.json_text import to_text
-from rigdesign.base.output_folder import staged
+from rigdesign.base.output_folder import write_texts
 from rigdesign.diagnosis.decision.patch import variant_text
 from rigdesign.diagnosis.rig_calibration.document import calibration_document
 from rigdesign.diagnosis.rig_calibration.healthy_sets import RigCalibration
@@ -23,9 +23,7 @@ def write_rig_calibration(calibrated: RigCalibration, out: Path) -> None:
     """
     document = calibration_document(calibrated)
     page = rig_calibration_page(calibrated, document)
-    with staged(out) as scratch:
-        (scratch / "calibration.html").write_text(page, encoding="utf-8", newline="\n")
-        (scratch / "calibration.json").write_text(to_text(document), encoding="utf-8", newline="\n")
+    write_texts(out, {"calibration.html": page, "calibration.json": to_text(document)})
 
 
 def write_constants(calibrated: Calibrated, out: Path) -> None:
@@ -55,7 +53,4 @@ def write_constants(calibrated: Calibrated, out: Path) -> None:
         "covariance": found.covariance.tolist(),
     }
     text = variant_text(calibrated.case, calibrated.title, calibrated.values, out / "calibrated")
-    with staged(out) as scratch:
-        (scratch / "calibrated").mkdir()
-        (scratch / "calibrated" / "case.toml").write_text(text, encoding="utf-8", newline="\n")
-        (scratch / "constants.json").write_text(to_text(document), encoding="utf-8", newline="\n")
+    write_texts(out, {"calibrated/case.toml": text, "constants.json": to_text(document)})

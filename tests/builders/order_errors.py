@@ -29,6 +29,6 @@ def order_errors(name, values, rpm, torque, orders, *, march, steps=(0, 30), sha
                 exact_value = known[channel.name][order]
                 error = max(abs(value - exact_value) - floor, 0.0) / abs(exact_value)
                 rows[-1][order] = max(rows[-1][order], error)
-        told = ", ".join(f"{order:g}: {error:.4f}" for order, error in rows[-1].items())
-        print(f"{name} {rpm:g} rpm {torque:g} N m, {most} corrections at most: {told}")
+        shown = ", ".join(f"{order:g}: {error:.4f}" for order, error in rows[-1].items())
+        print(f"{name} {rpm:g} rpm {torque:g} N m, {most} corrections at most: {shown}")
     return rows

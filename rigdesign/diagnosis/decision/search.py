@@ -153,7 +153,7 @@ def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature
             name=f"named {one.hypothesis.name}/{number}",
             kind="named",
             values=lower @ slope,
-            spread=half_of(one),
+            spread=one.hypothesis.widest,
         )
         for one in found
         for number, slope in enumerate(one.columns.T)
@@ -167,12 +167,6 @@ def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature
         effect: lower @ part for effect, part in space.nonlinear_parts.items() if effect not in owns
     }
     return Whitened.of(space.covariance.with_extra(columns), residual, nonlinear_parts)
-
-
-def half_of(one: Evidence) -> float:
-    """The wider side of the bounds of an explanation."""
-    curve = one.hypothesis.curve
-    return one.hypothesis.half if curve is None else curve.half
 
 
 def fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:

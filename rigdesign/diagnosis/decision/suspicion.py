@@ -48,21 +48,6 @@ LARGEST_GROUP = 4
 
 @dataclass(frozen=True, kw_only=True)
 class Suspicion:
-    """An effect that is suspected.
-
-    decision : verdict ``suspected`` with its reason; evidence : of the effect alone; fit : of it alone
-    answer : (n,) what it adds to all kept numbers, by the stored runs; gap : with it on the points held out
-    """
-
-    decision: Decision
-    evidence: Evidence
-    fit: JointFit
-    answer: Array = field(repr=False)
-    gap: Gap | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Candidate:
     """The most probable effect of the catalogue with those that leave its trace.
 
     evidence, fit : of the effect alone; answer : (n,) what it adds to all kept numbers
@@ -70,16 +55,16 @@ class Candidate:
     alike : effects and sensor errors that leave its trace, most alike first; unmodelled : causes that do
     """
 
-    look: Look
+    look: Look = field(repr=False)
     evidence: Evidence
     fit: JointFit
-    answer: Array
+    answer: Array = field(repr=False)
     gap: Gap | None
     alike: tuple[str, ...]
     unmodelled: tuple[str, ...]
 
     @classmethod
-    def of(cls, look: Look, proof: Proof, traces: Traces, calibration: Calibration) -> "Candidate | None":
+    def of(cls, look: Look, proof: Proof, traces: Traces, calibration: Calibration) -> "Suspicion | None":
         """Of a look; None without any explanation from the catalogue."""
         inclusion = look.first.weights.inclusion
         known = {one.parts[0] for one in (*look.explanations.physical, *look.explanations.sensor)}
@@ -122,6 +107,15 @@ class Candidate:
         )
 
     @property
+    def decision(self) -> Decision:
+        """The verdict with its reason."""
+        first, *others = self.group
+        also = f"; {' and '.join(others)} would leave the same trace" if others else ""
+        rest = f"{self.excess:.0%} of what it accounts for" if self.excess > 0.0 else "nothing"
+        reason = f"{first} is the most probable effect; it leaves {rest} beyond a healthy rig"
+        return Decision(verdict="suspected", named=self.group, reason=reason + also)
+
+    @property
     def excess(self) -> float:
         """What it leaves of the whitened square beyond a healthy rig, over what it explains."""
         space = self.look.space
@@ -141,24 +135,11 @@ class Candidate:
 
 def suspected(look: Look, proof: Proof, traces: Traces, calibration: Calibration) -> Suspicion | None:
     """The effect that every probable explanation of a look holds, if nothing speaks against it."""
-    candidate = Candidate.of(look, proof, traces, calibration)
-    if candidate is None or objection(candidate, proof, calibration):
-        return None
-    first, *others = candidate.group
-    also = f"; {' and '.join(others)} would leave the same trace" if others else ""
-    rest = f"{candidate.excess:.0%} of what it accounts for" if candidate.excess > 0.0 else "nothing"
-    reason = f"{first} is the most probable effect; it leaves {rest} beyond a healthy rig"
-    decision = Decision(verdict="suspected", named=candidate.group, reason=reason + also)
-    return Suspicion(
-        decision=decision,
-        evidence=candidate.evidence,
-        fit=candidate.fit,
-        answer=candidate.answer,
-        gap=candidate.gap,
-    )
+    candidate = Suspicion.of(look, proof, traces, calibration)
+    return None if candidate is None or objection(candidate, proof, calibration) else candidate
 
 
-def objection(candidate: Candidate, proof: Proof, calibration: Calibration) -> str:
+def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> str:
     """What speaks against suspecting an effect; empty where nothing does."""
     one, look = candidate.evidence, candidate.look
     name, size = one.hypothesis.name, candidate.fit.coordinates[0]

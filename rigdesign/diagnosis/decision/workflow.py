@@ -17,7 +17,7 @@ from rigdesign.diagnosis.decision.problem import Problem, Tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.decision.search import Look, explanations_of, fitted, search, signature_of
 from rigdesign.diagnosis.decision.suspicion import Suspicion, suspected
-from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of
 from rigdesign.diagnosis.residual.signature import Contest
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
@@ -25,7 +25,6 @@ from rigdesign.diagnosis.statistics.detectability import Detectability, aliases
 from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import Gap, held_out
 from rigdesign.diagnosis.statistics.intervals import JointFit
-from rigdesign.diagnosis.statistics.outliers import reject
 
 LEAST_RUNNING_POINTS = 3
 """Operating points below which nothing is named."""
@@ -84,6 +83,12 @@ class Diagnosis:
     residual: Array = field(repr=False)
     """(n,) what was to be explained at the kept rows: against the model, or given the baseline."""
 
+    @property
+    def whitened_square(self) -> float:
+        """Of the numbers that were kept, held-out ones included; their count in the mean of healthy rigs."""
+        white = self.covariance.whiten(self.residual)
+        return float(white @ white)
+
 
 def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun | None = None) -> Diagnosis:
     """Find what the model lacks, or say that these data cannot tell.
@@ -91,8 +96,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
     rerun : the full model with named effects in it; without one the proof is left at the stored runs, and indicative
     """
     everything = problem.space(calibration)
-    series = [(one.channel, one.order) for one in problem.residuals.features]
-    outliers = reject(everything.covariance.matrix, everything.raw, series)
+    outliers = outliers_of(problem.residuals, everything)
     gone = {outlier.place for outlier in outliers}
     kept = [row for row in range(len(problem.residuals.features)) if row not in gone]
     residuals = problem.residuals.rows(kept)
@@ -147,6 +151,7 @@ class _Data:
     points: tuple[str, ...]
     calibration: Calibration
     rerun: Rerun | None
+    _proofs: dict[Tier, Proof] = field(default_factory=dict)
 
     def look(self, tier: Tier) -> Look:
         """The search over the numbers of a tier at the points that are not held out."""
@@ -161,10 +166,12 @@ class _Data:
         return search(self.problem, seen, space, self.calibration, tier)
 
     def proof(self, tier: Tier) -> Proof:
-        """What names of a tier are held against."""
-        return Proof(
-            residuals=self.residuals, whole=self.whole, points=self.points, tier=tier, rerun=self.rerun
-        )
+        """What names of a tier are held against; made once."""
+        if tier not in self._proofs:
+            self._proofs[tier] = Proof(
+                residuals=self.residuals, whole=self.whole, points=self.points, tier=tier, rerun=self.rerun
+            )
+        return self._proofs[tier]
 
     def claim(self, look: Look, decision: Decision) -> Claim:
         """What of a decision may be claimed."""
@@ -201,7 +208,7 @@ def _verdict(data: _Data, given: Decision | None) -> tuple[Look, Claim, Suspicio
         looks.append((look, claimed))
     contradicted = any(claimed.contradicted for _, claimed in looks)
     for look, claimed in looks if given is None and not contradicted else ():
-        if claimed.decision.verdict not in UNDECIDED:
+        if claimed.decision.verdict not in OPEN:
             continue
         suspicion = suspected(look, data.proof(look.tier), data.traces(look), data.calibration)
         if suspicion is not None:
@@ -209,7 +216,7 @@ def _verdict(data: _Data, given: Decision | None) -> tuple[Look, Claim, Suspicio
     return *looks[-1], None
 
 
-UNDECIDED = ("unknown_located", "too_small")
+OPEN = ("unknown_located", "too_small")
 """Verdicts that an effect may be suspected under."""
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cached_property
 from typing import Any
 
 from rigdesign.base.errors import CaseError, RigdesignError, UsageError
@@ -76,7 +77,7 @@ class Outcome:
         """Of the decision."""
         return self.result.diagnosis.decision.verdict
 
-    @property
+    @cached_property
     def in_question(self) -> tuple[str, Array]:
         """What is drawn beside the readings: effects in the model, or the leading suspect alone, and what it adds."""
         if self.in_model:

@@ -27,6 +27,7 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Curve
+from rigdesign.diagnosis.statistics.outliers import Outlier, reject
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.diagnosis.statistics.resonance import steepness
 from rigdesign.measurement import Data
@@ -225,6 +226,12 @@ def plain(
         covariance = Covariance(base=covariance.base, columns=columns, amplitudes=covariance.amplitudes)
     residual = residuals.residual - sum(nonlinear_parts.values(), np.zeros(len(residuals.features)))
     return Whitened.of(covariance, residual, nonlinear_parts)
+
+
+def outliers_of(residuals: ResidualProblem, space: Whitened) -> tuple[Outlier, ...]:
+    """Single readings that the others of their series contradict."""
+    series = [(one.channel, one.order) for one in residuals.features]
+    return reject(space.covariance.matrix, space.raw, series)
 
 
 BENDING_STEPS = 5

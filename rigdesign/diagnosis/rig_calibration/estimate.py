@@ -20,11 +20,10 @@ import numpy as np
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.residual.baseline import CHANNEL, Change, Drift
 from rigdesign.diagnosis.residual.calibration import fit_amplitudes, group_of
-from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of, plain
 from rigdesign.diagnosis.rig_calibration.channels import fit_with_channels
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Group
-from rigdesign.diagnosis.statistics.outliers import reject
 
 FEWEST = 2
 """Healthy sets that a calibration needs: one pair."""
@@ -92,8 +91,7 @@ def estimate(
 def _without_outliers(one: ResidualProblem, shipped: Calibration) -> ResidualProblem:
     """A set without single readings that its others contradict: a slip is no drift."""
     space = plain(one, shipped.amplitudes, shipped.inflation)
-    series = [(feature.channel, feature.order) for feature in one.features]
-    gone = {outlier.place for outlier in reject(space.covariance.matrix, space.raw, series)}
+    gone = {outlier.place for outlier in outliers_of(one, space)}
     return one.rows([row for row in range(len(one.features)) if row not in gone]) if gone else one
 
 

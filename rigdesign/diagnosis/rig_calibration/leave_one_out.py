@@ -5,13 +5,12 @@ where at least two remain, the shipped one otherwise.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
-from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
-from rigdesign.diagnosis.residual.baseline import differenced
-from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
+from rigdesign.diagnosis.decision.workflow import diagnose
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.rig_calibration.estimate import FEWEST, RigFit, estimate
 
 QUIET = frozenset({"within_noise", "too_small", "data_insufficient"})
@@ -101,10 +100,15 @@ def _left_out(
     by: tuple[str, ...],
     shipped: Calibration,
 ) -> LeftOut:
-    baseline = None if other is None else other.residuals
-    found = diagnose(
-        Problem(residuals=one.residuals, baseline=baseline, seed=one.seed, repeated=one.repeated), calibration
+    problem = Problem(
+        residuals=one.residuals,
+        baseline=None if other is None else other.residuals,
+        seed=one.seed,
+        repeated=one.repeated,
     )
+    found = diagnose(problem, calibration)
+    square = found.whitened_square
+    before = square if calibration is shipped else _with(problem, found.kept, shipped)
     return LeftOut(
         name=one.name,
         baseline=None if other is None else other.name,
@@ -113,19 +117,13 @@ def _left_out(
         named=found.decision.named,
         reason=found.decision.reason,
         numbers=len(found.kept),
-        chi_square=_per_number(one.residuals, baseline, calibration, found),
-        before=_per_number(one.residuals, baseline, shipped, found),
+        chi_square=square / len(found.kept),
+        before=before / len(found.kept),
     )
 
 
-def _per_number(
-    residuals: ResidualProblem, baseline: ResidualProblem | None, calibration: Calibration, found: Diagnosis
-) -> float:
-    """Whitened square over the count of the numbers kept: one where a healthy rig is understood."""
-    kept = residuals.rows(found.kept)
-    space = (
-        plain(kept, calibration.amplitudes, calibration.inflation)
-        if baseline is None
-        else differenced(residuals, baseline, calibration.amplitudes, calibration.drift).rows(found.kept)
-    )
-    return space.chi_square / len(found.kept)
+def _with(problem: Problem, kept: Sequence[int], calibration: Calibration) -> float:
+    """Whitened square of the numbers kept with another calibration."""
+    if problem.baseline is None:
+        return replace(problem, residuals=problem.residuals.rows(kept)).space(calibration).chi_square
+    return problem.space(calibration).rows(kept).chi_square

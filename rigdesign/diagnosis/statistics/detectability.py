@@ -63,7 +63,7 @@ def detectabilities(
     rows = []
     nearest = _nearest(effects, [column for _, column in seen], (*effects, *rivals))
     for effect, (size, _), (rival, correlation) in zip(effects, seen, nearest, strict=True):
-        half = effect.half if effect.curve is None else effect.curve.half
+        half = effect.widest
         separated = SEPARATED / SEEN * size / max(np.sqrt(max(1.0 - correlation**2, 0.0)), 1e-9)
         rows.append(
             Detectability(

@@ -108,6 +108,11 @@ class Hypothesis:
     residual: Array | None = field(default=None, repr=False)
     """Whitened residual under the hypothesis, where the data themselves are wrong."""
 
+    @property
+    def widest(self) -> float:
+        """The wider side of the bounds of its size."""
+        return self.half if self.curve is None else self.curve.half
+
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
@@ -339,7 +344,7 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
     gram = release.product(columns, columns)
     load = release.product(columns, left)
     owner = np.repeat([0, 1], [first.columns.shape[1], second.columns.shape[1]])
-    halves = np.array([_half(first.hypothesis), _half(second.hypothesis)])
+    halves = np.array([first.hypothesis.widest, second.hypothesis.widest])
     shift = 0.5 * (space.chi_square - float(release.product(left, left)))
     spreads = (_PAIRS_OF_SPREADS * halves)[:, owner]
     log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
@@ -364,7 +369,3 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
         spreads=spreads,
         joined=first.columns.shape[1],
     )
-
-
-def _half(hypothesis: Hypothesis) -> float:
-    return hypothesis.half if hypothesis.curve is None else hypothesis.curve.half
