@@ -16,6 +16,7 @@ from rigdesign.diagnosis.decision.proof import FullRun
 from rigdesign.diagnosis.decision.proposals import (
     NOTHING_NEXT,
     NextMeasurements,
+    Offer,
     extras_of,
     next_measurements,
 )
@@ -23,6 +24,7 @@ from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
 from rigdesign.diagnosis.library.candidates import spare_channels
+from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain
 from rigdesign.diagnosis.residual.sensors import Stated
@@ -81,10 +83,9 @@ def diagnose_measurement(
         channels = tuple(entry.channel for entry in data.channels.values())
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)
-        extras = extras_of(case, data.settings)
-        offered = candidates_of(case, measurement, data.settings)
+        offer = _offer(case, measurement, data.settings)
         say("looking for the next measurement")
-        ahead = next_measurements(problem, found, offered, extras, calibration) if offered else NOTHING_NEXT
+        ahead = NOTHING_NEXT if offer is None else next_measurements(problem, found, offer, calibration)
     return Result(
         case=case,
         measurement=measurement,
@@ -142,13 +143,14 @@ def calibrate_case(
     )
 
 
-def candidates_of(
-    case: Case, measurement: MeasurementSet, settings: tuple[OperatingCondition, ...]
-) -> Library | None:
-    """The library of the rig with the points and sensors that could be added; None if the stored one has none."""
+def _offer(case: Case, measurement: MeasurementSet, settings: tuple[OperatingCondition, ...]) -> Offer | None:
+    """The points and sensors that could be added; None if the stored library of the rig has none."""
     channels, spare = _channels(case, measurement)
-    extras = tuple(extra.setting for extra in extras_of(case, settings))
-    return stored_library(case, (*settings, *extras), (*channels, *spare), effects_of(case))
+    extras = extras_of(case, settings)
+    points = (*settings, *(extra.setting for extra in extras))
+    library = stored_library(case, points, (*channels, *spare), effects_of(case))
+    costs = Costs(stated=measurement.costs)
+    return None if library is None else Offer(library=library, extras=extras, costs=costs)
 
 
 def _channels(case: Case, measurement: MeasurementSet) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:

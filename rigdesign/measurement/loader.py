@@ -13,7 +13,7 @@ from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.processing.recorded import SetPlan, read_recordings
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
-from rigdesign.measurement.reading.document import MeasurementFile
+from rigdesign.measurement.reading.document import COST_ITEMS, MeasurementFile
 from rigdesign.measurement.reading.files import digest_of, document_text, set_file
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.measurement.reading.order_table import read_orders
@@ -40,7 +40,12 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     document = _validated(content, file)
     places = Places(case)
     folder = file.parent
-    faults = [*_head_faults(document, file), *column_faults(document, places), *_doubt_faults(document)]
+    faults = [
+        *_head_faults(document, file),
+        *column_faults(document, places),
+        *_doubt_faults(document),
+        *_cost_faults(document),
+    ]
     try:
         table = read_table(folder, document.data.table, document.data, with_units=True)
     except MeasurementError as error:
@@ -99,6 +104,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         points=points,
         readings=readings,
         findings=tuple(findings),
+        costs=document.costs,
         hash=hashed,
     )
 
@@ -158,6 +164,12 @@ def _head_faults(document: MeasurementFile, file: Path) -> Iterable[Fault]:
             "baseline", written(document.baseline), f"no {FILE} in {folder}",
             "write the path of the healthy set from this folder",
         )  # fmt: skip
+
+
+def _cost_faults(document: MeasurementFile) -> Iterable[Fault]:
+    for item in document.costs:
+        if item not in COST_ITEMS:
+            yield unknown("costs", item, COST_ITEMS, "sensor or point")
 
 
 def _doubt_faults(document: MeasurementFile) -> Iterable[Fault]:

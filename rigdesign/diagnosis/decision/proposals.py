@@ -10,7 +10,8 @@ from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.simulation import Simulation
 from rigdesign.diagnosis.decision.workflow import Diagnosis
-from rigdesign.diagnosis.library.candidates import COST, NOISE, SPARE, Extra, extra_points
+from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Extra, extra_points
+from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
@@ -30,6 +31,19 @@ from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
 RIVALS = 3
 """Explanations that are to be separated."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Offer:
+    """What could be measured next.
+
+    library : with the points and sensors that could be added, those of the set under the names it has
+    extras : the points; costs : of points and sensors
+    """
+
+    library: Library
+    extras: Sequence[Extra]
+    costs: Costs
 
 
 def extras_of(case: Case, settings: Sequence[OperatingCondition]) -> tuple[Extra, ...]:
@@ -57,14 +71,12 @@ UNDECIDED = ("suspected", "alias_group", "too_small", "unknown_located", "data_i
 
 
 def next_measurements(
-    problem: Problem, found: Diagnosis, library: Library, extras: Sequence[Extra], calibration: Calibration
+    problem: Problem, found: Diagnosis, offer: Offer, calibration: Calibration
 ) -> NextMeasurements:
     """Measurements that tell the leading rivals apart; none where something is named.
 
     Of a single suspect, and with too few data to name anything: those that tell it from a healthy rig. The set is
     verified by simulating it with each rival as the truth and diagnosing what it would read.
-
-    library : with the candidates, points and channels under the names of the set
     """
     if found.decision.verdict not in UNDECIDED:
         return NOTHING_NEXT
@@ -74,14 +86,14 @@ def next_measurements(
     )
     if len(rivals) < (1 if alone else 2):
         return NOTHING_NEXT
-    whole, measured = _with_candidates(problem.residuals.rows(found.kept), library)
+    whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
     answers = _answers(whole, rivals)
     compared = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
     if alone:
         compared = [compared[0], _nothing(len(whole.features))]
     mean, matrix = problem.healthy(whole, calibration)
     foreseen = Foreseen.of(matrix, found.residual, compared)
-    offers = _offers(whole.features[measured:], whole.channels, extras)
+    offers = _offers(whole.features[measured:], whole.channels, offer)
     together = smallest_set(foreseen, offers)
     verified: tuple[tuple[str, bool], ...] = ()
     if together is not None:
@@ -171,9 +183,7 @@ def _nothing(count: int) -> Rival:
     return Rival(name="none", answer=np.zeros(count), slopes=np.zeros((count, 0)), deviations=np.zeros(0))
 
 
-def _offers(
-    features: Sequence[Feature], channels: Mapping[str, Channel], extras: Sequence[Extra]
-) -> list[Proposal]:
+def _offers(features: Sequence[Feature], channels: Mapping[str, Channel], offer: Offer) -> list[Proposal]:
     by_channel: dict[str, list[int]] = {}
     by_point: dict[str, list[int]] = {}
     for row, feature in enumerate(features):
@@ -185,13 +195,13 @@ def _offers(
         Proposal(
             title=f"a sensor: {name.removeprefix(SPARE)}",
             rows=tuple(rows),
-            cost=COST[channels[name].quantity],
+            cost=offer.costs.of(channels[name].quantity),
         )
         for name, rows in by_channel.items()
     ]
-    titles = {extra.setting.name: extra for extra in extras}
+    points = {extra.setting.name: extra for extra in offer.extras}
     return found + [
-        Proposal(title=titles[name].title, rows=tuple(rows), cost=titles[name].cost)
+        Proposal(title=points[name].title, rows=tuple(rows), cost=offer.costs.of(points[name].changed))
         for name, rows in by_point.items()
-        if name in titles
+        if name in points
     ]

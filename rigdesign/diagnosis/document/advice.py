@@ -1,6 +1,7 @@
 """A diagnosis in sentences: the verdict, how sure it is, and what to do next."""
 
 from dataclasses import dataclass
+from math import exp
 
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import formatted
@@ -28,8 +29,11 @@ NOTABLE = 1.5
 nothing."""
 
 
-WORTH = 1.0
-"""Separation [variances] from which on a measurement is proposed."""
+WORTH = 0.5
+"""Expected logarithm of the Bayes factor from which on a measurement is proposed."""
+
+LARGEST_ODDS = 1e6
+"""Odds beyond which none are distinguished."""
 
 MOST_PROPOSED = 8
 """Measurements proposed."""
@@ -39,15 +43,20 @@ MOST_PROPOSED = 8
 class NextStep:
     """Something to measure or do next.
 
-    separation : of the rivals it separates least [variances], cost : relative to one thermocouple; None where it
-    follows from a rule and not from a computation
+    expected_evidence : logarithm of the Bayes factor of the true rival, of those told apart worst; cost : as the set
+    states costs, else relative to one thermocouple; None where it follows from a rule and not from a computation
     """
 
     text: str
     why: str
-    separation: float | None = None
+    expected_evidence: float | None = None
     cost: float | None = None
     decides: bool | None = None
+
+    @property
+    def odds(self) -> float | None:
+        """Expected odds of the true rival against the others."""
+        return None if self.expected_evidence is None else min(exp(self.expected_evidence), LARGEST_ODDS)
 
 
 def headline(outcome: Outcome) -> str:
@@ -140,10 +149,11 @@ def steps(outcome: Outcome) -> tuple[NextStep, ...]:
     """What to measure or do next: computed proposals first, then what the rules of the workflow say."""
     computed = [
         NextStep(
-            text=one.title, why=_why(outcome, one), separation=one.separation, cost=one.cost, decides=one.decides
+            text=one.title, why=_why(outcome, one), expected_evidence=one.expected_evidence, cost=one.cost,
+            decides=one.decides,
         )
         for one in outcome.ahead.ranked
-        if one.separation >= WORTH
+        if one.expected_evidence >= WORTH
     ][:MOST_PROPOSED]  # fmt: skip
     nothing = [] if computed or not outcome.ahead.ranked else [_none_separates(outcome)]
     return (
@@ -180,7 +190,7 @@ def _together(outcome: Outcome) -> list[NextStep]:
         NextStep(
             text=" and ".join(found.titles),
             why=f"the cheapest set that decides; in a simulation with each of them true the diagnosis {shown}",
-            separation=found.separation,
+            expected_evidence=found.expected_evidence,
             cost=found.cost,
             decides=True,
         )

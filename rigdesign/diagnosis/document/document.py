@@ -66,11 +66,13 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
         "gap": gap_document(outcome),
         "located": [_located(one, result.measurement) for one in outcome.before],
         "unexplained": _unexplained(outcome),
+        "costs_stated": bool(result.measurement.costs),
         "next_measurements": [
             {
                 "measurement": one.text,
                 "why": one.why,
-                "separation": one.separation,
+                "expected_evidence": one.expected_evidence,
+                "expected_odds": one.odds,
                 "cost": one.cost,
                 "decides": one.decides,
             }

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from rigdesign.case.model import Case
 from rigdesign.measurement.places import Places
+from rigdesign.measurement.reading.document import ExtraPoint
 from rigdesign.prediction.model import Channel, OperatingCondition, Quantity
 
 SPARE = "could be: "
@@ -23,19 +24,6 @@ NOISE: dict[Quantity, float] = {
 }
 """Standard deviation of a reading of a sensor that would be added, its systematic part included [SI]."""
 
-COST: dict[Quantity, float] = {
-    "temperature": 1.0,
-    "oil_outlet_temperature": 1.0,
-    "motor_power": 4.0,
-    "drive_torque": 4.0,
-    "torque": 8.0,
-    "angle": 4.0,
-    "natural_frequency": 3.0,
-    "backlash": 1.0,
-    "seal_gap": 6.0,
-}
-"""Relative to one thermocouple."""
-
 MOST_TEMPERATURES = 12
 """Places of thermocouples that are proposed."""
 
@@ -46,7 +34,8 @@ class Extra:
 
     title: str
     setting: OperatingCondition
-    cost: float
+    changed: ExtraPoint
+    """What is changed for it, by which it costs."""
 
 
 def spare_channels(case: Case, used: Sequence[Channel], orders: tuple[float, ...]) -> tuple[Channel, ...]:
@@ -91,12 +80,12 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
             Extra(
                 title="a point at the least speed and the greatest torque",
                 setting=replace(middle, name=f"{SPARE}slow", speed=slow, torque=heavy),
-                cost=1.0,
+                changed="operating_point",
             ),
             Extra(
                 title="a point at the greatest speed and the least torque",
                 setting=replace(middle, name=f"{SPARE}fast", speed=fast, torque=light),
-                cost=1.0,
+                changed="operating_point",
             ),
         ]
     if middle.inlet_temperature:
@@ -105,7 +94,7 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
             Extra(
                 title="a point with all oil 20 K colder",
                 setting=replace(middle, name=f"{SPARE}colder", inlet_temperature=colder),
-                cost=1.5,
+                changed="inlet_temperature",
             )
         )
     if middle.flow:
@@ -114,7 +103,7 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
             Extra(
                 title="a point with half as much oil again",
                 setting=replace(middle, name=f"{SPARE}flow", flow=more),
-                cost=1.0,
+                changed="oil_flow",
             )
         )
     if meshes:
@@ -123,7 +112,7 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
             Extra(
                 title=f"a point with the wheel of {meshes[0]} put on five teeth further",
                 setting=replace(middle, name=f"{SPARE}re-indexed", tooth_offset=offset),
-                cost=5.0,
+                changed="reassembly",
             )
         )
     return tuple(found)

@@ -1,26 +1,31 @@
-"""The measurement that would tell rivals apart: separation by what is already known, per cost.
+"""The measurement that would tell rivals apart: the evidence it is expected to give, per cost.
 
-Two rivals, each at its best fit, foresee different readings of a new sensor or point. What they disagree on is
-evaluated by the covariance of those readings given the ones there are, each rival free to change its size within what
-the data leave it (T-optimal design for rival models, Atkinson and Fedorov, Biometrika 62, 1975, 57).
+Two rivals, each at its best fit, foresee different readings of a new sensor or point: normal distributions by the
+covariance of those readings given the ones there are, each rival free to change its size within what the data leave it.
+If one of them is true, the expected logarithm of its Bayes factor over the other is the divergence of the two
+distributions (Kullback and Leibler, Ann. Math. Stat. 22, 1951, 79; as a criterion of design: Box and Hill,
+Technometrics 9, 1967, 57).
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 
 from rigdesign.diagnosis.statistics.columns import Array
 
-TELLS = 10.0
-"""Separation [variances] from which on a measurement decides between two rivals."""
+TELLS = 5.0
+"""Expected logarithm of the Bayes factor of the true rival from which on a measurement decides: odds of 150 to 1."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Proposal:
     """Something that could be measured next.
 
-    rows : of the readings it would add, in the candidates' table; cost : relative to one thermocouple
+    rows : of the readings it would add, in the candidates' table; cost : as the set states costs, else relative to one
+        thermocouple
     """
 
     title: str
@@ -45,11 +50,11 @@ class Rival:
 class Ranked:
     """A proposal with what it would bring.
 
-    separation : of the two rivals that it separates least, in variances
+    expected_evidence : logarithm of the Bayes factor of the true rival, of the two that are told apart worst
     """
 
     title: str
-    separation: float
+    expected_evidence: float
     cost: float
     decides: bool
 
@@ -58,11 +63,12 @@ class Ranked:
 class SmallestSet:
     """Measurements that decide together, the cheapest set that was found.
 
-    separation : of the two rivals that they separate least [variances]; cost : of all; rows : of their readings
+    expected_evidence : logarithm of the Bayes factor of the true rival, of the two that are told apart worst
+    cost : of all; rows : of their readings
     """
 
     titles: tuple[str, ...]
-    separation: float
+    expected_evidence: float
     cost: float
     rows: tuple[int, ...]
 
@@ -90,28 +96,31 @@ class Foreseen:
             free=tuple(_freedom(one, gain, measured) for one in rivals),
         )
 
-    def separation(self, rows: Sequence[int]) -> float:
-        """Of the two rivals that some readings separate least [variances]."""
+    def expected_evidence(self, rows: Sequence[int]) -> float:
+        """Expected logarithm of the Bayes factor by some readings, of the true and the false rival told apart worst."""
         at = np.array(rows, dtype=np.intp)
         left = self.left[np.ix_(at, at)]
+        means = [values[at] for values in self.values]
+        spreads = [left + free[at] @ free[at].T for free in self.free]
         return min(
-            _separation(self.values[i][at] - self.values[j][at], left, self.free[i][at], self.free[j][at])
-            for i in range(len(self.values))
-            for j in range(i + 1, len(self.values))
+            _divergence(means, spreads, true, false) for true, false in permutations(range(len(means)), 2)
         )
 
 
 def ranked(foreseen: Foreseen, proposals: Sequence[Proposal]) -> tuple[Ranked, ...]:
-    """Proposals by separation per cost, best first; none with fewer than two rivals."""
+    """Proposals by expected evidence per cost, best first; none with fewer than two rivals.
+
+    Evidence beyond what decides is worth nothing more.
+    """
     if len(foreseen.values) < 2:
         return ()
     found = []
     for proposal in proposals:
-        least = foreseen.separation(proposal.rows)
+        least = foreseen.expected_evidence(proposal.rows)
         found.append(
-            Ranked(title=proposal.title, separation=least, cost=proposal.cost, decides=least >= TELLS)
+            Ranked(title=proposal.title, expected_evidence=least, cost=proposal.cost, decides=least >= TELLS)
         )
-    return tuple(sorted(found, key=lambda one: -one.separation / one.cost))
+    return tuple(sorted(found, key=lambda one: (-min(one.expected_evidence, TELLS) / one.cost, one.cost)))
 
 
 MOST_TOGETHER = 4
@@ -121,8 +130,8 @@ MOST_TOGETHER = 4
 def smallest_set(foreseen: Foreseen, proposals: Sequence[Proposal]) -> SmallestSet | None:
     """The cheapest measurements found that decide together; None where no few of them do.
 
-    Measurements are added one at a time, each the one that separates most per cost with those before; then those that
-    the others make superfluous are taken out, the dearest first.
+    Measurements are added one at a time, each the one expected to give most per cost with those before; then those
+    that the others make superfluous are taken out, the most expensive first.
     """
     if len(foreseen.values) < 2:
         return None
@@ -132,24 +141,22 @@ def smallest_set(foreseen: Foreseen, proposals: Sequence[Proposal]) -> SmallestS
         left = [one for one in proposals if one not in chosen]
         if not left:
             return None
-        separations = [foreseen.separation(_rows([*chosen, one])) for one in left]
-        worth = [
-            (min(s, TELLS) - min(reached, TELLS)) / one.cost for one, s in zip(left, separations, strict=True)
-        ]
+        evidence = [foreseen.expected_evidence(_rows([*chosen, one])) for one in left]
+        worth = [(min(found, TELLS) - reached) / one.cost for one, found in zip(left, evidence, strict=True)]
         best = int(np.argmax(worth))
         if worth[best] <= 0.0:
             return None
         chosen.append(left[best])
-        reached = separations[best]
+        reached = evidence[best]
     if reached < TELLS:
         return None
     for one in sorted(chosen, key=lambda item: -item.cost):
         fewer = [other for other in chosen if other is not one]
-        if fewer and foreseen.separation(_rows(fewer)) >= TELLS:
+        if fewer and foreseen.expected_evidence(_rows(fewer)) >= TELLS:
             chosen = fewer
     return SmallestSet(
         titles=tuple(one.title for one in chosen),
-        separation=foreseen.separation(_rows(chosen)),
+        expected_evidence=foreseen.expected_evidence(_rows(chosen)),
         cost=sum(one.cost for one in chosen),
         rows=_rows(chosen),
     )
@@ -165,6 +172,11 @@ def _freedom(rival: Rival, gain: Array, measured: int) -> Array:
     return np.asarray(moved * rival.deviations)
 
 
-def _separation(apart: Array, left: Array, first: Array, second: Array) -> float:
-    spread = left + first @ first.T + second @ second.T
-    return float(apart @ np.linalg.solve(spread, apart))
+def _divergence(means: Sequence[Array], spreads: Sequence[Array], true: int, false: int) -> float:
+    """Of normal readings with the mean and spread of one rival from those of another."""
+    factor = cho_factor(spreads[false], lower=True)
+    apart = means[true] - means[false]
+    ratio = np.asarray(cho_solve(factor, spreads[true]))
+    _, logarithm = np.linalg.slogdet(ratio)
+    square = float(apart @ cho_solve(factor, apart))
+    return 0.5 * (square + float(np.trace(ratio)) - len(apart) - float(logarithm))

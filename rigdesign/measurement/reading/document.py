@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from datetime import date
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -136,6 +136,12 @@ class ChannelTable(Part):
     """Name in recordings; that of the channel when left out."""
 
 
+ExtraPoint = Literal["operating_point", "oil_flow", "inlet_temperature", "reassembly"]
+"""A further operating point, by what has to be changed for it."""
+COST_ITEMS: tuple[str, ...] = (*get_args(prediction.Quantity), *get_args(ExtraPoint))
+"""What a cost may be stated of: a sensor by its quantity, or a further point."""
+
+
 class Doubt(Part):
     """A number of the set, or one it depends on, that contradicts another of the same source."""
 
@@ -160,5 +166,7 @@ class MeasurementFile(Part):
     points: Mapping[Label, Point] = {}
     settings: Mapping[Label, SettingColumn] = Field(min_length=1)
     channels: Mapping[Label, ChannelTable] = Field(min_length=1)
+    costs: Mapping[Text, Annotated[float, Field(gt=0.0)]] = {}
+    """Of one sensor more by its quantity, and of one point more by what is changed for it, in any one unit."""
     doubts: tuple[Doubt, ...] = ()
     """What the writer of the set suspects of it; reported as suspected input errors."""

@@ -113,6 +113,8 @@ class MeasurementSet:
     points: tuple[MeasuredPoint, ...]
     readings: Mapping[Feature, NDArray[np.float64]]
     findings: tuple[DataFinding, ...] = field(default=())
+    costs: Mapping[str, float] = field(default_factory=dict)
+    """Of further sensors and points, as stated."""
     hash: str = ""
 
     @cached_property

@@ -16,15 +16,17 @@ from rigdesign.diagnosis.decision.naming import Names, formatted
 from rigdesign.diagnosis.decision.proposals import (
     NOTHING_NEXT,
     NextMeasurements,
+    Offer,
     extras_of,
     next_measurements,
 )
-from rigdesign.diagnosis.document.advice import certainty, headline, steps
+from rigdesign.diagnosis.document.advice import LARGEST_ODDS, certainty, headline, steps
 from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.document.outcome import check_pick, outcome
 from rigdesign.diagnosis.effects_page import effects_page
 from rigdesign.diagnosis.library.candidates import SPARE
+from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from tests.builders.diagnosis import library, story, the_case
@@ -271,15 +273,16 @@ def test_what_no_key_says_is_a_correction_in_words() -> None:
 
 
 def test_proposals_come_first_and_keep_their_numbers() -> None:
-    proposal = Ranked(title="wheel put on further", separation=31.0, cost=5.0, decides=True)
+    proposal = Ranked(title="wheel put on further", expected_evidence=15.5, cost=5.0, decides=True)
     told_ = outcome(replace(story("mesh loss"), next_measurements=NextMeasurements(ranked=(proposal,))))
     first = steps(told_)[0]
-    assert (first.text, first.separation, first.cost, first.decides) == (
+    assert (first.text, first.expected_evidence, first.cost, first.decides) == (
         "wheel put on further",
-        31.0,
+        15.5,
         5.0,
         True,
     )
+    assert first.odds == LARGEST_ODDS
     assert certainty(told_).startswith("Proven")
 
 
@@ -315,7 +318,10 @@ def test_what_waits_is_not_in_the_catalogue() -> None:
     assert len(waiting) == len(WAITING) and not waiting & kinds
 
 
-def proposed(name: str, *, rivals: int = 3) -> NextMeasurements:
+USUAL = Costs()
+
+
+def proposed(name: str, *, rivals: int = 3, costs: Costs = USUAL) -> NextMeasurements:
     """What is to be measured next where the run-out of the wheel turns round with its place on the shaft."""
     result = story(name)
     extras = extras_of(result.case, result.data.settings)
@@ -329,21 +335,29 @@ def proposed(name: str, *, rivals: int = 3) -> NextMeasurements:
     alone = [one for one in first.evidence if one.hypothesis.family == "physical"]
     few = replace(first, evidence=tuple(alone[:rivals]))
     found = replace(result.diagnosis, evaluations=(few, *others))
-    return next_measurements(result.problem, found, offered, extras, result.calibration)
+    offer = Offer(library=offered, extras=extras, costs=costs)
+    return next_measurements(result.problem, found, offer, result.calibration)
 
 
 def test_the_point_that_tells_members_of_a_group_apart_is_proposed_first() -> None:
     found = proposed("alias", rivals=2)
     best, *others = found.ranked
     assert best.title.endswith("put on five teeth further") and best.decides
-    assert [one.separation for one in others] == pytest.approx([0.0] * 3, abs=1e-9)
+    assert [one.expected_evidence for one in others] == pytest.approx([0.0] * 3, abs=1e-9)
     assert found.together is not None and found.together.titles == (best.title,)
     assert dict(found.verified) == {"run_out:test.pinion": True, "run_out:test.wheel": True}
+
+
+def test_stated_costs_decide_between_measurements() -> None:
+    usual = proposed("mesh loss", rivals=3)
+    assert usual == NOTHING_NEXT
+    cheap = proposed("alias", rivals=2, costs=Costs(stated={"reassembly": 2.0}))
+    assert cheap.together is not None and cheap.together.cost == 2.0
 
 
 def test_a_single_explanation_has_nothing_to_be_told_from_but_nothing_at_all() -> None:
     assert proposed("alias", rivals=1) == NOTHING_NEXT
     assert proposed("mesh loss") == NOTHING_NEXT
     assert proposed("one point", rivals=0) == NOTHING_NEXT
-    from_nothing = [one.separation for one in proposed("one point", rivals=1).ranked]
+    from_nothing = [one.expected_evidence for one in proposed("one point", rivals=1).ranked]
     assert from_nothing and min(from_nothing) > 0.0

@@ -170,10 +170,12 @@ def test_next_measurement_prefers_what_the_rivals_foresee_differently():
     foreseen = Foreseen.of(covariance.matrix, answer, rivals)
     found = ranked(foreseen, proposals)
     assert found[0].title == "second"
-    spread = 0.3**2 + 0.1**2 * 9.0
-    assert found[0].separation == pytest.approx(9.0 / spread, rel=0.1)
+    alone, moved = 0.3**2, 0.3**2 + 0.1**2 * 9.0  # what b and a leave open
+    if_a = 0.5 * (9.0 / alone + moved / alone - 1.0 - np.log(moved / alone))
+    if_b = 0.5 * (9.0 / moved + alone / moved - 1.0 - np.log(alone / moved))
+    assert found[0].expected_evidence == pytest.approx(min(if_a, if_b), rel=0.02)
     assert found[0].decides
-    assert found[1].separation == pytest.approx(0.0, abs=1e-9)
+    assert found[1].expected_evidence == pytest.approx(0.0, abs=1e-9)
     together = smallest_set(foreseen, proposals)
     assert together is not None and together.titles == ("second",) and together.cost == 2.0
     assert smallest_set(foreseen, proposals[1:]) is None
@@ -198,7 +200,7 @@ def test_the_smallest_set_takes_two_where_one_does_not_decide_and_leaves_out_wha
     ]
     together = smallest_set(foreseen, offers)
     assert together is not None and together.titles == ("first", "second")
-    assert together.separation == pytest.approx(2.0**2 + 2.9**2)
+    assert together.expected_evidence == pytest.approx(0.5 * (2.0**2 + 2.9**2))
 
 
 SETTINGS = (
