@@ -72,7 +72,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.suspicion.FAINT": Source("sd", "choice", _JUDGEMENT),
     "decision.simulation.SEED": Source("-", "definition", "any number"),
     "statistics.next_measurement.MOST_TOGETHER": Source("-", "choice", _REPORT),
-    "decision.claims.REACHES": Source("-", "choice", _DEVELOPMENT),
+    "statistics.detectability.REACHES": Source("-", "choice", _DEVELOPMENT),
     "decision.claims.SIZES": Source("-", "choice", _NUMERICS),
     "decision.constants.NARROWED": Source(
         "-", "choice", "a constant known hardly better stays as the case has it"

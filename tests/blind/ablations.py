@@ -8,7 +8,7 @@ Each takes one part away from the calibration that is frozen.
 from collections.abc import Callable
 from dataclasses import replace
 
-from rigdesign.diagnosis.decision import workflow
+from rigdesign.diagnosis.decision import search, workflow
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 
@@ -63,8 +63,20 @@ def no_widening(calibration: Calibration) -> Calibration:
 
 def no_anonymous(calibration: Calibration) -> Calibration:
     """No competitors without a name."""
-    workflow.unmodelled_causes = lambda library, channels: iter(())
+    search.unmodelled_causes = lambda library, channels: iter(())
     return calibration
+
+
+def no_tiers(calibration: Calibration) -> Calibration:
+    """All numbers at once: orders of the meshes decide like the others."""
+    workflow._Data.tiers = ("all",)  # type: ignore[method-assign, assignment]
+    return calibration
+
+
+def no_groups(calibration: Calibration) -> Calibration:
+    """No groups of effects that leave one trace; such a group of two or three is found by its posterior alone."""
+    plain, given = (replace(one, one_trace=0) for one in (calibration.plain, calibration.given_baseline))
+    return replace(calibration, plain=plain, given_baseline=given)
 
 
 def _only(calibration: Calibration, kept: tuple[str, ...]) -> Calibration:
@@ -80,5 +92,7 @@ ABLATIONS: dict[str, Callable[[Calibration], Calibration]] = {
     "no_hedge": no_hedge,
     "no_widening": no_widening,
     "no_anonymous": no_anonymous,
+    "no_tiers": no_tiers,
+    "no_groups": no_groups,
 }
 """By the name they have on the command line."""

@@ -1,8 +1,8 @@
 """Numbers of the blind score, each with its count and Wilson interval."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import isnan, nan, sqrt
 from statistics import median
 from typing import Any
 
@@ -87,10 +87,10 @@ def named(row: Row) -> list[str]:
 def right(row: Row) -> bool:
     """The hidden effect alone was named, or is in the alias group."""
     hidden = set(truths(row))
-    found = set(row["named"])
+    told = set(row["named"])
     if row["verdict"] == "alias_group":
-        return bool(hidden & found)
-    return bool(named(row)) and found == hidden
+        return bool(hidden & told)
+    return bool(named(row)) and told == hidden
 
 
 def wrong(row: Row) -> bool:
@@ -104,7 +104,7 @@ SIZES = {"measured": "detectable_sizes", "declared": "detectable_sizes_declared"
 """Floor (`tests.virtual_rig.detect.FLOORS`) -> key of an effect."""
 
 
-def size_of(row: Row, floor: str = "measured") -> float:
+def size_of(row: Row, floor: str = "declared") -> float:
     """Detectable sizes of a single effect by the truth, over one of two floors.
 
     Raises KeyError for an answer that does not hold them; `tests.blind.score generate` adds them.
@@ -122,56 +122,118 @@ def among_three(row: Row) -> bool:
     return right(row) or bool(set(truths(row)) & {part for one in row["top"][:3] for part in one})
 
 
-def table(rows: Sequence[Row], floor: str = "measured") -> list[tuple[str, str, str]]:
-    """(metric, target, measured) of one mode, detectable sizes over one of two floors."""
+@dataclass(frozen=True)
+class Line:
+    """One line of the score: what is counted, its target with a baseline and for the model alone, what was measured."""
+
+    name: str
+    baseline: str
+    alone: str
+    measured: str
+
+
+def table(rows: Sequence[Row], floor: str = "declared") -> list[Line]:
+    """The score of one mode, detectable sizes over one of two floors."""
     kinds = {kind: [row for row in rows if row["kind"] == kind] for kind in
              ("none", "single", "pair", "out", "small", "input")}  # fmt: skip
-    large = [row for row in kinds["single"] if size_of(row, floor) >= 2.0]
-    between = [row for row in kinds["single"] if 1.0 <= size_of(row, floor) < 2.0]
-    of_data = [row for row in rows if row["kind"] != "input"]
-    anything = [
-        row for row in (*kinds["single"], *kinds["pair"]) if named(row) or row["verdict"] == "alias_group"
-    ]
-    sizes = [row for row in kinds["single"] if right(row) and row["covered"] is not None]
-    errors = [row["size_error"] for row in sizes]
-    gaps = [row["gap_shrink"] for row in kinds["single"] if right(row) and row["gap_shrink"] is not None]
-    raw = [shrink for row in kinds["single"] if right(row) and (shrink := raw_shrink(row)) is not None]
-    worse = [row for row in rows if row["gap_worse"] is not None]
-    plain = [one for one in large if not easy(one)]
     return [
-        ("named without effect", "<= 2 %", str(rate(kinds["none"], spoke))),
-        ("alarm without effect: present, not identified", "-", str(rate(kinds["none"], alarmed))),
-        ("alarm without effect: data suspected", "-", str(rate(kinds["none"], suspected))),
-        ("data suspected where none are wrong", "-", str(rate(of_data, suspected))),
-        ("exchange told where there is none", "-", str(rate(rows, exchanged_falsely))),
-        ("named out of catalogue", "<= 5 %", str(rate(kinds["out"], spoke))),
-        (
-            "out of catalogue flagged",
-            "-",
-            str(rate(kinds["out"], lambda r: r["verdict"] == "unknown_located")),
-        ),
-        ("single >= 2 MDE right, excitation/loss/flow", ">= 90 %", str(rate(filter(easy, large), right))),
-        ("single >= 2 MDE right, parameter", ">= 70 %", str(rate(plain, right))),
-        ("single >= 2 MDE, parameter among three", ">= 95 %", str(rate(plain, among_three))),
-        ("single 1-2 MDE right", "-", str(rate(between, right))),
-        ("wrong or extra name on singles", "<= 2 %", str(rate(kinds["single"], wrong))),
-        ("true one in what is named", ">= 97 %", str(rate(anything, one_is_in))),
-        ("pairs: both", ">= 75 %", str(rate(kinds["pair"], lambda r: set(truths(r)) <= set(r["named"])))),
-        ("pairs: at least one", ">= 95 %", str(rate(kinds["pair"], one_is_in))),
-        ("pairs: invented", "0", str(rate(kinds["pair"], wrong))),
-        ("small: within noise or too small", ">= 95 %", str(rate(kinds["small"], silent))),
-        ("input errors: right", "-", str(rate(kinds["input"], one_is_in))),
-        ("95 % intervals cover", "90-98 %", str(rate(sizes, lambda r: r["covered"]))),
-        ("median size error", "<= 10 % / 5 %", f"{median(errors):.1%}" if errors else "none"),
-        ("median shrink of the gap above its floor", ">= 80 %", f"{median(gaps):.0%}" if gaps else "none"),
-        (
-            "median shrink of the raw gap, own channels",
-            ">= 80 % base",
-            f"{median(raw):.0%}" if raw else "none",
-        ),
-        ("gap never worse", ">= 97 %", str(rate(worse, lambda r: not r["gap_worse"]))),
-        ("median time of a diagnosis", "<= 15 s", f"{median([r['seconds'] for r in rows] or [0.0]):.1f} s"),
+        *_without_effect(kinds),
+        *_singles(kinds["single"], floor),
+        *_pairs(kinds["pair"]),
+        Line("small: within noise or too small", "-", "-", str(rate(kinds["small"], silent))),
+        *_data(rows, kinds["input"]),
+        *_sizes(kinds["single"]),
+        *_gaps(rows),
+        Line("median time of a diagnosis", "<= 15 s", "<= 15 s", f"{_median([r['seconds'] for r in rows]):.1f} s"),
+    ]  # fmt: skip
+
+
+def compared(rows: Sequence[Row], comparator: str, floor: str = "declared") -> list[tuple[str, str]]:
+    """What a simpler method names on the same sets."""
+    own: list[Row] = [{**row, "verdict": "named", "named": row["comparators"][comparator]} for row in rows]
+    none, single, out = ([row for row in own if row["kind"] == kind] for kind in ("none", "single", "out"))
+    large = [row for row in single if size_of(row, floor) >= 2.0]
+    return [
+        ("named without an effect", str(rate(none, spoke))),
+        ("named outside the catalogue", str(rate(out, spoke))),
+        ("wrong or extra name on singles", str(rate(single, wrong))),
+        ("excitation, loss, flow of 2 sizes or more: right", str(rate(filter(easy, large), right))),
+        ("parameter of 2 sizes or more: right", str(rate((row for row in large if not easy(row)), right))),
     ]
+
+
+def _without_effect(kinds: Mapping[str, Sequence[Row]]) -> list[Line]:
+    """What is said of healthy rigs, and of effects that the catalogue does not hold."""
+    return [
+        Line("named without an effect", "<= 1 %", "<= 1 %", str(rate(kinds["none"], spoke))),
+        Line("false alarm of any kind", "<= 5 %", "<= 5 %", str(rate(kinds["none"], alarmed))),
+        Line("named outside the catalogue", "<= 2 %", "<= 2 %", str(rate(kinds["out"], spoke))),
+        Line("suspected outside the catalogue", "-", "-", str(rate(kinds["out"], suspects))),
+        Line("outside the catalogue: located", "-", "-", str(rate(kinds["out"], located))),
+    ]
+
+
+def _singles(rows: Sequence[Row], floor: str) -> list[Line]:
+    large = [row for row in rows if size_of(row, floor) >= 2.0]
+    between = [row for row in rows if 1.0 <= size_of(row, floor) < 2.0]
+    excitations, parameters = [row for row in large if easy(row)], [row for row in large if not easy(row)]
+    return [
+        Line("wrong or extra name on singles", "<= 2 %", "<= 2 %", str(rate(rows, wrong))),
+        Line("wrong suspicion on singles", "-", "-", str(rate(rows, wrongly_suspected))),
+        Line("excitation, loss, flow: name or group", ">= 85 %", ">= 40 %", str(rate(excitations, right))),
+        Line(
+            "excitation, loss, flow: among three", ">= 97 %", ">= 70 %", str(rate(excitations, among_three))
+        ),
+        Line("parameter: name or group", ">= 75 %", ">= 30 %", str(rate(parameters, right))),
+        Line("parameter: among three", ">= 95 %", ">= 60 %", str(rate(parameters, among_three))),
+        Line(">= 2 sizes: named, group or suspected", "-", "-", str(rate(large, found))),
+        Line("1 to 2 sizes: name or group", "-", "-", str(rate(between, right))),
+    ]
+
+
+def _pairs(rows: Sequence[Row]) -> list[Line]:
+    return [
+        Line("pairs: at least one named or suspected", ">= 85 %", "-", str(rate(rows, one_is_in))),
+        Line("pairs: both", ">= 40 %", "-", str(rate(rows, lambda r: set(truths(r)) <= set(r["named"])))),
+        Line("pairs: invented", "0", "-", str(rate(rows, wrong))),
+    ]
+
+
+def _data(rows: Sequence[Row], inputs: Sequence[Row]) -> list[Line]:
+    of_data = [row for row in rows if row["kind"] != "input"]
+    return [
+        Line("input errors found", ">= 90 %", ">= 60 %", str(rate(inputs, one_is_in))),
+        Line("false exchanges", "0", "0", str(rate(rows, exchanged_falsely))),
+        Line("data suspected where none are wrong", "-", "-", str(rate(of_data, suspects_data))),
+    ]
+
+
+def _sizes(rows: Sequence[Row]) -> list[Line]:
+    """Of single effects that were named rightly."""
+    sized = [row for row in rows if right(row) and row["covered"] is not None]
+    return [
+        Line("95 % intervals that hold the true size", "90-98 %", "90-98 %", str(rate(sized, lambda r: r["covered"]))),
+        Line("median size error", "<= 10 %", "-", _share(_median([row["size_error"] for row in sized]))),
+    ]  # fmt: skip
+
+
+def _gaps(rows: Sequence[Row]) -> list[Line]:
+    """Of all sets in which something was named, on the points held out, with the patched case run in full."""
+    named_ones = [row for row in rows if row.get("gap")]
+    shrinks = [shrink for row in named_ones if (shrink := raw_shrink(row)) is not None]
+    return [
+        Line("raw gap of the moved channels shrinks", ">= 80 %", "-", _share(_median(shrinks))),
+        Line("raw gap grows", "0", "0", str(rate(named_ones, lambda r: r["gap"][3] > r["gap"][2]))),
+        Line("whitened gap grows", "0", "0", str(rate(named_ones, lambda r: r["gap_worse"]))),
+    ]
+
+
+def _median(values: Sequence[float]) -> float:
+    return median(values) if values else nan
+
+
+def _share(value: float) -> str:
+    return "none" if isnan(value) else f"{value:.0%}"
 
 
 def raw_shrink(row: Row) -> float | None:
@@ -189,11 +251,31 @@ def spoke(row: Row) -> bool:
 
 
 def alarmed(row: Row) -> bool:
+    """Anything is said to be present or wrong, with a name or without."""
+    return not silent(row)
+
+
+def located(row: Row) -> bool:
     """An effect is said to be present, without a name."""
     return bool(row["verdict"] == "unknown_located")
 
 
-def suspected(row: Row) -> bool:
+def suspects(row: Row) -> bool:
+    """An effect is suspected."""
+    return bool(row["verdict"] == "suspected")
+
+
+def wrongly_suspected(row: Row) -> bool:
+    """An effect is suspected that is not hidden."""
+    return suspects(row) and not one_is_in(row)
+
+
+def found(row: Row) -> bool:
+    """The hidden effect is named, in the group, or suspected."""
+    return right(row) or (suspects(row) and one_is_in(row))
+
+
+def suspects_data(row: Row) -> bool:
     """The data are said to be wrong."""
     return bool(row["verdict"] == "input_error_suspected")
 
@@ -211,4 +293,4 @@ def one_is_in(row: Row) -> bool:
 
 def silent(row: Row) -> bool:
     """Nothing is claimed."""
-    return row["verdict"] in ("within_noise", "too_small")
+    return row["verdict"] in ("within_noise", "too_small", "data_insufficient")

@@ -4,10 +4,10 @@
     python -m tests.blind.score calibrate --out WORK [--without RIG]
     python -m tests.blind.score run dev plain --out WORK [--calibration FILE]
     python -m tests.blind.score run test plain --out WORK --commit HASH
-    python -m tests.blind.score report dev plain --out WORK [--floor declared]
+    python -m tests.blind.score report dev plain --out WORK [--floor measured]
 
-A report counts detectable sizes over the floor they were drawn by, or over the one declared before any set was
-diagnosed (`tests.virtual_rig.detect`); `generate` adds these to answers that were stored without them. Every step goes
+A report counts detectable sizes over the floor declared before any set was diagnosed, or over the one they were drawn
+by (`tests.virtual_rig.detect`); `generate` adds these to answers that were stored without them. Every step goes
 on where it was stopped. Sets and results stay in WORK, outside of the repository.
 """
 
@@ -41,7 +41,8 @@ from rigdesign.diagnosis.run import diagnose_measurement, read_residuals
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
-from tests.blind.metrics import SIZES, Row, canonical, table
+from tests.blind.comparators import COMPARATORS, comparators
+from tests.blind.metrics import SIZES, Row, canonical, compared, table
 from tests.blind.splits import RIGS, SENSORS, Spec, specs
 from tests.builders.paths import ROOT
 from tests.virtual_rig.generate import make_set
@@ -240,6 +241,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
         "chi_square": found.evaluations[0].chi_square / found.evaluations[0].count,
         "rejected": len(found.rejected),
         "seconds": time.perf_counter() - started,
+        "comparators": comparators(result),
         "covered": None,
         "size_error": None,
         "gap_shrink": None,
@@ -358,8 +360,13 @@ def report(split: str, mode: str, out: Path, tag: str, floor: str) -> None:
     for chosen in (None, *RIGS, *SENSORS):
         own = [row for row in rows if chosen in (None, row["rig"], row["sensors"])]
         print(f"\n{split}, {mode}, {chosen or 'all'}: {len(own)} sets, sizes over the {floor} floor")
-        for name, target, measured in table(own, floor):
-            print(f"  {name:48s} {target:14s} {measured}")
+        for line in table(own, floor):
+            target = line.baseline if mode == "baseline" else line.alone
+            print(f"  {line.name:44s} {target:9s} {line.measured}")
+    for name in COMPARATORS:
+        print(f"\n{split}, {mode}, all, by {name}:")
+        for what, measured in compared(rows, name, floor):
+            print(f"  {what:54s} {measured}")
 
 
 def main() -> None:
@@ -377,7 +384,7 @@ def main() -> None:
     parser.add_argument("--placebo", action="store_true", help="readings shuffled over the points")
     parser.add_argument("--without")
     parser.add_argument("--tag", default="")
-    parser.add_argument("--floor", choices=sorted(SIZES), default="measured")
+    parser.add_argument("--floor", choices=sorted(SIZES), default="declared")
     parser.add_argument("--workers", type=int, default=2)
     args = parser.parse_args()
     match args.step:

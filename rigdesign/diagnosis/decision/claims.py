@@ -19,16 +19,13 @@ from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.decision.proof import Proof, Sizes
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.detectability import ALIAS, SEEN
+from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
 from rigdesign.diagnosis.statistics.intervals import JointFit
 
 NAMED = frozenset({"physical", "sensor"})
 """Families of what has a name."""
-
-REACHES = 0.5
-"""Share of the trace of a name that another effect must leave within its bounds to stand for it."""
 
 SIZES = 13
 """Sizes over the bounds of a curve at which its answer is held against a trace."""

@@ -4,8 +4,8 @@ The order of the questions is that of the workflow's step 8. Thresholds are froz
 (`rigdesign.diagnosis.decision.defaults`).
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -43,10 +43,10 @@ class Thresholds:
     named : inclusion probability of a name; input : mass of input errors; catalogue : logarithm of the Bayes factor
     by which an explanation outside the catalogue may lead the best one within; misfit : standard deviations of the
     whitened square after the best fit above which nothing known fits, unless that is less than a share of the fall;
-    group : most members of an alias group; evidence, evidence_loop : logarithm of the Bayes factor against a
-    healthy rig that each name of an explanation needs, in the heat and in orders and natural frequencies; support :
-    fall of the whitened square that must be left of a name's explanation without the operating point that speaks
-    for it most; share, share_loop : of the largest fall explained so far that this must be, as no answer of the model
+    group, one_trace : most members of an alias group, of any effects and of those that leave one trace; evidence,
+    evidence_loop : logarithm of the Bayes factor against a healthy rig that each name of an explanation needs, in the
+    heat and in orders and natural frequencies; support : fall of the whitened square that must be left of a name's
+    explanation without the operating point that speaks for it most; share, share_loop : of the largest fall explained so far that this must be, as no answer of the model
     is more exact, in the heat and in orders and natural frequencies
     """
 
@@ -55,6 +55,7 @@ class Thresholds:
     catalogue: float = 5.0
     misfit: float = 5.0
     group: int = 3
+    one_trace: int = 6
     evidence: float = 0.0
     evidence_loop: float = 0.0
     support: float = 12.0
@@ -145,6 +146,8 @@ class Candidates:
     detectable: Mapping[str, bool]
     orders: frozenset[str] = frozenset()
     sensors: frozenset[str] = frozenset()
+    alike: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    """Effect -> those that leave its trace in these numbers, itself left out."""
 
 
 def decide(
@@ -200,7 +203,9 @@ def decide(
             verdict="named", named=named, reason=f"{named[0]} is part of every probable explanation"
         )
     if weights.masses["none"] < 1.0 - thresholds.named:
-        group = _smallest_group(evidence, weights, candidates.effects, thresholds)
+        group = _smallest_group(evidence, weights, candidates.effects, thresholds) or _group_of_one_trace(
+            evidence, weights, candidates, thresholds
+        )
         if group:
             return Decision(
                 verdict="alias_group",
@@ -228,17 +233,36 @@ def _smallest_group(
     parts = [
         part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
     ]
-    chosen: list[str] = []
-    for part in parts[: thresholds.group]:
-        chosen.append(part)
-        mass = sum(
-            weights.masses[one.hypothesis.name]
-            for one in evidence
-            if not set(one.hypothesis.parts).isdisjoint(chosen)
-        )
-        if len(chosen) > 1 and mass >= thresholds.named:
-            return tuple(chosen)
+    for count in range(2, min(thresholds.group, len(parts)) + 1):
+        if _mass_of_any(evidence, weights, parts[:count]) >= thresholds.named:
+            return tuple(parts[:count])
     return ()
+
+
+def _group_of_one_trace(
+    evidence: Sequence[Evidence], weights: Posterior, candidates: Candidates, thresholds: Thresholds
+) -> tuple[str, ...]:
+    """The most probable effect with all that leave its trace, if at least one of them is present at the required
+    probability; the most probable first, empty if they are not few."""
+    known = {part: mass for part, mass in weights.inclusion.items() if part in candidates.effects}
+    if not known:
+        return ()
+    leader = max(known, key=lambda part: known[part])
+    group = {leader, *candidates.alike.get(leader, frozenset())}
+    if (
+        not 1 < len(group) <= thresholds.one_trace
+        or _mass_of_any(evidence, weights, group) < thresholds.named
+    ):
+        return ()
+    return tuple(sorted(group, key=lambda part: (-known.get(part, 0.0), part)))
+
+
+def _mass_of_any(evidence: Sequence[Evidence], weights: Posterior, parts: Collection[str]) -> float:
+    """Posterior mass of all explanations that hold at least one of some parts."""
+    wanted = frozenset(parts)
+    return sum(
+        weights.masses[one.hypothesis.name] for one in evidence if not wanted.isdisjoint(one.hypothesis.parts)
+    )
 
 
 def _silent(

@@ -18,7 +18,7 @@ from rigdesign.diagnosis.decision.decision import (
 )
 from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.detectability import Detectability, detectabilities
+from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, Detectability, detectabilities
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis, evaluate_pair
 from rigdesign.diagnosis.statistics.support import support
 
@@ -116,6 +116,7 @@ def evaluate(
         detectable={row.effect: row.detectable <= row.bound for row in table},
         orders=criteria.orders,
         sensors=frozenset(part for one in explanations.sensor for part in one.parts),
+        alike=_alike(singles, frozenset(part for one in known for part in one.parts)),
     )
     square = WhitenedSquare(value=space.chi_square, count=len(space.residual))
     decision = decide(evidence, weights, square, candidates, criteria.thresholds)
@@ -224,6 +225,27 @@ def _without_copies(singles: Sequence[Evidence]) -> list[Evidence]:
         return length > 0.0 and float((directions @ one.answer).max()) > COPY * length
 
     return [one for one in singles if one.hypothesis.family not in UNNAMED or not copied(one)]
+
+
+def _alike(singles: Sequence[Evidence], effects: frozenset[str]) -> dict[str, frozenset[str]]:
+    """Effect -> others whose answer at their best fit is its own one again: correlated, and not much smaller."""
+    best: dict[str, Evidence] = {}
+    for one in sorted(singles, key=lambda single: -single.log_bayes):
+        part = one.hypothesis.parts[0]
+        if part in effects and np.any(one.answer):
+            best.setdefault(part, one)
+    if not best:
+        return {}
+    names = list(best)
+    answers = np.array([one.answer for one in best.values()])
+    products = answers @ answers.T
+    squares = np.diagonal(products)
+    same = products > ALIAS * np.sqrt(np.outer(squares, squares))
+    reaching = products >= REACHES * squares[:, None]
+    return {
+        name: frozenset(names[other] for other in np.flatnonzero(row) if other != place)
+        for place, (name, row) in enumerate(zip(names, same & reaching, strict=True))
+    }
 
 
 def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:

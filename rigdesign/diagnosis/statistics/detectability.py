@@ -19,6 +19,9 @@ SEPARATED = 4.3
 ALIAS = 0.95
 """Correlation above which two effects look alike to these sensors."""
 
+REACHES = 0.5
+"""Share of the trace of an effect that another one must leave within its bounds to stand for it."""
+
 Verdict = Literal["testable", "visible only", "not testable here"]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.blind import score
-from tests.blind.metrics import table
+from tests.blind.metrics import compared, table
 from tests.blind.splits import Spec
 from tests.virtual_rig import detect
 from tests.virtual_rig.generate_plans import plan_points, sensors
@@ -24,8 +24,8 @@ def loss(measured, declared):
     return {"effect": "mesh_loss:test", "detectable_sizes": measured, "detectable_sizes_declared": declared}
 
 
-def numbers(rows, floor="measured"):
-    return {name: text.split(" ")[0] for name, _, text in table(rows, floor)}
+def numbers(rows, floor="declared"):
+    return {line.name: line.measured.split(" ")[0] for line in table(rows, floor)}
 
 
 def test_false_alarms_are_counted_beside_names():
@@ -39,10 +39,38 @@ def test_false_alarms_are_counted_beside_names():
             row("input", "input_error_suspected", [swapped], [{"effect": swapped}]),
         ]
     )  # fmt: skip
-    assert found["alarm without effect: present, not identified"] == "1/4"
-    assert found["alarm without effect: data suspected"] == "1/4"
+    assert found["false alarm of any kind"] == "2/4"
+    assert found["named without an effect"] == "1/4"
     assert found["data suspected where none are wrong"] == "2/6"
-    assert found["exchange told where there is none"] == "2/7"
+    assert found["false exchanges"] == "2/7"
+    assert found["input errors found"] == "1/1"
+
+
+def test_a_suspicion_counts_for_pairs_and_as_an_alarm_and_names_nothing():
+    both = [loss(3.0, 3.0), {**loss(3.0, 3.0), "effect": "run_out:test.pinion"}]
+    found = numbers(
+        [
+            row("pair", "suspected", ["mesh_loss:test"], both), row("pair", "named", ["bypass:test"], both),
+            row("single", "suspected", ["bypass:test"], [loss(3.0, 3.0)]),
+            row("single", "suspected", ["mesh_loss:test"], [loss(3.0, 3.0)]),
+            row("none", "suspected", ["bypass:test"]), row("out", "suspected", ["bypass:test"]),
+        ]
+    )  # fmt: skip
+    assert found["pairs: at least one named or suspected"] == "1/2" and found["pairs: invented"] == "1/2"
+    assert found["false alarm of any kind"] == "1/1" and found["named without an effect"] == "0/1"
+    assert found["wrong suspicion on singles"] == "1/2" and found["wrong or extra name on singles"] == "0/2"
+    assert found[">= 2 sizes: named, group or suspected"] == "1/2"
+    assert found["named outside the catalogue"] == "0/1" and found["suspected outside the catalogue"] == "1/1"
+
+
+def test_comparators_are_counted_by_what_they_name():
+    rows = [
+        row("none", "within_noise", comparators={"BIC": ["leak:test"]}),
+        row("single", "too_small", (), [loss(3.0, 3.0)], comparators={"BIC": ["mesh_loss:test"]}),
+    ]
+    found = {what: text.split(" ")[0] for what, text in compared(rows, "BIC")}
+    assert found["named without an effect"] == "1/1"
+    assert found["excitation, loss, flow of 2 sizes or more: right"] == "1/1"
 
 
 def test_effects_count_as_detectable_over_either_floor():
@@ -52,11 +80,12 @@ def test_effects_count_as_detectable_over_either_floor():
         row("single", "too_small", (), [loss(2.5, 1.2)]),
         row("single", "within_noise", (), [loss(0.4, 0.9)]),
     ]
-    large, between = "single >= 2 MDE right, excitation/loss/flow", "single 1-2 MDE right"
-    assert (numbers(rows)[large], numbers(rows)[between]) == ("1/2", "0/1")
+    large, between = "excitation, loss, flow: name or group", "1 to 2 sizes: name or group"
+    measured = numbers(rows, "measured")
+    assert (measured[large], measured[between]) == ("1/2", "0/1")
     assert (numbers(rows, "declared")[large], numbers(rows, "declared")[between]) == ("1/2", "0/1")
     rows += [row("single", "named", ["mesh_loss:test"], [loss(1.9, 2.1)])]
-    assert numbers(rows)[large] == "1/2" and numbers(rows, "declared")[large] == "2/3"
+    assert numbers(rows, "measured")[large] == "1/2" and numbers(rows, "declared")[large] == "2/3"
 
 
 def test_a_set_stored_without_the_declared_size_is_no_silent_zero():

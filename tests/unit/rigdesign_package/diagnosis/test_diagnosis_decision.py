@@ -21,17 +21,18 @@ def evidence(name, log_bayes, family="physical"):
 USUAL = Thresholds()
 
 
-def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0):
+def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0, alike=()):
     ordered = sorted(evaluated, key=lambda one: -one.log_bayes)
     return decide(
         ordered,
         posterior(ordered, COUNTS),
         WhitenedSquare(value=ordered[0].gain + 60.0 + left, count=60),
         Candidates(
-            effects=frozenset({"leak", "ripple", *sensors}),
+            effects=frozenset({"leak", "ripple", *sensors, *alike}),
             detectable={"leak": True},
             orders=frozenset(loop),
             sensors=frozenset(sensors),
+            alike={name: frozenset(alike) - {name} for name in alike},
         ),
         thresholds,
     )
@@ -53,6 +54,18 @@ def test_orders_ask_for_more_evidence_than_heat(name, loop, named):
     assert (found.verdict == "named") is named
     if not named:
         assert "healthy rigs have given as much" in found.reason
+
+
+def test_effects_of_one_trace_are_a_group_however_the_posterior_is_divided_among_them():
+    bearings = ("all", "front", "rear", "pinion", "wheel")
+    each = [evidence(name, 40.0) for name in bearings]
+    assert verdict(*each, alike=bearings[:1]).verdict == "unknown_located"
+    found = verdict(*each, alike=bearings)
+    assert (found.verdict, set(found.named)) == ("alias_group", set(bearings))
+    rival = evidence("ripple", 40.0)
+    assert verdict(*each, rival, alike=bearings).verdict == "unknown_located"
+    few = Thresholds(one_trace=4)
+    assert verdict(*each, alike=bearings, thresholds=few).verdict == "unknown_located"
 
 
 def test_errors_of_sensors_do_not_mend_what_an_effect_leaves():
