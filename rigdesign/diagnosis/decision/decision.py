@@ -46,8 +46,8 @@ class Thresholds:
     group, one_trace : most members of an alias group, of any effects and of those that leave one trace; evidence,
     evidence_loop : logarithm of the Bayes factor against a healthy rig that each name of an explanation needs, in the
     heat and in orders and natural frequencies; support : fall of the whitened square that must be left of a name's
-    explanation without the operating point that speaks for it most; share, share_loop : of the largest fall explained so far that this must be, as no answer of the model
-    is more exact, in the heat and in orders and natural frequencies
+    explanation without the operating point that speaks for it most; share, share_loop : of the largest fall explained
+    so far that this must be, as no answer of the model is more exact, in the heat and in orders and natural frequencies
     """
 
     named: float = 0.95
