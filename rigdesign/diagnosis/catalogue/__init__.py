@@ -9,7 +9,7 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.registry import registered_effects
 
 
-def effects_of(case: Case, *, local: bool = False) -> tuple[Effect, ...]:
+def effects_of(case: Case, *, local: bool = True) -> tuple[Effect, ...]:
     """Entries for this case, in a fixed order; names are unique.
 
     Each has a healthy spread or a smallest size that matters.
