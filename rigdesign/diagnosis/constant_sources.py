@@ -40,6 +40,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.defaults.AMPLITUDES.input": Source(
         "-", "definition", "uncertainties as the measurement states them"
     ),
+    "decision.defaults.REAL_MODEL": Source("-", "choice", _PRACTICE, replaced=True),
     "decision.defaults.INFLATION": Source(
         "coordinate", "fit", "108 healthy sets of the virtual rig, three rigs"
     ),

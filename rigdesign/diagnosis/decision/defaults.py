@@ -38,6 +38,13 @@ AMPLITUDES = Amplitudes(
     input=1.0,
 )
 
+REAL_MODEL = {"channel": 0.05, "channel_speed": 0.02, "point": 0.01, "frequency": 0.05}
+"""Least amplitudes where a model of a real rig stands alone, with neither a healthy set as baseline nor a calibration.
+
+The fitted ones hold for a virtual rig and are a tenth of this: of temperatures over their excess, powers and natural
+frequencies a model that was never held against its rig is known to 5 % each, to 2 % per factor e of speed, and to 1 %
+from point to point."""
+
 INFLATION = {
     "single_pitch": 1.03e-06,
     "weak_tooth": 0.0454,
@@ -145,6 +152,17 @@ class Calibration:
     drift: Drift = DRIFT
     """With a baseline."""
     origin: Origin = Origin()
+
+    least_alone: Mapping[str, float] = field(default_factory=lambda: dict(REAL_MODEL))
+    """Least amplitudes without a baseline and without healthy sets of the rig."""
+
+    @property
+    def alone(self) -> Amplitudes:
+        """Amplitudes of the model alone: with a file those of the rig's own sets, else as wide as real models are."""
+        if self.origin.kind == "file":
+            return self.amplitudes
+        own = self.amplitudes.as_dict()
+        return self.amplitudes.with_values({n: max(own[n], least) for n, least in self.least_alone.items()})
 
     def thresholds(self, baseline: bool) -> Thresholds:
         """Those of a set with a baseline or without one."""

@@ -32,13 +32,13 @@ class Problem:
     def space(self, calibration: Calibration) -> Whitened:
         """Of all its numbers: against the model, or given the baseline."""
         if self.baseline is None:
-            return plain(self.residuals, calibration.amplitudes, calibration.inflation)
+            return plain(self.residuals, calibration.alone, calibration.inflation)
         return differenced(self.residuals, self.baseline, calibration.amplitudes, calibration.drift)
 
     def healthy(self, residuals: ResidualProblem, calibration: Calibration) -> tuple[Array, Array]:
         """Mean (n,) and covariance (n, n) of the residual of numbers of this rig while it is healthy."""
         if self.baseline is None:
-            covariance = residuals.covariance(calibration.amplitudes, calibration.inflation)
+            covariance = residuals.covariance(calibration.alone, calibration.inflation)
             return np.zeros(len(residuals.features)), covariance.matrix
         change = Change.of(residuals, self.baseline, calibration.amplitudes)
         return change.expected, change.covariance(calibration.drift)
@@ -52,5 +52,5 @@ class Problem:
         data it does.
         """
         if self.baseline is None:
-            return plain(residuals, calibration.amplitudes, calibration.inflation)
+            return plain(residuals, calibration.alone, calibration.inflation)
         return space.rows(rows)
