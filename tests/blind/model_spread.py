@@ -2,10 +2,10 @@
 
     python -m tests.blind.model_spread loop_1to1 loop_hunting
 
-Shafts twist or bend, teeth are analytic or of finite elements. Of every series of numbers (one channel, one order, orders
-of the meshes left out) the factor is taken by which another model answers more or less than the one that data are held
-against. Printed is the root mean square of its distance from one over series, models and effects of a kind; series count
-by how well their noise lets them be seen.
+Shafts twist or bend, teeth are analytic or of finite elements. Of every series of numbers (one channel, one order,
+orders of the meshes left out) the factor is taken by which another model answers more or less than the one that data
+are held against. Printed is the root mean square of its distance from one over series, models and effects of a kind;
+series count by how well their noise lets them be seen.
 """
 
 import sys
