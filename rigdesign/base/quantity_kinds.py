@@ -59,6 +59,12 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
     ),
     QuantityKind("temperature", "kelvin", {"degC": "degC", "K": "kelvin", "degF": "degF"}, "140 degC"),
     QuantityKind("temperature_difference", "kelvin", {"K": "kelvin"}, "20 K"),
+    QuantityKind(
+        "warming_rate",
+        "kelvin/second",
+        {"K/h": "kelvin/hour", "K/min": "kelvin/minute", "K/s": "kelvin/second"},
+        "2 K/h",
+    ),
     QuantityKind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),
     QuantityKind("frequency", "hertz", {"Hz": "hertz", "kHz": "kilohertz"}, "40 kHz"),
     QuantityKind(

@@ -18,8 +18,8 @@ from rigdesign.coupling.state_vector import scaled, unscaled
 from rigdesign.rig.model import Rig
 from thermal.transient.backward_differences import STEPS, WarmingBody, step_lengths
 
-TOLERANCE = ScaledTolerance(0.5)
-"""Of the steps before the last: half a kelvin of an oil, five watts of a heat."""
+TOLERANCE = ScaledTolerance(0.1)
+"""Of the steps before the last: a tenth of a kelvin of an oil, a watt of a heat; rates of change need it."""
 
 
 @dataclass(frozen=True)

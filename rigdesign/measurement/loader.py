@@ -12,6 +12,7 @@ from rigdesign.case import Case
 from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.processing.recorded import SetPlan, read_recordings
+from rigdesign.measurement.processing.warming_rates import with_rates
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.reading.document import COST_ITEMS, MeasurementFile
 from rigdesign.measurement.reading.files import digest_of, document_text, set_file
@@ -94,7 +95,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         hashed = digest_of(file, _named_files(folder, document))
     except MeasurementError as error:
         raise MeasurementError(error.faults, str(file)) from None
-    return MeasurementSet(
+    loaded = MeasurementSet(
         title=document.title,
         folder=folder,
         case=case,
@@ -107,6 +108,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         costs=document.costs,
         hash=hashed,
     )
+    return with_rates(loaded)
 
 
 def measurement_file(path: Path) -> Path:

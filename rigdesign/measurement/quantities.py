@@ -68,6 +68,7 @@ SETTINGS: Mapping[str, Measured] = {
 
 CHANNELS: Mapping[str, Measured] = {
     "temperature": Measured("temperature", "0.1 K", LIQUID_OR_HOT),
+    "warming_rate": Measured("warming_rate", "0.5 K/h", (-1.0, 1.0)),
     "oil_outlet_temperature": Measured("temperature", "0.1 K", LIQUID_OR_HOT),
     "motor_power": Measured("power", "10 W", POWERS),
     "drive_torque": Measured("torque", "0.02 N m", TORQUES),

@@ -15,6 +15,7 @@ from rigdesign.prediction.housing_sensitivities import (
     stream_sources,
 )
 from rigdesign.prediction.housings import ReducedField
+from rigdesign.prediction.readings import rate_rows
 from rigdesign.prediction.reduced_rig import ReducedRig
 from rigdesign.prediction.sensitivities import PointSensitivities, SensitivityNumbers
 from rigdesign.prediction.warm_up_response import WarmUpResponse
@@ -77,7 +78,9 @@ class FirstOrderModel:
     def _warm_ups(self) -> list[WarmUpResponse]:
         """Of every point."""
         return [
-            WarmUpResponse(point, housings, point.problem.rig.case.ambient.temperature)
+            WarmUpResponse(
+                point, housings, point.problem.rig.case.ambient.temperature, rate_rows(self._reduced.channels)
+            )
             for point, housings in zip(self.points, self._housings)
         ]
 

@@ -11,6 +11,7 @@ from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
 
 Quantity = Literal[
     "temperature",
+    "warming_rate",
     "oil_outlet_temperature",
     "motor_power",
     "drive_torque",
@@ -72,7 +73,8 @@ class Channel:
     """One sensor as the model sees it.
 
     place : of ``temperature`` a surface or body of a housing, ``test.outer_warm``, or the gearbox alone where
-        ``at`` gives coordinates; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
+        ``at`` gives coordinates; of ``warming_rate`` that of a temperature among the channels, whose change with
+        time it is; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
         coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
         or the name of any mode (`dynamics.elastic_rig.mode_names`); of ``backlash`` a mesh, ``test.main``; of
         ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor

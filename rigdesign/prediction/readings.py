@@ -13,6 +13,7 @@ from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
+from thermal.conduction.capacity import StoredHeat
 from thermal.expansion.clearances import SealExpansion
 
 Numbers = tuple[float, ...]
@@ -34,6 +35,29 @@ def readings(rig: Rig, channels: Iterable[Channel]) -> list[tuple[Channel, Readi
     return [(channel, _reading(rig, channel, orders)) for channel in moving]
 
 
+def rate_rows(channels: Iterable[Channel]) -> dict[int, int]:
+    """Number of the reading of every warming rate -> that of the temperature which changes.
+
+    Raises
+    ------
+    UsageError
+        A rate without that temperature among the channels.
+    """
+    moving = [channel for channel in channels if channel.quantity not in STANDING_QUANTITIES]
+    starts = np.cumsum([0, *(count_of(channel) for channel in moving)]).tolist()
+    row = dict(zip(moving, starts))
+    temperatures = {(one.place, one.at): row[one] for one in moving if one.quantity == "temperature"}
+    found = {}
+    for channel in moving:
+        if channel.quantity == "warming_rate":
+            if (channel.place, channel.at) not in temperatures:
+                raise UsageError(
+                    f"channel {channel.name!r}: the temperature whose rate it is, at {channel.place!r}, is no channel"
+                )
+            found[row[channel]] = temperatures[channel.place, channel.at]
+    return found
+
+
 def count_of(channel: Channel) -> int:
     """How many numbers a channel gives at a point."""
     return sum(2 if order else 1 for order in channel.orders) if channel.orders else 1
@@ -45,6 +69,8 @@ def _reading(rig: Rig, channel: Channel, orders: "_Orders") -> Reading:
     match channel.quantity:
         case "temperature":
             return _temperature(rig, channel)
+        case "warming_rate":
+            return _warming_rate(rig, channel)
         case "oil_outlet_temperature":
             return _outlet(rig, channel)
         case "seal_gap":
@@ -66,6 +92,18 @@ def _temperature(rig: Rig, channel: Channel) -> Reading:
         return (shell_temperature(surface, bore, done.fields[name].conditions),)
 
     return body if bearing_of_bore(rig.case.gearboxes[name], surface) is None else shell
+
+
+def _warming_rate(rig: Rig, channel: Channel) -> Reading:
+    """Change of a temperature with time [K/s] where bodies still take up heat; zero at a steady point."""
+    name, (nodes, weights) = place_weights(rig, channel.place, channel.at)
+
+    def read(_: Rig, done: IterationResult) -> Numbers:
+        field = done.fields[name]
+        steps = [one for one in field.conditions if isinstance(one, StoredHeat)]
+        return (math.fsum(float(weights @ step.rate(field.temperature)[nodes]) for step in steps),)
+
+    return read
 
 
 def _outlet(rig: Rig, channel: Channel) -> Reading:

@@ -10,7 +10,7 @@ into the bodies acts on the readings like any other heat. `rigdesign.coupling.wa
 steps, laws of films and losses as they are on the way.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -26,12 +26,18 @@ class WarmUpResponse:
 
     point : its sensitivities; housings : those of all its housings, in the order of its fields
     room : temperature of all bodies at the start [K]
+    rates : number of a reading that is a rate of change -> that of the temperature which changes
     """
 
     def __init__(
-        self, point: PointSensitivities, housings: Sequence[HousingSensitivities], room: float
+        self,
+        point: PointSensitivities,
+        housings: Sequence[HousingSensitivities],
+        room: float,
+        rates: Mapping[int, int],
     ) -> None:
         self._point, self._housings, self._room = point, housings, room
+        self._of_rates, self._of_temperatures = list(rates), list(rates.values())
 
     @cached_property
     def _capacity(self) -> FloatArray:
@@ -57,8 +63,10 @@ class WarmUpResponse:
     def change(self, time: float) -> FloatArray:
         """(f,) readings after ``time`` [s] from room temperature, less those of the steady point."""
         _, readings = self._answers
-        into_bodies = self._capacity @ (-self._rates @ self.rise(time))
-        return np.asarray(-readings @ into_bodies)
+        slope = -self._rates @ self.rise(time)
+        found = -readings @ (self._capacity @ slope)
+        found[self._of_rates] = (readings @ (self._capacity @ (self._rates @ slope)))[self._of_temperatures]
+        return np.asarray(found)
 
     @cached_property
     def _rates(self) -> FloatArray:

@@ -168,9 +168,9 @@ chamber_density = "20 kg/m3"
 test_speed = "2250 rpm"
 test_torque = "372.6 N m"
 stages = [
-    { name = "bracing", kind = "load", torque_share = 1.0, duration = "1 s" },
-    { name = "run_up", kind = "run_up", speed = "2250 rpm", duration = "6 s" },
-    { name = "test", kind = "dwell", duration = "8 s", held = true },
+    { name = "bracing", kind = "load", torque_share = 1.0, duration = "200 ms" },
+    { name = "run_up", kind = "run_up", speed = "2250 rpm", duration = "2 s" },
+    { name = "test", kind = "dwell", duration = "300 ms", held = true },
 ]
 [numerics]
 temperature_tolerance = "0.05 K"

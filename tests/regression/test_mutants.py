@@ -5,8 +5,7 @@ exchanged for another text that stands under the same key. Each goes the way of 
 --json`: load, run, document. It ends in a result or in an error of the tool's own tree with a message; anything else
 is a defect.
 
-So that many can be run, the base is shortened first: a ramp of two seconds with a motor to match, five speeds of
-the curve, a coupling loop of a tenth of its sharpness. Nothing else differs from the shipped case.
+So that many can be run, the base is shortened first (`tests.builders.shortened`).
 """
 
 import time
@@ -24,27 +23,11 @@ from rigdesign.report import results_document
 from rigdesign.run.main import run_case
 from tests.builders.mutant import mutations
 from tests.builders.paths import CASES
+from tests.builders.shortened import shortened_case
 
 PROTOTYPE = CASES / "uhcf_prototype"
-SEEDS, PER_SEED, RUN = 2, 10, 3
+SEEDS, PER_SEED, RUN = 2, 10, 2
 MANY = 1000
-SHORTENED = {
-    "schedule.stages.bracing.duration": "50 ms",
-    "schedule.stages.to_transition_speed.duration": "100 ms",
-    "schedule.stages.half_torque.duration": "50 ms",
-    "schedule.stages.run_up.duration": "800 ms",
-    "schedule.stages.full_torque.duration": "50 ms",
-    "schedule.stages.test.duration": "100 ms",
-    "schedule.stages.relief.duration": "50 ms",
-    "schedule.stages.run_down.duration": "600 ms",
-    "schedule.stages.to_start_torque.duration": "50 ms",
-    "schedule.stages.to_standstill.duration": "100 ms",
-    "drivetrain.motor.torque_limit": "200 N m",
-    "numerics.curve_speeds": "5",
-    "numerics.temperature_tolerance": "0.5 K",
-    "numerics.growth_tolerance": "5 um",
-    "numerics.torque_tolerance": "0.01",
-}
 
 
 @dataclass(frozen=True)
@@ -61,10 +44,7 @@ class Outcome:
 
 @cache
 def shortened() -> Case:
-    case = load_case(PROTOTYPE)
-    for path, value in SHORTENED.items():
-        case = case.with_value(path, value)
-    return case
+    return shortened_case(load_case(PROTOTYPE))
 
 
 def mutants(seed: int, count: int) -> list[tuple[str, object]]:

@@ -74,6 +74,10 @@ class StoredHeat:
     kind: str = "stored"
     """Row name in the heat balance."""
 
+    def rate(self, field: FloatArray) -> FloatArray:
+        """(n_nodes,) rate of change [K/s] at the end of the step; field : (n_nodes,) temperatures there [K]."""
+        return np.asarray((field - self.start) / self.time)
+
     def __post_init__(self) -> None:
         if not (math.isfinite(self.time) and self.time > 0.0):
             raise ConditionError(

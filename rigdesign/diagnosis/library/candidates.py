@@ -13,6 +13,7 @@ SPARE = "could be: "
 
 NOISE: dict[Quantity, float] = {
     "temperature": 0.5,
+    "warming_rate": 1e-4,
     "oil_outlet_temperature": 0.4,
     "motor_power": 25.0,
     "drive_torque": 0.05,

@@ -6,6 +6,7 @@ from statistics import geometric_mean
 
 USUAL_COST: dict[str, float] = {
     "temperature": 1.0,
+    "warming_rate": 1.0,
     "oil_outlet_temperature": 1.0,
     "motor_power": 4.0,
     "drive_torque": 4.0,

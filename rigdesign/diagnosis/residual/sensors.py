@@ -58,6 +58,7 @@ class SensorError:
 
 UNITS = {
     "temperature": "K",
+    "warming_rate": "K/s",
     "oil_outlet_temperature": "K",
     "motor_power": "W",
     "drive_torque": "N m",

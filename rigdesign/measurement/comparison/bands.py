@@ -26,6 +26,8 @@ class Bands:
         match channel.quantity:
             case "temperature":
                 return f"temperatures of {self._zone(channel)}"
+            case "warming_rate":
+                return f"warming rates of {self._zone(channel)}"
             case "oil_outlet_temperature":
                 return f"outlet temperature of {self._stream(channel.place)}"
             case "motor_power" | "drive_torque":

@@ -21,7 +21,7 @@ from rigdesign.measurement.reading.measurement_set import (
 )
 from rigdesign.prediction.model import Feature, OperatingCondition, features_of
 
-THERMAL = frozenset(("temperature", "oil_outlet_temperature", "seal_gap"))
+THERMAL = frozenset(("temperature", "warming_rate", "oil_outlet_temperature", "seal_gap"))
 """Quantities that mean nothing before temperatures are steady."""
 LEAST_GAIN = 0.1
 """What a sensor must let through of an order to be corrected for."""
@@ -51,7 +51,9 @@ def features(measurement: MeasurementSet) -> Data:
     findings = [*measurement.findings, *checks, *outliers]
     findings += _not_steady(measurement, names, usable)
     findings += _through_sensors(settings, channels, names, values, spread, usable)
-    findings += _few_readings(settings, names, repeats, usable)
+    of_rates = {name for name, entry in channels.items() if entry.channel.quantity == "warming_rate"}
+    counted = usable & np.array([feature.channel not in of_rates for feature in names], dtype=bool)
+    findings += _few_readings(settings, names, repeats, counted)
     if not usable.any():
         reasons = "; ".join(finding.text for finding in findings if finding.weight == "dropped")
         raise MeasurementError(
@@ -69,7 +71,7 @@ def features(measurement: MeasurementSet) -> Data:
         assembly=_assemblies(measurement.points),
         channels=channels,
         findings=tuple(findings),
-        strength="proven" if _repeated(names, repeats, usable) else "indicative",
+        strength="proven" if _repeated(names, repeats, counted) else "indicative",
     )
     return replace(data, findings=(*findings, *consistency_findings(measurement, data)))
 

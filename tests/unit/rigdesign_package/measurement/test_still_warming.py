@@ -1,5 +1,6 @@
 """Repeats with times: a point whose temperatures drift is said to warm up still, by how much an hour."""
 
+from math import hypot
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,8 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.measurement import load_measurement
 from rigdesign.measurement.processing.features import features
-from rigdesign.measurement.quality.still_warming import rates
+from rigdesign.measurement.quality.still_warming import LEAST, rates
+from rigdesign.prediction.model import Feature
 from tests.builders.measurement import write_set
 from tests.builders.paths import CASES
 
@@ -44,6 +46,20 @@ def test_the_rate_is_the_slope_over_the_times(tmp_path: Path, unit: str, per_uni
     # 0.1 K a reading, repeats 20 min from their middle: sqrt(2 * 20^2) min
     assert 3600.0 * found["TC1"].sd == pytest.approx(0.1 / (2.0 * (GAP / 60.0) ** 2) ** 0.5, rel=1e-6)
     assert set(found) == {"TC1", "TC2"}
+
+
+def test_rates_are_channels_of_their_own(tmp_path: Path) -> None:
+    data = features(load_measurement(drifting(tmp_path, 6.0), CASE))
+    known = dict(zip(data.features, zip(data.values, data.noise, data.usable)))
+    value, noise, usable = known[Feature("rate of TC1", "P03")]
+    assert 3600.0 * value == pytest.approx(6.0, rel=1e-6) and usable
+    # the slope of the repeats, and what a steady rig drifts by
+    assert 3600.0 * noise == pytest.approx(hypot(0.1 / (2.0 * (GAP / 60.0) ** 2) ** 0.5, 3600.0 * LEAST))
+    assert abs(known[Feature("rate of TC1", "P01")][0]) < noise
+    assert data.strength == "proven"
+    assert not any(
+        "rate" in one for one in features(load_measurement(write_set(tmp_path / "x"), CASE)).channels
+    )
 
 
 def test_a_drifting_point_is_told_with_its_rate(tmp_path: Path) -> None:

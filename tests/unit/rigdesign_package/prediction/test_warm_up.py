@@ -8,6 +8,7 @@ from rigdesign.case.loader import load_case
 from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.changes import changed_case
 from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.readings import rate_rows
 from tests.builders.paths import CASES
 
 pytestmark = pytest.mark.whole_run
@@ -23,7 +24,10 @@ CHANNELS = (
     Channel(name="point", quantity="temperature", place="test", at=(0.05, -0.16, 0.14)),
     Channel(name="gear_oil", quantity="oil_outlet_temperature", place="test.gear_oil"),
     Channel(name="power", quantity="motor_power"),
+    Channel(name="rate", quantity="warming_rate", place="test.outer_warm"),
+    Channel(name="rate of point", quantity="warming_rate", place="test", at=(0.05, -0.16, 0.14)),
 )
+RATES = np.array([channel.quantity == "warming_rate" for channel in CHANNELS])
 HOUR = 3600.0
 
 
@@ -40,13 +44,31 @@ def missing(predictor: Predictor, time: float) -> np.ndarray:
     return np.asarray(change.reshape(len(SETTINGS), len(CHANNELS)))
 
 
-@pytest.mark.parametrize("time", [0.5 * HOUR, HOUR, 4.0 * HOUR])
+@pytest.mark.parametrize(
+    "time", [HOUR, *(pytest.param(hours * HOUR, marks=pytest.mark.slow) for hours in (0.5, 4.0))]
+)
 def test_first_order_is_near_the_model_marched_in_time(predictor: Predictor, time: float) -> None:
     """Films, radiation and losses of a rig tens of kelvin colder make up the difference: 6 % of what is missing."""
     marched = (predictor.values({WARMING: time}) - predictor.base).reshape(len(SETTINGS), len(CHANNELS))
     first_order = missing(predictor, time)
-    assert np.all(np.abs(first_order - marched) <= 0.06 * np.abs(marched) + 0.01)
-    assert np.all(first_order[:, :4] < 0.0) and np.all(first_order[:, 4] > 0.0)
+    allowed = np.where(RATES, 0.1 * np.abs(marched), 0.06 * np.abs(marched) + 0.01)
+    assert np.all(np.abs(first_order - marched) <= allowed)
+    assert np.all(first_order[:, :4] < 0.0) and np.all(first_order[:, 4:] > 0.0)
+
+
+def test_a_rate_is_the_change_of_its_temperature_with_time(predictor: Predictor) -> None:
+    step = 1.0
+    before, at, after = (missing(predictor, HOUR + lag) for lag in (-step, 0.0, step))
+    for rate, temperature in ((5, 0), (6, 2)):
+        slope = (after - before)[:, temperature] / (2.0 * step)
+        np.testing.assert_allclose(at[:, rate], slope, rtol=1e-5)
+    assert np.all(predictor.base.reshape(len(SETTINGS), -1)[:, RATES] == 0.0)
+
+
+def test_a_rate_needs_the_temperature_that_changes() -> None:
+    with pytest.raises(UsageError, match=r"'rate of point'.*is no channel"):
+        rate_rows((CHANNELS[0], CHANNELS[6]))
+    assert rate_rows(CHANNELS) == {5: 0, 6: 2}
 
 
 def test_late_readings_approach_steady_by_one_time_constant(predictor: Predictor) -> None:

@@ -45,7 +45,9 @@ def living(group: int) -> list[str]:
 
 
 @pytest.mark.whole_run
-@pytest.mark.parametrize("longest", [0.002, 0.05, 0.3])
+@pytest.mark.parametrize(
+    "longest", [0.05, *(pytest.param(seconds, marks=pytest.mark.slow) for seconds in (0.002, 0.3))]
+)
 def test_two_interrupts_at_any_distance_end_a_study_as_one(longest: float, tmp_path: Path) -> None:
     """To the whole process group, as a terminal sends them; before, two of three such pairs left a traceback."""
     (tmp_path / "trace").mkdir()

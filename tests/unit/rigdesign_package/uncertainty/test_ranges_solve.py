@@ -80,7 +80,10 @@ def differences(one: EndResult, other: EndResult) -> Iterator[tuple[str, float]]
 
 @pytest.mark.parametrize(
     ("path", "value"),
-    [("losses.chamber_density", "20 kg/m3"), ("losses.friction.lubricant_factor", "1.0")],
+    [
+        ("losses.chamber_density", "20 kg/m3"),
+        pytest.param("losses.friction.lubricant_factor", "1.0", marks=pytest.mark.slow),
+    ],
 )
 def test_losses_need_no_march_for_the_torque_of_the_motor(
     loop: tuple[Reference, EndResult], path: str, value: str, monkeypatch: pytest.MonkeyPatch

@@ -22,7 +22,9 @@ def facets(mesh: NamedMesh, surface: str) -> int:
     return len(mesh.surfaces[surface])
 
 
-@pytest.mark.parametrize("zone", ZONES)
+@pytest.mark.parametrize(
+    "zone", ["wall", *(pytest.param(zone, marks=pytest.mark.slow) for zone in ZONES if zone != "wall")]
+)
 def test_a_size_refines_its_zone_and_hardly_the_others(zone: str) -> None:
     surface, size = ZONES[zone]
     usual = build_gearbox(PROTOTYPE, "quick").mesh
