@@ -20,6 +20,9 @@ NOISE: dict[Quantity, float] = {
     "natural_frequency": 6.0,
     "backlash": 3e-6,
     "seal_gap": 1e-5,
+    "acceleration": 0.05,
+    "shaft_displacement": 2e-7,
+    "resonance_speed": 1.0,
 }
 """Standard deviation of a reading of a sensor that would be added, its systematic part included [SI]."""
 
@@ -33,6 +36,9 @@ COST: dict[Quantity, float] = {
     "natural_frequency": 3.0,
     "backlash": 1.0,
     "seal_gap": 6.0,
+    "acceleration": 3.0,
+    "shaft_displacement": 6.0,
+    "resonance_speed": 4.0,
 }
 """Relative to one thermocouple."""
 
