@@ -67,7 +67,7 @@ def diagnose_measurement(
     """
     measurement = load_measurement(folder, case)
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
-    effects = effects_of(case)
+    effects = effects_of(case, channels=_channels(case, measurement)[0])
     with solver_errors(case):
         data, residuals = read_residuals(case, measurement, effects, say)
         before = None if healthy is None else read_residuals(case, healthy, effects, say)[1]
@@ -126,7 +126,7 @@ def calibrate_case(
         As ``run_case``.
     """
     measurement = load_measurement(folder, case)
-    effects = effects_of(case)
+    effects = effects_of(case, channels=_channels(case, measurement)[0])
     with solver_errors(case):
         residuals = read_residuals(case, measurement, effects, say)[1]
         say("fitting constants")
@@ -148,7 +148,8 @@ def candidates_of(
     """The library of the rig with the points and sensors that could be added; None if the stored one has none."""
     channels, spare = _channels(case, measurement)
     extras = tuple(extra.setting for extra in extras_of(case, settings))
-    return stored_library(case, (*settings, *extras), (*channels, *spare), effects_of(case))
+    effects = effects_of(case, channels=channels)
+    return stored_library(case, (*settings, *extras), (*channels, *spare), effects)
 
 
 def _channels(case: Case, measurement: MeasurementSet) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import RigdesignError
 from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue import model_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
@@ -18,7 +19,6 @@ from rigdesign.prediction.model import (
     ORDER_QUANTITIES,
     Channel,
     OperatingCondition,
-    model_for,
 )
 from rigdesign.prediction.predictor import Predictor
 
@@ -53,7 +53,7 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     metered = (POWER,) if case.drivetrain is not None else ()
-    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=model_for(channels))
+    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=model_of(effects))
     predictor.prepare()
     base = predictor.base
     parts = Parts.of(case, settings, channels, effects)
