@@ -31,8 +31,8 @@ WAITING = (
         "coupling_misalignment",
         "couplings between axes out of line",
         "order 2, lateral, and forces that stand in the bearings",
-        "what a disc pack makes of an offset twice a turn: the case has the force that stands (`cold_offset_lateral`), a "
-        "torque at order 2 (`coupling_order_2`), run-out of the flanges, and the bending of cross joints",
+        "what a disc pack makes of an offset twice a turn: the case has the force that stands (`cold_offset_lateral`), "
+        "a torque at order 2 (`coupling_order_2`), run-out of the flanges, and the bending of cross joints",
     ),
     Waiting(
         "whirl",

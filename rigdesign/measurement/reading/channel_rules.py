@@ -58,6 +58,11 @@ def modal_faults(at: str, entry: ChannelTable) -> Iterator[Fault]:
                 f"{at}.orders", given, "a resonance speed is where one order meets a mode",
                 "write the order that was tracked, above 0, e.g. orders = [28]",
             )  # fmt: skip
+        if entry.torque is None:
+            yield Fault(
+                f"{at}.torque", "", "teeth are as stiff as the torque of the sweep presses them together",
+                'write the bracing torque of its sweeps, e.g. torque = "180 N m"',
+            )  # fmt: skip
     elif entry.torque is not None:
         yield Fault(f"{at}.torque", units.show(entry.torque, "torque"), f"{said} has no torque of its own",
                     "remove the key; operating points state theirs")  # fmt: skip
