@@ -138,7 +138,8 @@ class _Sweep:
             for name, one in curves.items():
                 if one is not None:
                     numbers |= self._orders(name, one, setting)
-            yield setting, numbers
+            if numbers:
+                yield setting, numbers
 
     def _orders(self, name: str, curves: OrderCurves, setting: OperatingCondition) -> dict[Feature, float]:
         channel = self._channels[name]
