@@ -153,7 +153,7 @@ def diagnose(
         As :func:`run_case`.
     """
     if name is not None:
-        check_pick(effects_of(case), name)
+        check_pick(effects_of(case, channels=None), name)
     used = DEFAULT if calibration is None else load_rig_calibration(Path(calibration), case)
     found = diagnose_measurement(case, Path(measurement), calibration=used)
     return outcome(found, pick=name)

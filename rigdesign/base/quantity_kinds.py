@@ -74,6 +74,7 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
         "12000 rpm",
     ),
     QuantityKind("velocity", "m/s", {"m/s": "m/s", "km/h": "km/hour"}, "20 m/s"),
+    QuantityKind("acceleration", "m/s**2", {"m/s2": "m/s**2", "g": "g_0"}, "2 m/s2"),
     QuantityKind("force", "N", {"N": "N", "kN": "kN"}, "450 N"),
     QuantityKind(
         "torque", "N*m", {"N m": "N*m", "Nm": "N*m", "kN m": "kN*m", "kNm": "kN*m", "N mm": "N*mm"}, "180 N m"

@@ -20,7 +20,9 @@ Written by `python -m rigdesign.diagnosis.effects_page CASE ...`; do not edit by
 `kind:place`. It changes the case, and the ordinary model computes what follows; bounds are physical limits,
 the healthy spread is the scatter of healthy rigs. An effect that healthy rigs do not have is named from the size on
 that matters. Effects whose signatures correlate above 0.95 form a group, and a named effect has to close the gap on
-operating points that were held out. Which of them a measurement can detect and separate is in its report.
+operating points that were held out. Which of them a measurement can detect and separate is in its report. Effects of
+shafts that bend (unbalance, bow, flanges, cross joints, bearings and their supports) are evaluated where the set has
+accelerations or shaft displacements.
 """
 
 SENSORS = (
@@ -72,7 +74,7 @@ def effects_page(cases: Sequence[Case]) -> str:
     """The page in Markdown, from the entries that these cases have."""
     kinds: dict[str, tuple[Effect, set[str]]] = {}
     for case in cases:
-        for effect in effects_of(case):
+        for effect in effects_of(case, channels=None):
             kinds.setdefault(effect.kind, (effect, set()))[1].add(case.name)
     lines = [HEAD, "## In the case\n"]
     lines += _table(

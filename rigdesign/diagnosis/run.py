@@ -69,7 +69,7 @@ def diagnose_measurement(
     """
     measurement = load_measurement(folder, case)
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
-    effects = effects_of(case)
+    effects = effects_of(case, channels=_channels(case, measurement)[0])
     with solver_errors(case):
         data, residuals = read_residuals(case, measurement, effects, say)
         before = None if healthy is None else read_residuals(case, healthy, effects, say)[1]
@@ -127,7 +127,7 @@ def calibrate_case(
         As ``run_case``.
     """
     measurement = load_measurement(folder, case)
-    effects = effects_of(case)
+    effects = effects_of(case, channels=_channels(case, measurement)[0])
     with solver_errors(case):
         residuals = read_residuals(case, measurement, effects, say)[1]
         say("fitting constants")
@@ -148,7 +148,7 @@ def _offer(case: Case, measurement: MeasurementSet, settings: tuple[OperatingCon
     channels, spare = _channels(case, measurement)
     extras = extras_of(case, settings)
     points = (*settings, *(extra.setting for extra in extras))
-    library = stored_library(case, points, (*channels, *spare), effects_of(case))
+    library = stored_library(case, points, (*channels, *spare), effects_of(case, channels=channels))
     costs = Costs(stated=measurement.costs)
     return None if library is None else Offer(library=library, extras=extras, costs=costs)
 

@@ -5,13 +5,16 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case import Case
 from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.processing.recorded import SetPlan, read_recordings
+from rigdesign.measurement.processing.impacts import read_impacts
+from rigdesign.measurement.processing.recorded import Readings, SetPlan, read_recordings
+from rigdesign.measurement.processing.sweeps import read_sweeps
 from rigdesign.measurement.processing.warming_rates import with_rates
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.reading.document import COST_ITEMS, MeasurementFile
@@ -71,11 +74,17 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     try:
         if document.data.orders is not None:
             readings |= read_orders(folder, document, channels, rows, readings, findings)
+        plan = SetPlan(
+            folder=folder, document=document, places=places, channels=channels, points=points, rows=rows
+        )
         if document.data.recordings:
-            plan = SetPlan(
-                folder=folder, document=document, places=places, channels=channels, points=points, rows=rows
-            )
             readings |= read_recordings(plan, readings, findings)
+        if document.data.impacts:
+            readings = joined(readings, read_impacts(plan, findings))
+        if document.data.sweeps:
+            swept = read_sweeps(plan, findings)
+            points += swept.points
+            readings = joined(readings, swept.readings)
     except MeasurementError as error:
         raise MeasurementError(error.faults, str(file)) from None
     at = {"", *(point.name for point in points)}
@@ -190,8 +199,15 @@ def _doubts(document: MeasurementFile) -> Iterable[DataFinding]:
         )  # fmt: skip
 
 
+def joined(first: Readings, second: Readings) -> Readings:
+    """Readings of both: of a feature that both have one after the other."""
+    both = first.keys() & second.keys()
+    return {**first, **second} | {one: np.concatenate([first[one], second[one]]) for one in both}
+
+
 def _named_files(folder: Path, document: MeasurementFile) -> list[Path]:
     """Files that hold the readings."""
     data = document.data
     names = [data.table, *([data.orders] if data.orders else []), *(entry.file for entry in data.recordings)]
+    names += [entry.file for entry in data.sweeps] + [entry.file for entry in data.impacts]
     return [set_file(folder, name, data.size_limit) for name in names]

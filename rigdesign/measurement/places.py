@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
-from math import lcm
+from math import fsum, lcm
 
 from rigdesign.case import Case
 from rigdesign.case.gearbox import Gearbox
@@ -30,7 +30,8 @@ class Places:
     def of(self, quantity: str) -> tuple[str, ...]:
         """Places where a channel or setting of this quantity can sit; empty when the rig has none.
 
-        Of ``natural_frequency`` the first three; any higher number and the name of a mode is one, too (`is_mode`).
+        Of ``natural_frequency`` and ``resonance_speed`` the first three; any higher number and the name of a mode is
+        one, too (`is_mode`).
         """
         power = self._case.drivetrain
         known = {
@@ -41,8 +42,11 @@ class Places:
             "motor_power": self._driven(MOTOR),
             "drive_torque": self._driven(MOTOR),
             "torque": () if power is None else tuple(power.couplings),
-            "angle": () if power is None else tuple(power.shafts),
+            "angle": self.shafts,
+            "acceleration": self.bearings,
+            "shaft_displacement": (*self.bearings, *self.shafts),
             "natural_frequency": self._driven("1", "2", "3"),
+            "resonance_speed": self._driven("1", "2", "3"),
             "backlash": self.meshes,
             "seal_gap": self.seals,
         }
@@ -74,6 +78,23 @@ class Places:
     def meshes(self) -> tuple[str, ...]:
         """Meshes, ``gearbox.mesh``."""
         return tuple(f"{name}.{mesh}" for name, box in self._case.gearboxes.items() for mesh in box.meshes)
+
+    @cached_property
+    def shafts(self) -> tuple[str, ...]:
+        """Shafts of the power circuit."""
+        return () if self._case.drivetrain is None else tuple(self._case.drivetrain.shafts)
+
+    def length(self, shaft: str) -> float:
+        """Length of one of them [m]."""
+        assert self._case.drivetrain is not None
+        return fsum(section.length for section in self._case.drivetrain.shafts[shaft].sections)
+
+    @cached_property
+    def bearings(self) -> tuple[str, ...]:
+        """Bearings of the power circuit, ``gearbox.bearing``."""
+        if self._case.drivetrain is None:
+            return ()
+        return tuple(f"{name}.{part}" for name, box in self._case.gearboxes.items() for part in box.bearings)
 
     @cached_property
     def housings(self) -> tuple[str, ...]:

@@ -77,6 +77,9 @@ CHANNELS: Mapping[str, Measured] = {
     "natural_frequency": Measured("frequency", "0.5 Hz", (1e-3, 1e7)),
     "backlash": Measured("length", "2 um", CLEARANCES),
     "seal_gap": Measured("length", "5 um", CLEARANCES),
+    "acceleration": Measured("acceleration", "0.02 m/s2", (-1e6, 1e6)),
+    "shaft_displacement": Measured("length", "0.1 um", (-0.01, 0.01)),
+    "resonance_speed": Measured("speed", "10 rpm", TURNING),
 }
 """Quantities of ``rigdesign.prediction.model.Channel``."""
 

@@ -43,6 +43,46 @@ decimal = "."
 # point = "P01"
 # repeat = 1
 # file = "P01_1.tdms"
+# [[data.sweeps]]                        # run-up or run-down under one torque: resonance speeds, orders at speeds
+# file = "run_up.tdms"
+# direction = "up"
+# torque = "{torque}"
+# speeds = ["1000 rpm", "2000 rpm"]      # each an operating point of its own; none when left out
+# [[data.impacts]]                       # hammer blows on the rig at rest: natural frequencies
+# file = "blows.tdms"
+# force = "Hammer"
+"""
+MOVING = """\
+# Vibration: the shafts of the model bend as soon as one of these is there. Directions: "y" across, "z" up, or an angle.
+# [channels.a_1]
+# quantity = "acceleration"
+# place = "{bearing}"
+# direction = "z"
+# unit = "m/s2"                          # or g
+# uncertainty = "0.02 m/s2"
+# [channels.s_1]
+# quantity = "shaft_displacement"        # in a bearing against its seat; or place = "{shaft}" with a position
+# place = "{bearing}"
+# direction = "45 deg"
+# unit = "um"
+# uncertainty = "0.1 um"
+# Resonances: read from sweeps and blows by their signal, or as numbers in a row whose point is standstill.
+# [channels.n_1]
+# quantity = "resonance_speed"
+# place = "1"                            # torsional mode by number
+# orders = [{order}]                       # the order that meets it
+# torque = "{torque}"                    # of the sweeps
+# signal = "M_1"
+# search_range = ["500 rpm", "3000 rpm"]
+# unit = "rpm"
+# uncertainty = "10 rpm"
+# [channels.f_1]
+# quantity = "natural_frequency"
+# place = "1"
+# signal = "Accelerometer"
+# search_range = ["200 Hz", "600 Hz"]
+# unit = "Hz"
+# uncertainty = "0.5 Hz"
 """
 POINTS = """\
 # What is special about a point; those without an entry were steady and not put together anew.
@@ -75,7 +115,10 @@ def template_texts(case: Case) -> tuple[str, str]:
     """measurement.toml and data.csv for a case."""
     places = Places(case)
     settings, channels = _setting_columns(places), _channel_columns(places)
-    head = HEAD.format(name=case.name, title=case.title, table=TABLE, gear=places.counting_gear)
+    torque = units.show(case.schedule.test_torque, "torque")
+    head = HEAD.format(
+        name=case.name, title=case.title, table=TABLE, gear=places.counting_gear, torque=torque
+    )
     blocks = [head, POINTS.format(mesh=places.meshes[0])]
     blocks.append(
         f"# Speed and torque count at {places.counting_gear}; flows as in the case: per mesh, per bearing.\n"
@@ -93,6 +136,13 @@ def template_texts(case: Case) -> tuple[str, str]:
                 f"# orders = [{shown}, …]   # per turn of {places.counting_gear}; by tooth numbers when left out",
             )
         blocks.append(_table(f"channels.{name}", quantity, place, measured, extra))
+    if places.bearings:
+        first = next(iter(places.mesh_orders.values()))
+        blocks.append(
+            MOVING.format(
+                bearing=places.bearings[0], shaft=places.shafts[0], order=f"{float(first):g}", torque=torque
+            )
+        )
     return "\n".join(blocks), _data(case, settings, channels)
 
 
@@ -132,7 +182,7 @@ def _channel_columns(places: Places) -> dict[str, tuple[str, str]]:
 
 def _offer(places: Places) -> str:
     lines = ["# Channels. Places this rig offers, besides those below:"]
-    for quantity in ("temperature", "angle", "seal_gap"):
+    for quantity in ("temperature", "angle", "seal_gap", "acceleration"):
         offered = places.of(quantity)
         if offered:
             lines.append(f"#   {quantity}:")

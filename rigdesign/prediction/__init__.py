@@ -10,6 +10,7 @@ from rigdesign.prediction.model import (
     Prediction,
     PredictionModel,
     features_of,
+    model_for,
 )
 
 __all__ = [
@@ -22,4 +23,5 @@ __all__ = [
     "Prediction",
     "PredictionModel",
     "features_of",
+    "model_for",
 ]

@@ -1,11 +1,10 @@
 """What the sensors of a rig would read: the solve of a check at single operating points."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from dynamics.elastic_rig.mode_names import NamedMode
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -22,14 +21,12 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.readings import readings
+from rigdesign.prediction.resonance_speeds import ModesAt, resonance_speed
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
-
-ModesAtRest = Callable[[Rig], Sequence[NamedMode]]
-"""Finds the modes of a rig at rest."""
 
 
 def predict_full(
@@ -65,16 +62,19 @@ def _at_points(rig: Rig, settings: Sequence[OperatingCondition], channels: Seque
     return values
 
 
-def standing_values(
-    rig: Rig, channels: Iterable[Channel], modes_of: ModesAtRest = standing_modes
-) -> list[float]:
+def standing_values(rig: Rig, channels: Iterable[Channel], modes_of: ModesAt = standing_modes) -> list[float]:
     """Numbers of the channels of the rig at rest, in their order; modes_of : finds its modes, as `standing_modes`."""
     standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
     if not standing:
         return []
     oscillating = any(channel.quantity == "natural_frequency" for channel in standing)
-    modes = modes_of(rig) if oscillating else ()
-    return [standing_value(rig, channel, modes) for channel in standing]
+    modes = modes_of(rig, None) if oscillating else ()
+    return [
+        resonance_speed(rig, channel, modes_of)
+        if channel.quantity == "resonance_speed"
+        else standing_value(rig, channel, modes)
+        for channel in standing
+    ]
 
 
 def check_names(settings: Sequence[OperatingCondition], channels: Sequence[Channel]) -> None:

@@ -145,9 +145,9 @@ class Memoisation:
         found: BracingState = known[key]
         return found
 
-    def standing_modes(self, rig: Rig) -> tuple[NamedMode, ...]:
+    def standing_modes(self, rig: Rig, point: OperatingPoint | None = None) -> tuple[NamedMode, ...]:
         """As `rigdesign.prediction.static_tests.standing_modes`."""
-        rest = rig_at_rest(rig, self.parts)
+        rest = rig_at_rest(rig, self.parts, point)
         system = rest.system
         key = (
             _digest(system.inertia, system.damping, system.stiffness),

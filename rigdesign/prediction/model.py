@@ -20,6 +20,9 @@ Quantity = Literal[
     "natural_frequency",
     "backlash",
     "seal_gap",
+    "acceleration",
+    "shaft_displacement",
+    "resonance_speed",
 ]
 Part = Literal["value", "real", "imaginary"]
 
@@ -41,13 +44,23 @@ OWN_MODEL = PredictionModel()
 TORSIONAL = PredictionModel(shafts="torsional")
 """The quick variant: shafts that only twist."""
 MEASURED_AGAINST = TORSIONAL
-"""Model that measured data are held against, and that the constants of the diagnosis were fitted with."""
+"""Model that measured data are held against, and that the constants of the diagnosis were fitted with; of sets with
+lateral channels it is `OWN_MODEL` (`model_for`)."""
 
-ORDER_QUANTITIES = frozenset({"torque", "angle"})
-"""Quantities that are read as a mean and complex orders of the rotating shaft."""
+LATERAL_QUANTITIES = frozenset({"acceleration", "shaft_displacement"})
+"""Quantities that shafts which only twist do not have."""
 
-STANDING_QUANTITIES = frozenset({"natural_frequency", "backlash"})
-"""Quantities of the rig at rest at the reference temperature: one number, whatever the operating points."""
+ORDER_QUANTITIES = frozenset({"torque", "angle"}) | LATERAL_QUANTITIES
+"""Quantities that are read as complex orders of the rotating shaft."""
+
+WITHOUT_MEAN = frozenset({"angle"}) | LATERAL_QUANTITIES
+"""Those of them whose mean says nothing: an angle counts from anywhere, a probe is set to zero, a piezo has no mean."""
+
+MODAL_QUANTITIES = frozenset({"natural_frequency", "resonance_speed"})
+"""Quantities that are a mode of the rig: its frequency at rest, the speed at which an order meets it."""
+
+STANDING_QUANTITIES = MODAL_QUANTITIES | {"backlash"}
+"""Quantities that are one number of the rig, whatever the operating points."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +90,9 @@ class Channel:
         time it is; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
         coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
         or the name of any mode (`dynamics.elastic_rig.mode_names`); of ``backlash`` a mesh, ``test.main``; of
-        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor
+        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor; of ``acceleration``
+        a bearing, ``test.pinion_front``; of ``shaft_displacement`` a bearing, or a shaft with ``position``; of
+        ``resonance_speed`` a mode as of ``natural_frequency``
     """
 
     name: str
@@ -86,7 +101,19 @@ class Channel:
     at: tuple[float, float, float] | None = None
     """Coordinates in the housing [m]."""
     orders: tuple[float, ...] = ()
-    """Of ``torque`` and ``angle``: per turn of the reference gear; 0 is the mean."""
+    """Of `ORDER_QUANTITIES`: per turn of the reference gear; 0 is the mean. Of ``resonance_speed`` the one tracked."""
+    direction: tuple[float, float, float] | None = None
+    """Of `LATERAL_QUANTITIES`: unit vector (x, y, z) in the frame of the case, x along the shafts, y across, z up."""
+    position: float | None = None
+    """Of ``shaft_displacement`` of a shaft: distance from the start of the shaft [m]."""
+    torque: float | None = None
+    """Of ``resonance_speed``: bracing torque of the sweep [N m]; that at rest when left out."""
+
+    @property
+    def reads(self) -> tuple[object, ...]:
+        """What and where it reads; names and orders of two channels that read the same may differ."""
+        tracked = self.orders if self.quantity == "resonance_speed" else ()
+        return self.quantity, self.place, self.at, self.direction, self.position, self.torque, tracked
 
 
 @dataclass(frozen=True, order=True)
@@ -113,6 +140,12 @@ class Prediction:
     """(n_features,)"""
     error: float = 0.0
     """Stated error of temperatures against the full model [K]."""
+
+
+def model_for(channels: Iterable[Channel]) -> PredictionModel:
+    """The model that measured data are held against: with lateral channels that of the case, else MEASURED_AGAINST."""
+    lateral = any(channel.quantity in LATERAL_QUANTITIES for channel in channels)
+    return OWN_MODEL if lateral else MEASURED_AGAINST
 
 
 def features_of(settings: Iterable[OperatingCondition], channels: Iterable[Channel]) -> tuple[Feature, ...]:

@@ -1,4 +1,4 @@
-"""Where the channels of torque and angle read the power circuit, and what they read of its loads.
+"""Where the channels that have orders read the power circuit, and what they read of its loads.
 
 A place is a row over the freedoms of the linear system: of shafts that only twist its stations, of shafts that bend the
 freedoms of the reduced elastic rig (`dynamics.elastic_rig.seen_system`). Both measure turns in the running direction.
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.orders.deviation_response import OrderLoads
 from rigdesign.base.errors import UsageError
-from rigdesign.prediction.model import Channel
+from rigdesign.prediction.lateral_places import LateralMotion, lateral_motion
+from rigdesign.prediction.model import LATERAL_QUANTITIES, Channel
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
@@ -88,8 +89,10 @@ def motions(system: LinearSystem, loads: Sequence[OrderLoads]) -> Complex:
     return np.asarray((moved / s).T)
 
 
-def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft:
-    """Where a channel of torque or angle reads; UsageError for a place that the drivetrain does not have."""
+def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft | LateralMotion:
+    """Where a channel with orders reads; UsageError for a place that the drivetrain does not have."""
+    if channel.quantity in LATERAL_QUANTITIES:
+        return lateral_motion(rig, channel)
     return _coupling(rig, channel) if channel.quantity == "torque" else _shaft_end(rig, channel)
 
 

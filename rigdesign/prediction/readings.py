@@ -7,7 +7,8 @@ import numpy as np
 
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
+from rigdesign.prediction.lateral_places import lateral_motion
+from rigdesign.prediction.model import LATERAL_QUANTITIES, ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import is_ideal
 from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import place_weights
@@ -185,6 +186,8 @@ def _in_orders(rig: Rig, channel: Channel, orders: _Orders) -> Reading:
         )
     if not channel.orders:
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is read by orders, and none is given")
+    if channel.quantity in LATERAL_QUANTITIES:
+        lateral_motion(rig, channel)
 
     def read(here: Rig, done: IterationResult) -> Numbers:
         found = orders.at(here, done)

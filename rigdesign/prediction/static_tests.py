@@ -54,6 +54,11 @@ def standing_value(rig: Rig, channel: Channel, modes: Sequence[NamedMode] | None
     if channel.quantity != "natural_frequency":
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is not measured on the rig at rest")
     modes = standing_modes(rig) if modes is None else modes
+    return mode_frequency(channel, modes)
+
+
+def mode_frequency(channel: Channel, modes: Sequence[NamedMode]) -> float:
+    """Frequency [Hz] of the mode that a channel names; UsageError where there is none of that name."""
     wanted = f"torsional {int(channel.place)}" if channel.place.isdecimal() else channel.place
     for mode in modes:
         if mode.name == wanted:
@@ -74,12 +79,12 @@ def assembly_backlash(rig: Rig, mesh: str) -> float:
     return rig.pairs[mesh].transverse_backlash
 
 
-def standing_modes(rig: Rig) -> tuple[NamedMode, ...]:
-    """Oscillating modes of the braced loop at rest, by rising frequency.
+def standing_modes(rig: Rig, point: OperatingPoint | None = None) -> tuple[NamedMode, ...]:
+    """Oscillating modes of the braced loop at rest, by rising frequency; point : as `rig_at_rest`.
 
     Raises UsageError for a case without drivetrain.
     """
-    return modes_at_rest(rig, rig_at_rest(rig))
+    return modes_at_rest(rig, rig_at_rest(rig, point=point))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,15 +96,19 @@ class RigAtRest:
     system: LinearSystem
 
 
-def rig_at_rest(rig: Rig, parts: IterationParts = SOLVED) -> RigAtRest:
-    """What the modes at rest depend on; parts : solve meshes, bearings and matrices.
+def rig_at_rest(rig: Rig, parts: IterationParts = SOLVED, point: OperatingPoint | None = None) -> RigAtRest:
+    """What the modes at rest depend on.
+
+    parts : solve meshes, bearings and matrices; point : torque that braces the loop, and speed at which shafts that
+        bend run in their films, in the initial state of the case; the standstill torque at rest when left out
 
     Raises UsageError for a case without drivetrain.
     """
     if rig.drivetrain is None:
         raise UsageError("natural frequencies need the drivetrain, which this case leaves out")
     assert rig.system is not None
-    point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
+    if point is None:
+        point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
     initial = initial_state(rig, point, parts.bearings)
     models = parts.models(rig, point, initial)
     system = rig.system
@@ -112,18 +121,24 @@ def rig_at_rest(rig: Rig, parts: IterationParts = SOLVED) -> RigAtRest:
 
 def modes_at_rest(rig: Rig, rest: RigAtRest) -> tuple[NamedMode, ...]:
     """Oscillating modes by rising frequency, meshes as stiff in the mean as the standstill torque makes them."""
-    assert rig.drivetrain is not None
-    laws = standing_laws(rig, rest)
-    undragged = replace(
-        rig.drivetrain,
-        bearings=tuple(replace(bearing, linear_drag=0.0) for bearing in rig.drivetrain.bearings),
-    )
-    twisting = assemble(undragged)
+    laws, twisting = standing_laws(rig, rest), _undragged(rig)
     if rig.shaft_model == "torsional":
         return torsional_modes(twisting, laws, HIGHEST_FREQUENCY)
     seen = rig.elastic.seen
     system = replace(rest.system, damping=rest.system.damping - seen.drag)
     return elastic_named_modes(seen, system, laws, twisting, HIGHEST_FREQUENCY)
+
+
+def twisting_modes(rig: Rig, rest: RigAtRest) -> tuple[NamedMode, ...]:
+    """As `modes_at_rest` of the same rig with shafts that only twist, whatever its shafts do."""
+    return torsional_modes(_undragged(rig), standing_laws(rig, rest), HIGHEST_FREQUENCY)
+
+
+def _undragged(rig: Rig) -> LinearSystem:
+    """The circuit with shafts that only twist, no drag in its bearings."""
+    assert rig.drivetrain is not None
+    bearings = tuple(replace(bearing, linear_drag=0.0) for bearing in rig.drivetrain.bearings)
+    return assemble(replace(rig.drivetrain, bearings=bearings))
 
 
 def loaded_modes(rig: Rig, loop: LoadedCircuit) -> tuple[NamedMode, ...]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.drivetrain.power_loop import speed_ratios
-from dynamics.elastic_rig.beam import DIRECTIONS
 from dynamics.elastic_rig.lateral import (
     LineLoads,
     LineWhirl,
@@ -38,6 +37,7 @@ from rigdesign.results.lateral import (
     Torque,
 )
 from rigdesign.rig.model import Rig
+from rigdesign.rig.shaft_motion import axis_rows
 
 HIGHEST, LEAST_HIGHEST = 3.0, 2000.0
 """Modes are listed up to this times the frequency of the fastest shaft, beyond twice a turn; at least to here [Hz]."""
@@ -177,7 +177,7 @@ class _Whirls:
         for box_name, box in self.rig.case.gearboxes.items():
             placed = self.seal_positions(box_name) if box_name in point.last.expansion else {}
             for seal, (shaft, position) in placed.items():
-                rows = reduced.rows(self.lateral_rows(shaft, position))
+                rows = reduced.rows(axis_rows(self.rig, shaft, position)[1:])
                 yield SealWhirl(
                     seal=seal, shaft=shaft, amplitude=_sum(whirl_at(whirls, rows, self.sense(shaft)))
                 )
@@ -213,14 +213,6 @@ class _Whirls:
             slope = (beyond - at) / (far - x) if far > x else 1.0
             found[seal.name] = seal.shaft, at + slope * (seal.centre[0] - x)
         return found
-
-    def lateral_rows(self, shaft: str, position: float) -> np.ndarray:
-        """(2, n_full) motion of a shaft along y and z at a place [m], beyond its ends as if it went on."""
-        model = self.rig.elastic.model
-        inside = min(max(position, 0.0), model.freedoms.nodes[shaft].positions[-1])
-        node = model.freedoms.on_shaft(shaft, float(inside))
-        rows = node.moved(self.rig.axes[shaft].place(position) - node.x).rows(model.size)
-        return np.asarray(rows[[DIRECTIONS.index("u_y"), DIRECTIONS.index("u_z")]])
 
     def sense(self, shaft: str) -> float:
         """1 where a shaft turns about +x, -1 the other way."""

@@ -4,7 +4,7 @@ The reduced rig is made once: one basis for all speeds, stages and iterations, w
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -75,6 +75,12 @@ class ElasticDrivetrain:
     def slow(self) -> ReducedElasticRig:
         """The same with modes up to `SLOW` only: for what happens at the speed of the shafts."""
         return self.reduced if self.cutoff <= SLOW else self._reduced(SLOW)
+
+    def take_basis(self, other: "ElasticDrivetrain") -> None:
+        """Use the modes of a rig that differs in what turns with its shafts and in how its axes stand, no more; left
+        alone where that gives the shafts other nodes."""
+        if self.model.names == other.model.names:
+            self.__dict__["reduced"] = replace(other.reduced, model=self.model)
 
     def _reduced(self, cutoff: float) -> ReducedElasticRig:
         reference = {

@@ -12,6 +12,8 @@ HOUSINGS = ("models", "conduction", "chamber_views")
 """Cached parts of a rig that depend on geometry and materials of its housings alone, as ``expansion`` does."""
 TWISTING = ("drivetrain", "twisting", "system", "joints")
 """Cached parts that depend on the parts of the power circuit alone."""
+LOADS = ("rotating", "misalignments")
+"""Fields of an elastic rig that load its shafts and leave its modes as they are."""
 
 
 def take_over(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
@@ -31,10 +33,12 @@ def share_elastic(rig: Rig, source: Rig) -> None:
     if _seated(rig) == _seated(source) and same_housings(rig, source):
         take_over(rig, source, ("_seats",))
     own, other = rig.elastic, source.elastic
-    if (own.faces, own.cutoff, own.pressed) == (other.faces, other.cutoff, other.pressed) and _same_parts(
-        own.rig, other.rig
-    ):
+    if (own.faces, own.cutoff, own.pressed) != (other.faces, other.cutoff, other.pressed):
+        return
+    if _same_parts(own.rig, other.rig):
         rig.__dict__["elastic"] = other
+    elif _same_parts(own.rig, other.rig, LOADS):
+        own.take_basis(other)
 
 
 def _seated(rig: Rig) -> tuple[object, ...]:
@@ -47,10 +51,12 @@ def _seated(rig: Rig) -> tuple[object, ...]:
     return (yielding, places, dict(rig.axes))
 
 
-def _same_parts(one: ElasticRig, other: ElasticRig) -> bool:
-    """Whether two rigs have the same parts."""
+def _same_parts(one: ElasticRig, other: ElasticRig, without: tuple[str, ...] = ()) -> bool:
+    """Whether two rigs have the same parts, some fields left out."""
     for entry in fields(one):
-        if entry.name != "supports" and getattr(one, entry.name) != getattr(other, entry.name):
+        if entry.name not in ("supports", *without) and getattr(one, entry.name) != getattr(
+            other, entry.name
+        ):
             return False
     return len(one.supports) == len(other.supports) and all(map(_same_support, one.supports, other.supports))
 

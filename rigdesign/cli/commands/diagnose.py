@@ -60,7 +60,7 @@ def diagnose(
     from rigdesign.report.diagnosis_files import write_diagnosis
 
     if name is not None:
-        check_pick(effects_of(loaded), name)
+        check_pick(effects_of(loaded, channels=None), name)
     used = DEFAULT if calibration is None else load_rig_calibration(calibration, loaded)
     prepare_output(out)
     with Progress() as progress, interrupted(SIMULATIONS_KEPT):

@@ -3,21 +3,34 @@
 The modules imported here register their effects, in this order.
 """
 
+from collections.abc import Iterable
+
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue import circuit, heat, local_heat  # noqa: F401 - register their effects
+from rigdesign.diagnosis.catalogue import circuit, heat, lateral, local_heat  # noqa: F401 - register their effects
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.registry import registered_effects
+from rigdesign.prediction.model import MEASURED_AGAINST, OWN_MODEL, Channel, PredictionModel, model_for
 
 
-def effects_of(case: Case, *, local: bool = True) -> tuple[Effect, ...]:
+def model_of(effects: Iterable[Effect]) -> PredictionModel:
+    """The model in which all of these effects show: that of the case where one needs shafts that bend."""
+    return OWN_MODEL if any(effect.bends for effect in effects) else MEASURED_AGAINST
+
+
+def effects_of(
+    case: Case, *, local: bool = False, channels: Iterable[Channel] | None = ()
+) -> tuple[Effect, ...]:
     """Entries for this case, in a fixed order; names are unique.
 
     Each has a healthy spread or a smallest size that matters.
 
     local : with those at one place of a gearbox (`local_heat`), which a diagnosis does not evaluate yet: its constants
         were fitted without them, and they leave the traces of the same effects of the whole gearbox
+    channels : of the measurement; effects of shafts that bend are there where one of them shows such (`lateral`), and
+        for None, which stands for any
     """
-    found = tuple(registered_effects(case, local=local))
+    bending = channels is None or model_for(channels).shafts != "torsional"
+    found = tuple(registered_effects(case, local=local, lateral=bending))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)
     assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)

@@ -73,6 +73,8 @@ class Effect:
     """Settings over which the exponent of its law is uncertain: ``speed``, ``torque``."""
     doubled: str = ""
     """Name of twice its amplitude, where drawings give that."""
+    bends: bool = False
+    """It shows only where shafts bend: a library with it is made with the shafts of the case."""
     likeness_of_place: bool = False
     """Entries of other gearboxes are alike only where they are of the same place in it."""
 

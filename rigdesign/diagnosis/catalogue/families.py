@@ -40,6 +40,8 @@ TOOTH = Family(
     tooth_contact=True, run_rank=0,
 )  # fmt: skip
 STIFFNESS = Family(name="stiffness", amplitude="constant_loop", dynamic=True, circuit=True, run_rank=1)
+BEARING = replace(STIFFNESS, name="bearing", sizes=FEWER_SIZES)
+"""Bearings and their supports, of which there are many."""
 INERTIA = Family(
     name="inertia", amplitude="constant_loop", dynamic=True, circuit=True, sizes=FEWER_SIZES,
     one_sided_sizes=YIELDING_SIZES, run_rank=2,

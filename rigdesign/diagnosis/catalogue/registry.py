@@ -41,6 +41,7 @@ class _Entry:
     drivetrain: bool = False
     housing: bool = False
     local: bool = False
+    lateral: bool = False
 
     def of_case(self, case: Case) -> Iterator[Effect]:
         if self.of_rig is not None and (case.drivetrain is not None or not self.drivetrain):
@@ -56,31 +57,46 @@ class _Entry:
 _ENTRIES: list[_Entry] = []
 
 
-def of_rig(*, drivetrain: bool = False) -> Callable[[OfRig], OfRig]:
-    """Register effects of the rig as a whole; ``drivetrain``: they need one."""
+def of_rig(*, drivetrain: bool = False, lateral: bool = False) -> Callable[[OfRig], OfRig]:
+    """Register effects of the rig as a whole; ``drivetrain``: they need one; ``lateral``: and shafts that bend."""
 
     def register(make: OfRig) -> OfRig:
-        _ENTRIES.append(_Entry(of_rig=make, drivetrain=drivetrain))
+        _ENTRIES.append(_Entry(of_rig=make, drivetrain=drivetrain or lateral, lateral=lateral))
         return make
 
     return register
 
 
 def of_gearbox(
-    *, drivetrain: bool = False, housing: bool = False, local: bool = False
+    *, drivetrain: bool = False, housing: bool = False, local: bool = False, lateral: bool = False
 ) -> Callable[[OfGearbox], OfGearbox]:
-    """Register effects of every gearbox; ``drivetrain``, ``housing``: they need one; ``local``: at one place of it."""
+    """Register effects of every gearbox; ``drivetrain``, ``housing``: they need one; ``local``: at one place of it;
+    ``lateral``: they need a drivetrain whose shafts bend."""
 
     def register(make: OfGearbox) -> OfGearbox:
-        _ENTRIES.append(_Entry(of_gearbox=make, drivetrain=drivetrain, housing=housing, local=local))
+        _ENTRIES.append(
+            _Entry(
+                of_gearbox=make,
+                drivetrain=drivetrain or lateral,
+                housing=housing,
+                local=local,
+                lateral=lateral,
+            )
+        )
         return make
 
     return register
 
 
-def registered_effects(case: Case, *, local: bool) -> Iterator[Effect]:
-    """Effects of a case as registered, those of one gearbox together; ``local``: with those at one place of it."""
-    wanted = [entry for entry in _ENTRIES if local or not entry.local]
+def registered_effects(case: Case, *, local: bool, lateral: bool) -> Iterator[Effect]:
+    """Effects of a case as registered, those of one gearbox together; ``local``: with those at one place of it;
+    ``lateral``: with those of shafts that bend."""
+    bends = case.drivetrain is not None and case.drivetrain.shaft_model == "elastic"
+    wanted = [
+        entry
+        for entry in _ENTRIES
+        if (local or not entry.local) and ((lateral and bends) or not entry.lateral)
+    ]
     for by_gearbox, group in groupby(wanted, lambda entry: entry.of_gearbox is not None):
         entries = list(group)
         if not by_gearbox:

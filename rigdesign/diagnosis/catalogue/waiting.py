@@ -16,54 +16,47 @@ class Waiting:
     lacks: str
 
 
-LATERAL = "shafts that bend and bearings that yield: the drivetrain has torsional freedoms only"
 GAUGES = "strain gauges in the tooth roots as channels"
 FACE = "a mesh that shares its load over the face in the periodic response, and strain gauges as channels"
-VIBRATION = "accelerations of bearings and housing as channels"
+STEADY_LINES = "lines that do not turn with a gear as channels"
 
 WAITING = (
-    Waiting(
-        "unbalance",
-        "unbalance of a shaft",
-        "order 1 growing with the square of the speed, lateral, at any torque",
-        LATERAL,
-    ),
-    Waiting("shaft_bow", "bent shaft", "order 1, the same at any speed, lateral", LATERAL),
     Waiting(
         "thermal_bow",
         "shaft bent by heat",
         "order 1 that grows while the rig warms up",
-        f"{LATERAL}; temperatures round the shaft",
+        "effects that change over the points: the case has one `temperature_difference` of a bow for all of them",
     ),
     Waiting(
-        "bearing_stiffness",
-        "stiffness of a bearing film",
-        "lateral peaks move, split in two directions",
-        LATERAL,
+        "coupling_misalignment",
+        "couplings between axes out of line",
+        "order 2, lateral, and forces that stand in the bearings",
+        "what a disc pack makes of an offset twice a turn: the case has the force that stands (`cold_offset_lateral`), "
+        "a torque at order 2 (`coupling_order_2`), run-out of the flanges, and the bending of cross joints",
     ),
     Waiting(
         "whirl",
         "oil whirl of a journal",
         "a line below half the speed",
-        f"{LATERAL}; orders below one as channels",
+        f"{STEADY_LINES}, and the limit cycle in the film: the model has its onset (stability of the check) only",
     ),
     Waiting(
         "rub",
         "seal or gear that touches",
         "orders and half orders of the shaft, heat at one place",
-        f"{LATERAL}; contact of shaft and seal",
+        "contact of shaft and seal in the response",
     ),
     Waiting(
         "looseness",
         "loose bearing cap or foot",
         "many orders of the shaft, one-sided",
-        f"{LATERAL}; {VIBRATION}",
+        "supports that lift off: accelerations are channels, supports are linear",
     ),
     Waiting(
         "foundation",
         "resonance of housing or foundation",
         "peaks at one frequency on all sensors of the housing",
-        VIBRATION,
+        f"{STEADY_LINES}, and modes of the housing beyond those of its bearing seats",
     ),
     Waiting(
         "misalignment",
@@ -81,7 +74,7 @@ WAITING = (
         "sharing",
         "uneven sharing of a double helix",
         "one half carries more, with the axial order of the other",
-        FACE,
+        "a share of the halves as a number of the case: `carrying_halves` knows both alike or one alone",
     ),
     Waiting(
         "tooth_friction",

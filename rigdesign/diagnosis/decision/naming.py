@@ -287,7 +287,13 @@ def _without_entry(explanation: str) -> str:
     return explanation
 
 
-_SCALES = {"m": (1e6, "um"), "m3/s": (6e4, "l/min"), "rad/s": (30.0 / pi, "rpm"), "rad": (180.0 / pi, "deg")}
+_SCALES = {
+    "m": (1e6, "um"),
+    "m3/s": (6e4, "l/min"),
+    "rad/s": (30.0 / pi, "rpm"),
+    "rad": (180.0 / pi, "deg"),
+    "kg m": (1e6, "g mm"),
+}
 """Unit of the catalogue -> factor to, and unit of what an engineer reads."""
 
 

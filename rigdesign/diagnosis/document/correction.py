@@ -11,6 +11,7 @@ from typing import Any
 from rigdesign.diagnosis.decision.naming import Sized, formatted
 from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
 from rigdesign.measurement import MeasuredChannel, MeasurementSet
+from rigdesign.measurement.reading.directions import direction_text
 
 MISREAD_UNITS = {
     ("degC", "fahrenheit"): "degF",
@@ -110,6 +111,14 @@ def _placed(channel: MeasuredChannel, other: MeasuredChannel) -> list[dict[str, 
         operations.append({"op": "add", "path": f"{at}/at", "value": place})
     elif channel.channel.at is not None:
         operations.append({"op": "remove", "path": f"{at}/at"})
+    if other.channel.direction is not None:
+        spelled = direction_text(other.channel.direction)
+        operations.append({"op": "add", "path": f"{at}/direction", "value": spelled})
+    if other.channel.position is not None:
+        position = f"{other.channel.position:.10g} m"
+        operations.append({"op": "add", "path": f"{at}/position", "value": position})
+    elif channel.channel.position is not None:
+        operations.append({"op": "remove", "path": f"{at}/position"})
     return operations
 
 

@@ -9,11 +9,17 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import RigdesignError
 from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue import model_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.model import MEASURED_AGAINST, ORDER_QUANTITIES, Channel, OperatingCondition
+from rigdesign.prediction.model import (
+    MODAL_QUANTITIES,
+    ORDER_QUANTITIES,
+    Channel,
+    OperatingCondition,
+)
 from rigdesign.prediction.predictor import Predictor
 
 Progress = Callable[[str], None]
@@ -47,7 +53,7 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     metered = (POWER,) if case.drivetrain is not None else ()
-    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=MEASURED_AGAINST)
+    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=model_of(effects))
     predictor.prepare()
     base = predictor.base
     parts = Parts.of(case, settings, channels, effects)
@@ -87,7 +93,7 @@ def build_library(
 
 def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
     """Whether an effect can show at all: teeth and alternating torques only where orders or modes are read."""
-    dynamic = any(channel.quantity in (*ORDER_QUANTITIES, "natural_frequency") for channel in channels)
+    dynamic = any(channel.quantity in ORDER_QUANTITIES | MODAL_QUANTITIES for channel in channels)
     return dynamic or not effect.family.dynamic
 
 

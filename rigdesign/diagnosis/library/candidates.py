@@ -22,6 +22,9 @@ NOISE: dict[Quantity, float] = {
     "natural_frequency": 6.0,
     "backlash": 3e-6,
     "seal_gap": 1e-5,
+    "acceleration": 0.05,
+    "shaft_displacement": 2e-7,
+    "resonance_speed": 1.0,
 }
 """Standard deviation of a reading of a sensor that would be added, its systematic part included [SI]."""
 

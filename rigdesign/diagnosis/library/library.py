@@ -217,5 +217,5 @@ def _matches(
 
 def _reads_as(kept: Channel, wanted: Channel) -> float:
     """Zero where a channel of the library reads what is wanted."""
-    same = (kept.quantity, kept.place, kept.at) == (wanted.quantity, wanted.place, wanted.at)
+    same = kept.reads == wanted.reads
     return 0.0 if same and set(wanted.orders) <= set(kept.orders) else 2.0

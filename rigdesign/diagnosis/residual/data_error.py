@@ -108,6 +108,7 @@ _MISREAD: Mapping[str, tuple[_Misreading, ...]] = {
     ),
     "drive_torque": _TORQUE,
     "torque": _TORQUE,
+    "resonance_speed": (("radians per second", np.pi / 30.0, 0.0), ("hertz", 1.0 / 60.0, 0.0)),
     "natural_frequency": (("rpm", 60.0, 0.0), ("radians", 2.0 * np.pi, 0.0)),
 }
 """What a reader does wrong: name, factor and shift from the true value to the number that was read as the unit."""

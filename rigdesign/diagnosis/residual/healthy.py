@@ -13,7 +13,13 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import NEAR_SENSOR, Library
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, OperatingCondition
+from rigdesign.prediction.model import (
+    MODAL_QUANTITIES,
+    ORDER_QUANTITIES,
+    Channel,
+    Feature,
+    OperatingCondition,
+)
 
 
 def healthy_columns(
@@ -126,7 +132,7 @@ def _channels(
     """A smooth error of every channel that reads no orders."""
     columns = []
     for name, channel in channels.items():
-        if channel.quantity in ORDER_QUANTITIES or channel.quantity == "natural_frequency":
+        if channel.quantity in ORDER_QUANTITIES | MODAL_QUANTITIES:
             continue
         own = np.array([feature.channel == name for feature in features], dtype=np.float64) * level
         if own.any():
@@ -202,7 +208,7 @@ def own_spread(
     share = []
     for feature in features:
         quantity = channels[feature.channel].quantity
-        if quantity == "natural_frequency":
+        if quantity in MODAL_QUANTITIES:
             share.append(amplitudes.frequency)
         elif quantity in ORDER_QUANTITIES and feature.order:
             mesh = feature.order in mesh_orders

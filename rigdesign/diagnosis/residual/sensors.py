@@ -67,6 +67,9 @@ UNITS = {
     "natural_frequency": "rad/s",
     "backlash": "m",
     "seal_gap": "m",
+    "acceleration": "m/s2",
+    "shaft_displacement": "m",
+    "resonance_speed": "rad/s",
 }
 
 

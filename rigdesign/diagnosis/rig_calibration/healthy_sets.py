@@ -65,7 +65,8 @@ def calibrate_rig(
     measurements = tuple(load_measurement(folder, case) for folder in folders)
     names = _names(measurements)
     _check_shared(measurements, names)
-    effects = effects_of(case)
+    read = [entry.channel for one in measurements for entry in one.channels.values()]
+    effects = effects_of(case, channels=read)
     sets = []
     with solver_errors(case):
         for name, one in zip(names, measurements, strict=True):

@@ -34,6 +34,11 @@ class Bands:
                 return "drive power and torque"
             case "torque" | "angle":
                 return f"{channel.quantity} {self._where(channel)}, {self.order_band(feature.order)}"
+            case "acceleration" | "shaft_displacement":
+                word = channel.quantity.replace("_", " ")
+                return f"{word} at {channel.place}, {self.order_band(feature.order)}"
+            case "resonance_speed":
+                return "resonance speeds (run-up and run-down)"
             case "natural_frequency":
                 return "natural frequencies (static tests)"
             case "backlash":

@@ -54,10 +54,8 @@ class Foretold:
 
 def shared_channels(data: Data, healthy: Data) -> list[Channel]:
     """Channels of a healthy set that have the name, the quantity and the place of one of the set."""
-    own = {name: _reads(entry.channel) for name, entry in data.channels.items()}
-    return [
-        entry.channel for name, entry in healthy.channels.items() if own.get(name) == _reads(entry.channel)
-    ]
+    own = {name: entry.channel.reads for name, entry in data.channels.items()}
+    return [entry.channel for name, entry in healthy.channels.items() if own.get(name) == entry.channel.reads]
 
 
 def at_all(healthy: Data, prediction: Prediction) -> Prediction:
@@ -85,7 +83,3 @@ def foretold(data: Data, healthy: HealthySet) -> Foretold:
             residual[i] = reading[i] - simulated[row]
             variance[i] = healthy.data.noise[row] ** 2 + spread[row] ** 2
     return Foretold(residual=residual, variance=variance, reading=reading, points=points)
-
-
-def _reads(channel: Channel) -> tuple[object, ...]:
-    return channel.quantity, channel.place, channel.at

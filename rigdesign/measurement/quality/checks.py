@@ -14,7 +14,12 @@ LEAST_POINTS = 3
 
 def data_findings(measurement: MeasurementSet) -> tuple[frozenset[str], tuple[DataFinding, ...]]:
     """Channels that cannot be used, and everything the checks have to say."""
-    findings = [*_dead(measurement), *_without_uncertainty(measurement), *still_warming(measurement)]
+    findings = [
+        *_dead(measurement),
+        *_without_uncertainty(measurement),
+        *_without_support(measurement),
+        *still_warming(measurement),
+    ]
     dropped = {name for finding in findings if finding.weight == "dropped" for name in finding.channels}
     return frozenset(dropped), tuple(findings)
 
@@ -59,3 +64,19 @@ def _without_uncertainty(measurement: MeasurementSet) -> Iterator[DataFinding]:
                 "is left out; state the uncertainty of one reading"
             )
             yield DataFinding(id="zero_uncertainty", weight="dropped", channels=(name,), text=text)
+
+
+def _without_support(measurement: MeasurementSet) -> Iterator[DataFinding]:
+    """An accelerometer on a housing that stands still in the model: compared is the shaft in the bearing."""
+    for name, entry in measurement.channels.items():
+        if entry.channel.quantity != "acceleration":
+            continue
+        box, bearing = entry.channel.place.split(".")
+        gearbox = measurement.case.gearboxes[box]
+        seated = gearbox.housing is not None and gearbox.housing.bearing_seats == "elastic"
+        if gearbox.bearings[bearing].support_stiffness is None and not seated:
+            yield DataFinding(
+                id="acceleration_of_shaft", weight="note", channels=(name,),
+                text=f"{name}: the case has no support under {entry.channel.place}, so that the acceleration of "
+                f"the shaft in it is predicted; state the support_stiffness of gearboxes.{box}.bearings.{bearing}",
+            )  # fmt: skip

@@ -15,9 +15,16 @@ from rigdesign.measurement.quantities import (
     accepted_unit,
     unit_kind,
 )
+from rigdesign.measurement.reading.channel_rules import an, direction_faults, modal_faults
+from rigdesign.measurement.reading.directions import direction_of
 from rigdesign.measurement.reading.document import ChannelTable, MeasurementFile, SettingColumn
 from rigdesign.measurement.reading.measurement_set import MeasuredChannel, SettingSensor
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
+from rigdesign.prediction.model import (
+    MODAL_QUANTITIES,
+    ORDER_QUANTITIES,
+    WITHOUT_MEAN,
+    Channel,
+)
 
 PLACED_SETTINGS = frozenset(("inlet_temperature", "flow"))
 NEEDED = ("speed", "torque")
@@ -62,6 +69,9 @@ def channels_of(document: MeasurementFile, places: Places) -> dict[str, Measured
                 place="" if entry.place == MOTOR else entry.place,
                 at=entry.at,
                 orders=orders,
+                direction=None if entry.direction is None else direction_of(entry.direction),
+                position=entry.position,
+                torque=entry.torque,
             ),
             unit=_spelled(entry.unit, measured),
             noise=units.parse(entry.uncertainty, measured.spread),
@@ -70,6 +80,7 @@ def channels_of(document: MeasurementFile, places: Places) -> dict[str, Measured
             calibrated=entry.calibrated,
             transfer=entry.transfer,
             signal=entry.signal or name,
+            search_range=_search_range(entry, measured),
         )
     return channels
 
@@ -94,13 +105,22 @@ def sensors_of(document: MeasurementFile) -> dict[str, SettingSensor]:
     }
 
 
+def _search_range(entry: ChannelTable, measured: Measured) -> tuple[float, float] | None:
+    if entry.search_range is None:
+        return None
+    low, high = (units.parse(text, measured.kind) for text in entry.search_range)
+    return low, high
+
+
 def _orders(entry: ChannelTable, places: Places) -> tuple[float, ...]:
+    if entry.quantity == "resonance_speed":
+        return tuple(places.snapped(order) for order in entry.orders or ())
     if entry.quantity not in ORDER_QUANTITIES:
         return ()
     chosen = places.orders
     if entry.orders is not None:
         chosen = tuple(sorted({places.snapped(order) for order in entry.orders}))
-    return tuple(order for order in chosen if order > 0.0) if entry.quantity == "angle" else chosen
+    return tuple(order for order in chosen if order > 0.0) if entry.quantity in WITHOUT_MEAN else chosen
 
 
 def _spelled(unit: str, measured: Measured) -> str:
@@ -144,14 +164,17 @@ def _channel(name: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
     given = {key: text for key, text in spreads.items() if text is not None}
     yield from _unit_and_spread(at, entry.unit, given, CHANNELS[entry.quantity])
     yield from _place(f"{at}.place", entry, places)
-    if entry.quantity not in ORDER_QUANTITIES and entry.orders is not None:
+    yield from direction_faults(at, entry, places)
+    yield from modal_faults(at, entry)
+    if entry.quantity not in ORDER_QUANTITIES | {"resonance_speed"} and entry.orders is not None:
         yield Fault(
             f"{at}.orders", "", f"{entry.quantity} is read as one number, not by orders", "remove the key"
         )
     if entry.orders is not None and not entry.orders:
         yield Fault(f"{at}.orders", "[]", "no order is named", "name some or leave the key out")
-    if entry.quantity == "angle" and entry.orders == (0.0,):
-        yield Fault(f"{at}.orders", "[0]", "the mean of an angle says nothing", "name orders above 0")
+    if entry.quantity in WITHOUT_MEAN and entry.orders == (0.0,):
+        said = entry.quantity.replace("_", " ")
+        yield Fault(f"{at}.orders", "[0]", f"the mean of {an(said)} says nothing", "name orders above 0")
 
 
 def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
@@ -171,7 +194,7 @@ def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
             f'add coordinates, at = ["0.1 m", "0 m", "0.2 m"], or a surface such as "{known[0]}"',
         )  # fmt: skip
         return
-    if entry.quantity == "natural_frequency" and known:
+    if entry.quantity in MODAL_QUANTITIES and known:
         if not places.is_mode(entry.place):
             yield Fault(
                 at, written(entry.place), "neither the number of a torsional natural frequency nor the name of a mode",

@@ -6,7 +6,20 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from rigdesign.case.fields import Angle, Frequency, Name, Offset, Part, Quantity, Share, Text, fault
+from rigdesign.case.fields import (
+    Angle,
+    Frequency,
+    Gap,
+    Name,
+    Offset,
+    Part,
+    Quantity,
+    Share,
+    Speed,
+    Text,
+    Torque,
+    fault,
+)
 from rigdesign.measurement.quantities import SettingQuantity
 from rigdesign.prediction import model as prediction
 
@@ -37,6 +50,34 @@ class Recording(Part):
     without it the phases of fractional orders are not known."""
 
 
+class Sweep(Part):
+    """A recording over which the speed changes: a run-up or a run-down under one bracing torque."""
+
+    file: Text
+    """As of a recording."""
+    direction: Literal["up", "down"]
+    """Which way the speed goes; the tach has to agree."""
+    torque: Torque
+    """Bracing torque, where the case counts it."""
+    speeds: tuple[Speed, ...] = ()
+    """Speeds of the reference gear at which the orders of the channels are read, each an operating point of its own."""
+    turns: Annotated[int, Field(ge=2, le=1000)] = 16
+    """Turns of the reference gear in a window over which an order is averaged; a line of 2/turns of an order."""
+    start_turn: Annotated[float, Field(ge=0.0)] | None = None
+    """As of a recording."""
+
+
+class Impact(Part):
+    """A recording of hammer blows on the rig at rest."""
+
+    file: Text
+    """As of a recording."""
+    force: Label
+    """Signal of the hammer."""
+    length: Annotated[float, Quantity("time", at_least="1 ms", at_most="100 s")] | None = None
+    """Time after a blow that counts; to the next blow when left out."""
+
+
 class Tach(Part):
     """How the angle of the reference gear follows from a recording."""
 
@@ -65,8 +106,10 @@ class DataSection(Part):
     size_limit: SizeLimit = 200e6
     """Most bytes of each file that is named here, and most samples read from it."""
     recordings: tuple[Recording, ...] = ()
+    sweeps: tuple[Sweep, ...] = ()
+    impacts: tuple[Impact, ...] = ()
     tach: Tach | None = None
-    """Needed for recordings of torque or angle."""
+    """Needed for recordings of channels that are read by orders, and for sweeps."""
 
     @model_validator(mode="after")
     def _signs(self) -> "DataSection":
@@ -121,19 +164,30 @@ class ChannelTable(Part):
     """Where on the rig; see ``rigdesign.prediction.model.Channel``."""
     at: tuple[Offset, Offset, Offset] | None = None
     """Coordinates in the housing, for a temperature with the gearbox as its place."""
+    direction: Text | None = None
+    """Of an acceleration or shaft displacement, in the frame of the case: "y" across, "z" up, "x" along the shafts, one
+    of them with a minus, or an angle from y towards z such as "45 deg"."""
+    position: Gap | None = None
+    """Of a shaft displacement with a shaft as its place: distance from the start of the shaft."""
+    torque: Torque | None = None
+    """Of a resonance speed: bracing torque of the sweeps that it is read from."""
+    search_range: tuple[Text, Text] | None = None
+    """Least and greatest reading that is looked for in sweeps (resonance speed) or blows (natural frequency); all of
+    them when left out."""
     unit: Text
     uncertainty: Spread
-    """1 sigma of one reading; of a torque or angle of its mean and of each real or imaginary part."""
+    """1 sigma of one reading; of a channel with orders of its mean and of each real or imaginary part."""
     offset_uncertainty: Spread | None = None
     """1 sigma, systematic, the same over the set."""
     scale_uncertainty: Share = 0.0
     """1 sigma, systematic, relative; of a thermocouple relative to its excess over ambient."""
     calibrated: date | None = None
     orders: tuple[Annotated[float, Field(ge=0.0)], ...] | None = None
-    """Per turn of the reference gear, 0 is the mean; from tooth numbers when left out."""
+    """Per turn of the reference gear, 0 is the mean; from tooth numbers when left out. Of a resonance speed the one
+    order that meets it."""
     transfer: Transfer | None = None
     signal: Label | None = None
-    """Name in recordings; that of the channel when left out."""
+    """Name in recordings, sweeps and blows; that of the channel when left out."""
 
 
 ExtraPoint = Literal["operating_point", "oil_flow", "inlet_temperature", "reassembly"]

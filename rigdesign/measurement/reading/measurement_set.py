@@ -46,7 +46,9 @@ class MeasuredChannel:
     calibrated: date | None = None
     transfer: Transfer | None = None
     signal: str = ""
-    """Name in recordings."""
+    """Name in recordings, sweeps and blows."""
+    search_range: tuple[float, float] | None = None
+    """Least and greatest reading that is looked for in sweeps or blows [SI]."""
 
     @property
     def name(self) -> str:

@@ -76,7 +76,7 @@ def read_orders(
             faults.append(unknown(f"{at}, point", point, rows.names, f"point in {rows.table.file}"))
             continue
         if name not in order_channels:
-            faults.append(unknown(f"{at}, channel", name, order_channels, "channel of torque or angle"))
+            faults.append(unknown(f"{at}, channel", name, order_channels, "channel that is read by orders"))
             continue
         order, repeat = values["order"][row], values["repeat"][row]
         place = rows.place(point, int(repeat)) if math.isfinite(repeat) and repeat == round(repeat) else None

@@ -65,7 +65,11 @@ def test_every_family_has_an_amplitude_of_the_calibration():
 
 
 def test_no_effect_both_waits_and_has_an_entry():
-    kinds = {effect.kind for name in ("loop_1to1", "uhcf_prototype") for effect in effects_of(case_of(name))}
+    kinds = {
+        effect.kind
+        for name in ("loop_1to1", "uhcf_prototype")
+        for effect in effects_of(case_of(name), channels=None)
+    }
     assert not kinds & {one.name for one in WAITING}
 
 

@@ -181,7 +181,7 @@ SPOILT = [
     ("data.csv", lambda text: text.replace(",n,", ",nn,"), "no such column"),
     ("orders.csv", lambda text: text.replace("imaginary", "imag"), "no column imaginary"),
     ("orders.csv", lambda text: text.replace("P02,1", "P99,1"), "no such point"),
-    ("orders.csv", lambda text: text.replace("M_wheel", "TC1"), "no such channel of torque or angle"),
+    ("orders.csv", lambda text: text.replace("M_wheel", "TC1"), "no such channel that is read by orders"),
     ("orders.csv", lambda text: text + text.splitlines()[-1] + "\n", "stands in line"),
     ("measurement.toml", lambda text: text[:-20], "not valid TOML or was cut off"),
 ]

@@ -1,0 +1,174 @@
+"""Hammer blows on the rig at rest: natural frequencies from the peaks of the frequency response to the force.
+
+The response function is H1 = S_fx / S_ff, averaged over the blows, each from a little before it to the next one. Peaks
+are fitted as those of a sweep (`resonance_peak`). Source: Ewins, Modal Testing, 2nd edition, section 3.8 and 4.3.
+"""
+
+import math
+from collections.abc import Iterator, MutableSequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import find_peaks
+
+from rigdesign.base.errors import MeasurementError
+from rigdesign.case.faults import unknown
+from rigdesign.measurement.processing.recorded import SetPlan
+from rigdesign.measurement.processing.resonance_peak import resonance_peak
+from rigdesign.measurement.quality.signal_checks import signal_findings, usable_signal
+from rigdesign.measurement.reading.document import Impact
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, Weight
+from rigdesign.measurement.reading.signals import Signal, read_signals
+from rigdesign.prediction.model import Feature
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+BLOW = 0.3
+"""Share of the hardest blow from which a peak of the force is a blow of its own."""
+BEFORE = 0.02
+"""Share of the time between blows that counts before one."""
+APART = 0.05
+"""Least time between two blows [s]: what comes sooner is a rebound."""
+LEAST_SAMPLES = 64
+"""Samples of a blow below which it says nothing."""
+LEAST_COHERENCE = 0.8
+"""Coherence at a peak below which its frequency is suspected."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrequencyResponse:
+    """Response per force over frequency.
+
+    frequency : (n,) [Hz]; response : (n,) complex; coherence : (n,) 0 to 1, NaN of a single blow; blows : averaged
+    """
+
+    frequency: Array
+    response: Complex
+    coherence: Array
+    blows: int
+
+
+def frequency_response(force: Signal, response: Signal, length: float | None = None) -> FrequencyResponse:
+    """Averaged over the blows of a record whose two signals have the same samples.
+
+    length : time after a blow that counts [s]; to the next blow when left out
+
+    Raises
+    ------
+    ValueError
+        No blow, signals of other samples, missing samples, blows that follow each other too fast.
+    """
+    if force.time.shape != response.time.shape or not np.array_equal(force.time, response.time):
+        raise ValueError("force and response have other samples; record both with one clock")
+    if not (np.all(np.isfinite(force.values)) and np.all(np.isfinite(response.values))):
+        raise ValueError("samples are missing; look at the cables")
+    step = float(np.median(np.diff(force.time)))
+    blows = _blows(force.values - float(np.median(force.values)), step)
+    size = _samples(blows, force.values.size, step, length)
+    before = int(BEFORE * size)
+    parts = [slice(start - before, start - before + size) for start in blows if start >= before]
+    parts = [part for part in parts if part.stop <= force.values.size]
+    if not parts or size < LEAST_SAMPLES:
+        raise ValueError(
+            f"{size} samples a blow, {LEAST_SAMPLES} are needed; leave more time before, between and after blows"
+        )
+    pushes, moves = (
+        np.fft.rfft([one.values[part] - np.mean(one.values[part]) for part in parts])
+        for one in (force, response)
+    )
+    of_force = np.mean(np.abs(pushes) ** 2, axis=0)
+    across = np.mean(np.conj(pushes) * moves, axis=0)
+    whole = np.maximum(of_force * np.mean(np.abs(moves) ** 2, axis=0), 1e-300)
+    several = len(parts) > 1
+    return FrequencyResponse(
+        frequency=np.asarray(np.fft.rfftfreq(size, step), np.float64),
+        response=across / np.maximum(of_force, 1e-300),
+        coherence=np.abs(across) ** 2 / whole if several else np.full(of_force.size, math.nan),
+        blows=len(parts),
+    )
+
+
+def read_impacts(plan: SetPlan, findings: MutableSequence[DataFinding]) -> dict[Feature, NDArray[np.float64]]:
+    """Natural frequencies [Hz] of the channels whose signals the records of blows hold.
+
+    Raises
+    ------
+    MeasurementError
+        A file that cannot be read, a record without the signal of the hammer.
+    """
+    found: dict[str, list[float]] = {}
+    for number, impact in enumerate(plan.document.data.impacts):
+        signals = read_signals(plan.folder, impact.file, plan.document.data)
+        if impact.force not in signals:
+            at = f"data.impacts.{number}.force"
+            raise MeasurementError([unknown(at, impact.force, tuple(signals), f"signal in {impact.file}")])
+        for name, channel in plan.channels.items():
+            if channel.channel.quantity == "natural_frequency" and channel.signal in signals:
+                force, response = signals[impact.force], signals[channel.signal]
+                found.setdefault(name, []).extend(
+                    _frequency(name, channel, impact, (force, response), findings)
+                )
+    return {Feature(name, ""): np.array(values) for name, values in found.items() if values}
+
+
+def _frequency(
+    name: str,
+    channel: MeasuredChannel,
+    impact: Impact,
+    signals: tuple[Signal, Signal],
+    findings: MutableSequence[DataFinding],
+) -> Iterator[float]:
+    """The frequency of a channel in one record; nothing, with a finding, where it does not show."""
+
+    def say(identity: str, weight: Weight, text: str) -> None:
+        said = f"{impact.file}: {name}: {text}"
+        findings.append(DataFinding(id=identity, weight=weight, text=said, channels=(name,)))
+
+    # the hammer rests at zero for most of a record, which looks like a clipped signal
+    response = signals[1]
+    for identity, weight, text in signal_findings(response):
+        say(identity, weight, text)
+    if not usable_signal(response):
+        return
+    if channel.search_range is None:
+        say("no_resonance", "dropped", "a response has many peaks; write the search_range of this one")
+        return
+    try:
+        found = frequency_response(*signals, impact.length)
+        peak = resonance_peak(found.frequency, np.abs(found.response), channel.search_range)
+    except ValueError as error:
+        say("no_resonance", "dropped", str(error))
+        return
+    near = found.coherence[int(np.argmin(np.abs(found.frequency - peak.place)))]
+    damping = peak.half_width / peak.place
+    said = f"peak at {peak.place:.6g} Hz, damping ratio {damping:.2g}, known to {peak.uncertainty:.2g} Hz"
+    if near < LEAST_COHERENCE:
+        say(
+            "low_coherence",
+            "suspect",
+            f"{said}: coherence {near:.2g} there, at least {LEAST_COHERENCE:g}; strike again",
+        )
+    else:
+        say("resonance", "note", f"{said}, mean of {found.blows} blows")
+    yield peak.place
+
+
+def _blows(force: Array, step: float) -> NDArray[np.int64]:
+    """Samples at which the hammer strikes."""
+    size = np.abs(force)
+    hardest = float(size.max())
+    if not hardest > 0.0:
+        raise ValueError("the hammer gives no force; look at its cable")
+    places, _ = find_peaks(size, height=BLOW * hardest, distance=max(int(APART / step), 1))
+    if not places.size:
+        raise ValueError("no blow is in the record; look at the trigger level")
+    return np.asarray(places, np.int64)
+
+
+def _samples(blows: NDArray[np.int64], count: int, step: float, length: float | None) -> int:
+    """Samples of one blow: as asked for, at most to the next one or the end."""
+    ends = np.append(blows[1:], count)
+    free = int(np.min(ends - blows)) if blows.size > 1 else int(count - blows[0])
+    return free if length is None else min(free, int(length / step))
