@@ -85,14 +85,19 @@ def _not_steady(
     measurement: MeasurementSet, names: Sequence[Feature], usable: NDArray[np.bool_]
 ) -> Iterable[DataFinding]:
     """Take temperatures out at points that were not steady."""
-    restless = tuple(point.name for point in measurement.points if not point.steady)
+    restless = {point.name for point in measurement.points if not point.steady}
     thermal = {name for name, entry in measurement.channels.items() if entry.channel.quantity in THERMAL}
-    hit = [i for i, feature in enumerate(names) if feature.setting in restless and feature.channel in thermal]
+    hit = [
+        i
+        for i, feature in enumerate(names)
+        if usable[i] and feature.setting in restless and feature.channel in thermal
+    ]
     usable[hit] = False
     if hit:
+        points = tuple(dict.fromkeys(names[i].setting for i in hit))
         yield DataFinding(
-            id="not_steady", weight="dropped", points=restless,
-            text=f"{', '.join(restless)}: said not to be steady; temperatures there are not used",
+            id="not_steady", weight="dropped", points=points,
+            text=f"{', '.join(points)}: said not to be steady; temperatures there are not used",
         )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import Case
+from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.measurement import features, load_measurement
 from rigdesign.measurement.reading.directions import AXES, direction_of, direction_text
 from rigdesign.prediction.model import Feature
@@ -32,6 +33,15 @@ direction = "-z"
 unit = "um"
 uncertainty = "0.2 um"
 orders = [0, 1]
+"""
+SECOND = """
+[channels.s_front]
+quantity = "shaft_displacement"
+place = "test.pinion_front"
+direction = "30 deg"
+unit = "um"
+uncertainty = "0.2 um"
+orders = [1]
 """
 G = 9.80665
 
@@ -107,3 +117,18 @@ def test_directions_are_spelled_and_read_alike(text: str) -> None:
     vector = direction_of(text)
     assert math.hypot(*vector) == pytest.approx(1.0)
     assert direction_text(vector) == text
+
+
+def test_exchanged_sensors_change_direction_and_position_too(tmp_path: Path, case: Case) -> None:
+    folder = lateral_set(tmp_path)
+    replaced(folder, "measurement.toml", "[channels.T_out]", f"{SECOND}\n[channels.T_out]")
+    rows = (folder / "orders.csv").read_text(encoding="utf-8").replace("s_shaft", "s_front").splitlines()[1:]
+    with (folder / "orders.csv").open("a", encoding="utf-8") as file:
+        file.write("\n".join(rows) + "\n")
+    correction = of_data("swapped_channels:s_shaft,s_front", load_measurement(folder, case))
+    operations = {one["path"]: one.get("value") for one in correction.operations}
+    assert operations["/channels/s_front/direction"] == "-z"
+    assert operations["/channels/s_front/position"] == "0.06 m"
+    assert operations["/channels/s_shaft/direction"] == "30 deg"
+    removed = [one["path"] for one in correction.operations if one["op"] == "remove"]
+    assert removed == ["/channels/s_shaft/position"]
