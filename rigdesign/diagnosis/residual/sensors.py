@@ -64,7 +64,7 @@ UNITS = {
     "drive_torque": "N m",
     "torque": "N m",
     "angle": "rad",
-    "natural_frequency": "rad/s",
+    "natural_frequency": "Hz",
     "backlash": "m",
     "seal_gap": "m",
     "acceleration": "m/s2",

@@ -69,16 +69,13 @@ def _order_levels(
     found: Array,
     mesh_orders: frozenset[float],
 ) -> None:
-    """Mesh orders over their own root mean square, the others over the strongest of those."""
+    """Mesh orders over their own root mean square, the others over the strongest of those, else of all."""
     by_order: dict[float, list[int]] = {}
     for row in rows:
         by_order.setdefault(features[row].order, []).append(row)
-    mesh = {
-        order: float(np.sqrt(2.0 * np.mean(above[own] ** 2)))
-        for order, own in by_order.items()
-        if order in mesh_orders
-    }
-    strongest = max(mesh.values(), default=0.0)
+    sizes = {order: float(np.sqrt(2.0 * np.mean(above[own] ** 2))) for order, own in by_order.items() if order}
+    mesh = {order: size for order, size in sizes.items() if order in mesh_orders}
+    strongest = max((mesh or sizes).values(), default=0.0)
     for order, own in by_order.items():
         if order == 0.0:
             found[own] = np.maximum(above[own], float(above[own].mean()))
