@@ -40,7 +40,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.defaults.AMPLITUDES.input": Source(
         "-", "definition", "uncertainties as the measurement states them"
     ),
-    "decision.defaults.REAL_MODEL": Source("-", "choice", _PRACTICE, replaced=True),
+    "decision.defaults.REAL_MODEL": Source("-", "choice", f"{_PRACTICE}; not used with a file of the rig"),
     "decision.defaults.INFLATION": Source(
         "coordinate", "fit", "108 healthy sets of the virtual rig, three rigs"
     ),
