@@ -147,15 +147,16 @@ def certainty(outcome: Outcome) -> str:
 
 def steps(outcome: Outcome) -> tuple[NextStep, ...]:
     """What to measure or do next: computed proposals first, then what the rules of the workflow say."""
+    together = () if outcome.ahead.together is None else outcome.ahead.together.titles
     computed = [
         NextStep(
             text=one.title, why=_why(outcome, one), expected_evidence=one.expected_evidence, cost=one.cost,
             decides=one.decides,
         )
         for one in outcome.ahead.ranked
-        if one.expected_evidence >= WORTH
+        if one.expected_evidence >= WORTH and (one.title,) != together
     ][:MOST_PROPOSED]  # fmt: skip
-    nothing = [] if computed or not outcome.ahead.ranked else [_none_separates(outcome)]
+    nothing = [] if computed or together or not outcome.ahead.ranked else [_none_separates(outcome)]
     return (
         *_baseline(outcome),
         *_first(outcome),
@@ -184,8 +185,10 @@ def _together(outcome: Outcome) -> list[NextStep]:
     count = len(outcome.ahead.verified)
     if count == 1:
         shown = f"{'names' if named else 'does not name'} the suspect"
+    elif len(named) == count:
+        shown = "names it every time"
     else:
-        shown = f"names {' and '.join(named) or 'none'}, of {count}"
+        shown = f"names {' and '.join(named) or 'none'} of {count}"
     return [
         NextStep(
             text=" and ".join(found.titles),

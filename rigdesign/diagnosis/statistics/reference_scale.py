@@ -73,7 +73,9 @@ def _order_levels(
     by_order: dict[float, list[int]] = {}
     for row in rows:
         by_order.setdefault(features[row].order, []).append(row)
-    sizes = {order: float(np.sqrt(2.0 * np.mean(above[own] ** 2))) for order, own in by_order.items() if order}
+    sizes = {
+        order: float(np.sqrt(2.0 * np.mean(above[own] ** 2))) for order, own in by_order.items() if order
+    }
     mesh = {order: size for order, size in sizes.items() if order in mesh_orders}
     strongest = max((mesh or sizes).values(), default=0.0)
     for order, own in by_order.items():
