@@ -1,7 +1,7 @@
 """A diagnosis from files: measurement set, healthy baseline if there is one, library of the rig, verdict."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from rigdesign.diagnosis.decision.proposals import (
     extras_of,
     next_measurements,
 )
-from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
+from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS, Diagnosis, diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
 from rigdesign.diagnosis.library.candidates import spare_channels
@@ -67,7 +67,7 @@ def diagnose_measurement(
     """
     measurement = load_measurement(folder, case)
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
-    effects = effects_of(case)
+    effects = _simplified(effects_of(case), len(measurement.points))
     with solver_errors(case):
         data, residuals = read_residuals(case, measurement, effects, say)
         before = None if healthy is None else read_residuals(case, healthy, effects, say)[1]
@@ -82,7 +82,7 @@ def diagnose_measurement(
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)
         extras = extras_of(case, data.settings)
-        offered = candidates_of(case, measurement, data.settings)
+        offered = candidates_of(case, measurement, data.settings, effects)
         say("looking for the next measurement")
         ahead = next_measurements(problem, found, offered, extras, calibration) if offered else NOTHING_NEXT
     return Result(
@@ -142,13 +142,23 @@ def calibrate_case(
     )
 
 
+def _simplified(effects: tuple[Effect, ...], points: int) -> tuple[Effect, ...]:
+    """Effects as they are run: where no name can come of it, one run each but for what shows over the face."""
+    if points >= LEAST_RUNNING_POINTS:
+        return effects
+    return tuple(effect if effect.family.strain else replace(effect, linear=True) for effect in effects)
+
+
 def candidates_of(
-    case: Case, measurement: MeasurementSet, settings: tuple[OperatingCondition, ...]
+    case: Case,
+    measurement: MeasurementSet,
+    settings: tuple[OperatingCondition, ...],
+    effects: tuple[Effect, ...],
 ) -> Library | None:
     """The library of the rig with the points and sensors that could be added; None if the stored one has none."""
     channels, spare = _channels(case, measurement)
     extras = tuple(extra.setting for extra in extras_of(case, settings))
-    return stored_library(case, (*settings, *extras), (*channels, *spare), effects_of(case))
+    return stored_library(case, (*settings, *extras), (*channels, *spare), effects)
 
 
 def _channels(case: Case, measurement: MeasurementSet) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:

@@ -54,6 +54,8 @@ TORQUES = (-1e8, 1e8)
 POWERS = (-1e9, 1e9)
 CLEARANCES = (-1e-3, 1.0)
 """[m]; a dial gauge may read a closed gap a little below zero."""
+STRAINS = (-0.05, 0.05)
+"""Foil gauges end at 3 to 5 %."""
 LEAST_UNCERTAINTY = 1e-15
 """Share of the span of a quantity below which an uncertainty is none that an instrument has."""
 
@@ -76,6 +78,7 @@ CHANNELS: Mapping[str, Measured] = {
     "natural_frequency": Measured("frequency", "0.5 Hz", (1e-3, 1e7)),
     "backlash": Measured("length", "2 um", CLEARANCES),
     "seal_gap": Measured("length", "5 um", CLEARANCES),
+    "root_strain": Measured("strain", "2 um/m", STRAINS),
 }
 """Quantities of ``rigdesign.prediction.model.Channel``."""
 

@@ -19,8 +19,13 @@ Quantity = Literal[
     "natural_frequency",
     "backlash",
     "seal_gap",
+    "root_strain",
 ]
-Part = Literal["value", "real", "imaginary"]
+RootWindow = Literal["entry", "maximum", "exit", "unloaded"]
+"""Numbers of the curve of a root gauge; see `rigdesign.strain_gauge.curve_windows`."""
+Part = Literal["value", "real", "imaginary"] | RootWindow
+ROOT_WINDOWS: tuple[RootWindow, ...] = ("entry", "maximum", "exit", "unloaded")
+"""All of them, in their order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +46,8 @@ TORSIONAL = PredictionModel(shafts="torsional")
 """The quick variant: shafts that only twist."""
 MEASURED_AGAINST = TORSIONAL
 """Model that measured data are held against, and that the constants of the diagnosis were fitted with."""
+GAUGES_AGAINST = PredictionModel(shafts="torsional", teeth="influence_numbers")
+"""The same of sets with root gauges, whose stress needs the influence numbers of the teeth anyway."""
 
 ORDER_QUANTITIES = frozenset({"torque", "angle"})
 """Quantities that are read as a mean and complex orders of the rotating shaft."""
@@ -75,7 +82,8 @@ class Channel:
         ``at`` gives coordinates; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
         coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
         or the name of any mode (`dynamics.elastic_rig.mode_names`); of ``backlash`` a mesh, ``test.main``; of
-        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor
+        ``seal_gap`` a seal as results name it; of ``root_strain`` a strain gauge, ``test.pinion.ii``; of
+        ``motor_power`` and ``drive_torque`` the motor
     """
 
     name: str
@@ -85,11 +93,15 @@ class Channel:
     """Coordinates in the housing [m]."""
     orders: tuple[float, ...] = ()
     """Of ``torque`` and ``angle``: per turn of the reference gear; 0 is the mean."""
+    windows: tuple[RootWindow, ...] = ROOT_WINDOWS
+    """Of ``root_strain``: the numbers that are read."""
+    face: float = 0.0
+    """Of ``root_strain``: face position of the gauge, from mid-face, as the case has it [m]."""
 
 
 @dataclass(frozen=True, order=True)
 class Feature:
-    """One number: a channel at an operating point, of orders the real or imaginary part.
+    """One number: a channel at an operating point, of orders the real or imaginary part, of a root gauge the window.
 
     The signal is the sum of Re(X_k exp(i k phi)) over its orders k; phi is the angle of the reference gear,
     zero where its tooth 0 stands at the pitch point of its first mesh (plus the phase of the case).
@@ -128,6 +140,8 @@ def features_of(settings: Iterable[OperatingCondition], channels: Iterable[Chann
 
 
 def _at(channel: Channel, setting: str) -> list[Feature]:
+    if channel.quantity == "root_strain":
+        return [Feature(channel.name, setting, part=window) for window in channel.windows]
     if channel.quantity not in ORDER_QUANTITIES:
         return [Feature(channel.name, setting)]
     return [Feature(channel.name, setting, order, part) for order in channel.orders for part in _parts(order)]
@@ -135,3 +149,9 @@ def _at(channel: Channel, setting: str) -> list[Feature]:
 
 def _parts(order: float) -> tuple[Part, ...]:
     return ("real", "imaginary") if order else ("value",)
+
+
+def measured_against(channels: Iterable[Channel]) -> PredictionModel:
+    """Model that data of these channels are held against."""
+    gauges = any(channel.quantity == "root_strain" for channel in channels)
+    return GAUGES_AGAINST if gauges else MEASURED_AGAINST

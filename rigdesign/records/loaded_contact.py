@@ -118,7 +118,7 @@ def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
     if torque < LEAST_TORQUE:
         return None
     flanks = held_flanks(rig, point, mesh)
-    return _kept(
+    return kept_contact(
         HeldContact(
             cold=rig.pairs[rig.mesh_names[mesh]],
             flanks=flanks,
@@ -129,7 +129,7 @@ def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
 
 
 @lru_cache(maxsize=KEPT)
-def _kept(contact: HeldContact) -> HeldContact:
+def kept_contact(contact: HeldContact) -> HeldContact:
     """The first contact that was equal: what is computed of it serves ratings, checks and report alike."""
     return contact
 

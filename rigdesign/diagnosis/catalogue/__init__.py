@@ -4,7 +4,7 @@ The modules imported here register their effects, in this order.
 """
 
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue import circuit, heat, local_heat  # noqa: F401 - register their effects
+from rigdesign.diagnosis.catalogue import circuit, gauges, heat, local_heat  # noqa: F401 - register their effects
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.registry import registered_effects
 

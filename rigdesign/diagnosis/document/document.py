@@ -16,6 +16,7 @@ from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_eviden
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.gap import gap_document, refused_rows
 from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.diagnosis.document.required import required_document
 from rigdesign.diagnosis.statistics.detectability import Detectability
 from rigdesign.measurement import MeasurementSet
 from rigdesign.measurement.comparison.compare import sentence, significant
@@ -76,6 +77,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
             }
             for one in steps(outcome)
         ],
+        "required_sizes": required_document(outcome),
         "data": {
             "findings": result.data.findings,
             "rejected_readings": _rejected(outcome),

@@ -17,7 +17,7 @@ from rigdesign.measurement.quantities import (
 )
 from rigdesign.measurement.reading.document import ChannelTable, MeasurementFile, SettingColumn
 from rigdesign.measurement.reading.measurement_set import MeasuredChannel, SettingSensor
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
+from rigdesign.prediction.model import ORDER_QUANTITIES, ROOT_WINDOWS, Channel
 
 PLACED_SETTINGS = frozenset(("inlet_temperature", "flow"))
 NEEDED = ("speed", "torque")
@@ -62,6 +62,8 @@ def channels_of(document: MeasurementFile, places: Places) -> dict[str, Measured
                 place="" if entry.place == MOTOR else entry.place,
                 at=entry.at,
                 orders=orders,
+                windows=entry.windows or ROOT_WINDOWS,
+                face=places.face_position(entry.place) if entry.quantity == "root_strain" else 0.0,
             ),
             unit=_spelled(entry.unit, measured),
             noise=units.parse(entry.uncertainty, measured.spread),
@@ -150,8 +152,26 @@ def _channel(name: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
         )
     if entry.orders is not None and not entry.orders:
         yield Fault(f"{at}.orders", "[]", "no order is named", "name some or leave the key out")
+    yield from _windows(at, entry)
     if entry.quantity == "angle" and entry.orders == (0.0,):
         yield Fault(f"{at}.orders", "[0]", "the mean of an angle says nothing", "name orders above 0")
+
+
+def _windows(at: str, entry: ChannelTable) -> Iterator[Fault]:
+    """Keys that root gauges alone have, or have not."""
+    gauge = entry.quantity == "root_strain"
+    if entry.windows is not None and not gauge:
+        yield Fault(f"{at}.windows", "", f"{entry.quantity} has no windows", "remove the key")
+    if entry.windows is not None and len(set(entry.windows)) < max(1, len(entry.windows)):
+        yield Fault(
+            f"{at}.windows", ", ".join(entry.windows), "must be different ones, one at least",
+            f"choose of {', '.join(ROOT_WINDOWS)}, or leave the key out",
+        )  # fmt: skip
+    if gauge and entry.transfer is not None:
+        yield Fault(
+            f"{at}.transfer", "", "a curve cannot be corrected for it",
+            f"write response_time of the gauge {entry.place} in the case: the prediction then has the low-pass",
+        )  # fmt: skip
 
 
 def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:

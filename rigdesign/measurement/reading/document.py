@@ -66,7 +66,7 @@ class DataSection(Part):
     """Most bytes of each file that is named here, and most samples read from it."""
     recordings: tuple[Recording, ...] = ()
     tach: Tach | None = None
-    """Needed for recordings of torque or angle."""
+    """Needed for recordings of torque or angle; of root gauges the speed of the table serves without one."""
 
     @model_validator(mode="after")
     def _signs(self) -> "DataSection":
@@ -131,6 +131,9 @@ class ChannelTable(Part):
     calibrated: date | None = None
     orders: tuple[Annotated[float, Field(ge=0.0)], ...] | None = None
     """Per turn of the reference gear, 0 is the mean; from tooth numbers when left out."""
+    windows: tuple[prediction.RootWindow, ...] | None = None
+    """Of a root_strain: numbers of its curve that are known, each a column `<channel>.<window>`, or the column of the
+    channel where it is one; all when left out."""
     transfer: Transfer | None = None
     signal: Label | None = None
     """Name in recordings; that of the channel when left out."""
