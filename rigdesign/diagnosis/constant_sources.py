@@ -91,6 +91,23 @@ SOURCES: Mapping[str, Source] = {
     "catalogue.circuit.LEAST_SOFTENING": Source(
         "-", "choice", "stiffness of a tooth over the depth of a crack"
     ),
+    "catalogue.gauges.MICROMETRE": Source("m", "definition", "units"),
+    "catalogue.gauges.AXES": Source("m", "choice", _PRACTICE),
+    "catalogue.gauges.MODIFICATION": Source("-", "choice", _PRACTICE),
+    "catalogue.gauges.LEAST_MODIFICATION": Source("m", "choice", _PRACTICE),
+    "catalogue.gauges.PLACE": Source("m", "choice", _PRACTICE),
+    "catalogue.gauges.LEAST_LAG": Source("s", "choice", _JUDGEMENT),
+    "catalogue.gauges.LONGEST_LAG": Source("s", "choice", _PRACTICE),
+    "residual.gauge_modes.MODEL_ERROR": Source(
+        "-", "literature", "P1, Figure 9; tilt and curvature: judgement"
+    ),
+    "residual.gauge_modes.POINT_ERROR": Source("-", "choice", _JUDGEMENT),
+    "residual.sensors.THERMAL_OUTPUT": Source("1/K", "choice", _PRACTICE),
+    "residual.sensors.CENTRIFUGAL": Source("-", "choice", _PRACTICE),
+    "statistics.required_size.MOST": Source("of the bound", "choice", _NUMERICS),
+    "statistics.required_size.ALIKE": Source("-", "choice", _JUDGEMENT),
+    "document.required.FAR": Source("of the bound", "choice", _REPORT),
+    "document.required.EXPLAINS": Source("-", "choice", _REPORT),
     "catalogue.families.FEWER_SIZES": Source("of the bound", "choice", _TIME),
     "catalogue.families.YIELDING_SIZES": Source("of the bound", "choice", _TIME),
     "catalogue.heat.FLOW_METER": Source("-", "choice", _PRACTICE),

@@ -79,12 +79,16 @@ class Places:
     @cached_property
     def strain_gauges(self) -> tuple[str, ...]:
         """Strain gauges in tooth roots, ``gearbox.gear.gauge``; none without a drivetrain, whose torque they show."""
-        return tuple(
-            f"{name}.{gear}.{gauge}"
-            for name, box in self.case.gearboxes.items()
-            for gear, entry in box.gears.items()
-            for gauge in entry.strain_gauges
-        ) if self.case.drivetrain is not None else ()
+        return (
+            tuple(
+                f"{name}.{gear}.{gauge}"
+                for name, box in self.case.gearboxes.items()
+                for gear, entry in box.gears.items()
+                for gauge in entry.strain_gauges
+            )
+            if self.case.drivetrain is not None
+            else ()
+        )
 
     def teeth_of(self, gear: str) -> tuple[int, int]:
         """Teeth of a gear, ``gearbox.gear``, and of its partner in its first mesh."""

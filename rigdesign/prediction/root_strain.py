@@ -123,7 +123,9 @@ def torque_share(
     period = pitch * round((float(angle[-1] - angle[0]) + step) / pitch)
     passes = max(1, round(period / (pitch * teeth)))
     pairs = pair + teeth * np.arange(passes)[:, None]
-    along = path + law.base_pitch * pairs - law.phase if front else law.back_phase - path + law.base_pitch * pairs
+    along = (
+        path + law.base_pitch * pairs - law.phase if front else law.back_phase - path + law.base_pitch * pairs
+    )
     share = np.interp(along / law.base_radius_1, angle, torque, period=period)
     return np.asarray(share.mean(axis=0) / abs(float(response.mean[mesh])))
 

@@ -14,13 +14,15 @@ Array = NDArray[np.float64]
 LOADED = 0.2
 """Share of the highest strain from which the tooth counts as loaded: the part whose centroid is the zero angle."""
 TOP = 0.1
-"""Angle over which ``maximum`` is the mean of the highest strains, wherever they are [angular pitches]: as smooth as the
-curve itself, where the single highest value jumps with samples and noise; some tenths of a per cent below it."""
+"""Angle over which ``maximum`` is the mean of the highest strains, wherever they are [angular pitches]: as smooth as
+the curve itself, where the single highest value jumps with samples and noise; some tenths of a per cent below it."""
 FLANKS = (0.2, 0.5)
 """Distance from the centroid between which ``entry`` and ``exit`` are means [angular pitches]: the rise to the
 maximum and the fall from it, where neighbouring pairs take over."""
 AWAY = 2.0
 """Distance from the centroid beyond which neither the tooth nor its neighbours carry [angular pitches]."""
+REACH = 1.2
+"""Angle to both sides of the highest strain that belongs to the tooth [angular pitches]."""
 STEPS = 400
 """Steps of an angular pitch in which the curve is interpolated."""
 
@@ -37,36 +39,39 @@ def curve_windows(angle: Array, strain: Array, pitch: float) -> Mapping[str, flo
     Returns
     -------
     ``unloaded``: median away from the tooth's own mesh and those of its neighbours, zero where the curve does not
-    cover a pitch of it; ``entry``, ``maximum``, ``exit``: above it [-]. In a fillet that is pressed ``maximum`` is the lowest.
+    cover a pitch of it; ``entry``, ``maximum``, ``exit``: above it [-]. In a fillet that is pressed ``maximum`` is
+    the lowest.
     """
     away = np.abs(angle - angle[np.argmax(np.abs(strain - np.median(strain)))]) > AWAY * pitch
     covered = float(np.gradient(angle)[away].sum())
     unloaded = float(np.median(strain[away])) if covered > pitch else 0.0
     above = strain - unloaded
     highest = int(np.argmax(np.abs(above)))
-    middle = _centroid(angle, np.sign(above[highest]) * above, highest)
+    sign = float(np.sign(above[highest]))
+    step = pitch / STEPS
+    around = np.arange(angle[highest] - REACH * pitch, angle[highest] + REACH * pitch, step)
+    fine = sign * np.interp(around, angle, above)
+    middle = _centroid(around, fine)
     low, high = FLANKS[0] * pitch, FLANKS[1] * pitch
 
     def mean(first: float, last: float) -> float:
-        return float(np.interp(np.arange(first, last, pitch / STEPS), angle, above).mean())
+        return sign * float(np.interp(np.arange(first, last, step), around, fine).mean())
 
-    fine = np.interp(np.arange(middle - pitch, middle + pitch, pitch / STEPS), angle, above)
-    ordered = np.sort(np.sign(above[highest]) * fine)[-round(TOP * STEPS) :]
     return {
         "entry": mean(middle - high, middle - low),
-        "maximum": float(np.sign(above[highest]) * ordered.mean()),
+        "maximum": sign * float(np.sort(fine)[-round(TOP * STEPS) :].mean()),
         "exit": mean(middle + low, middle + high),
         "unloaded": unloaded,
     }
 
 
-def _centroid(angle: Array, above: Array, highest: int) -> float:
+def _centroid(angle: Array, strain: Array) -> float:
     """Of the loaded part around the highest strain [rad]."""
-    loaded = above > LOADED * above[highest]
+    highest = int(np.argmax(strain))
+    loaded = strain > LOADED * strain[highest]
     before = np.flatnonzero(~loaded[:highest])
     after = np.flatnonzero(~loaded[highest:])
     first = int(before[-1]) + 1 if before.size else 0
-    last = highest + int(after[0]) if after.size else len(above)
-    part = slice(first, last)
-    total = float(np.sum(above[part]))
-    return float(np.sum(angle[part] * above[part])) / total if total else float(angle[highest])
+    last = highest + int(after[0]) if after.size else len(strain)
+    total = float(strain[first:last].sum())
+    return float((angle * strain)[first:last].sum()) / total if total else float(angle[highest])

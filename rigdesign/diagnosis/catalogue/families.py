@@ -57,9 +57,7 @@ ONE_FEED = replace(FLOW, name="one feed", one_sided_sizes=(0.4, 1.0))
 """Oil of one bearing: two runs, as there are many of them."""
 ONE_JOINT = replace(CONTACT, name="one joint", one_sided_sizes=(0.12, 1.0))
 """Joint of one shell, the same."""
-FACE = Family(
-    name="face", amplitude="sensor", strain=True, sizes=FEWER_SIZES, tooth_contact=True, run_rank=0
-)
+FACE = Family(name="face", amplitude="sensor", strain=True, sizes=FEWER_SIZES, tooth_contact=True, run_rank=0)
 """Load over the face and profile; spreads as tolerances and inspection give them."""
 GAUGE_PLACE = Family(name="gauge place", amplitude="sensor", strain=True)
 CHAIN = Family(name="measuring chain", amplitude="sensor", strain=True, one_sided_sizes=(0.12, 0.4, 1.0))

@@ -1,8 +1,8 @@
 """Catalogue of what strain gauges in the tooth roots show: load over the face, relief, friction, and the gauges.
 
 Only gearboxes with gauges have these entries. The axes of a mesh and the helix slopes of its gears move one sum, the
-gap over the face: one entry a mesh holds all of them, written at its pinion, as a test engineer takes misaligned axes as
-f_Hbeta. Crowning, twist and relief are written at the gear of the mesh that has more of them. Bounds are starting
+gap over the face: one entry a mesh holds all of them, written at its pinion, as a test engineer takes misaligned axes
+as f_Hbeta. Crowning, twist and relief are written at the gear of the mesh that has more of them. Bounds are starting
 values of rig practice (design of the workflow, section 4); what a healthy gear has follows from its tolerance class
 (ISO 1328-1).
 """

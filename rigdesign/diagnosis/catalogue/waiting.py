@@ -17,8 +17,6 @@ class Waiting:
 
 
 LATERAL = "shafts that bend and bearings that yield: the drivetrain has torsional freedoms only"
-GAUGES = "strain gauges in the tooth roots as channels"
-FACE = "a mesh that shares its load over the face in the periodic response, and strain gauges as channels"
 VIBRATION = "accelerations of bearings and housing as channels"
 
 WAITING = (
@@ -66,28 +64,10 @@ WAITING = (
         VIBRATION,
     ),
     Waiting(
-        "misalignment",
-        "misaligned axes or helix slope",
-        "the load leans over the face at all speeds, less with torque",
-        FACE,
-    ),
-    Waiting(
-        "crowning",
-        "crowning or twist of the flanks",
-        "the load over the face is fuller or emptier in the middle",
-        FACE,
-    ),
-    Waiting(
         "sharing",
         "uneven sharing of a double helix",
         "one half carries more, with the axial order of the other",
-        FACE,
-    ),
-    Waiting(
-        "tooth_friction",
-        "friction of the teeth in the mesh force",
-        "a step at the pitch point, reversed with the direction",
-        "an entry: `friction_factor` of a mesh is in the case; torque hardly shows it, strain gauges would",
+        "gauges on both halves: a gauge of a double-helical gear stands for either",
     ),
     Waiting(
         "backlash",
@@ -111,7 +91,7 @@ WAITING = (
         "extended_contact",
         "contact beyond the path of contact",
         "fast edges at entry and exit, more with torque",
-        GAUGES,
+        "a key of the case: the loaded contact behind the root gauges has it as the tips make it",
     ),
     Waiting(
         "crack_growth",
@@ -130,12 +110,6 @@ WAITING = (
         "drift or cross-talk of a torque flange",
         "mean torque that follows temperature or axial force",
         "temperature of the flange as a setting",
-    ),
-    Waiting(
-        "gauge_errors",
-        "gauge factor, place, zero or thermal output of a strain gauge",
-        "one gauge alone, constant, with temperature or n^2",
-        GAUGES,
     ),
     Waiting(
         "aliasing",
@@ -177,7 +151,7 @@ WAITING = (
         "heat_misalignment",
         "misalignment by uneven thermal expansion of the housing",
         "follows temperature, not time",
-        f"{FACE}; thermal expansion of the housing at every point",
+        "an entry: root gauges have the axes of the warm housing, as its films and joints make them",
     ),
 )
 """In the order of the page, which leaves out what the catalogue holds by now."""

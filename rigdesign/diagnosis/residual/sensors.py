@@ -168,8 +168,12 @@ def _centrifugal(library: Library, channels: Mapping[str, Channel]) -> list[Sens
     places = [channels[one.channel].place for one in library.features]
     quantities = [channels[one.channel].quantity for one in library.features]
     found = []
-    for gear in dict.fromkeys(place.rpartition(".")[0] for place, q in zip(places, quantities) if q == "root_strain"):
-        on_gear = [q == "root_strain" and place.startswith(f"{gear}.") for place, q in zip(places, quantities)]
+    for gear in dict.fromkeys(
+        place.rpartition(".")[0] for place, q in zip(places, quantities) if q == "root_strain"
+    ):
+        on_gear = [
+            q == "root_strain" and place.startswith(f"{gear}.") for place, q in zip(places, quantities)
+        ]
         values = np.array(on_gear, dtype=np.float64) * squares * _unloaded(library)
         if values.any():
             found.append(

@@ -9,6 +9,8 @@ from rigdesign.diagnosis.statistics.columns import Array
 
 MOST = 1e3
 """Size over its bound beyond which a cause does not answer at all to what is to be explained."""
+ALIKE = 0.01
+"""Share of the square within which two sizes meet the data alike; the smaller one counts."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +57,7 @@ class ResidualMetric:
         """
         order = np.argsort(coordinates)
         places, runs = coordinates[order], answers[order]
-        best: RequiredSize | None = None
+        found_all: list[RequiredSize] = []
         for k in range(len(places) - 1):
             low, high = places[k], places[k + 1]
             slope = (runs[k + 1] - runs[k]) / (high - low)
@@ -70,9 +72,10 @@ class ResidualMetric:
             taken = self.square - float(rest @ cho_solve(self._factor, rest))
             beyond = not places[0] <= size <= places[-1]
             found = self._sized(np.array([size]), taken, bound, extrapolated=beyond)
-            if best is None or found.share > best.share + 1e-9:
-                best = found
-        return best
+            found_all.append(found)
+        most = max((one.share for one in found_all), default=0.0)
+        best = [one for one in found_all if one.share > most - ALIKE]
+        return min(best, key=lambda one: one.reach, default=None)
 
     def _sized(self, sizes: Array, taken: float, bound: float, *, extrapolated: bool) -> RequiredSize:
         return RequiredSize(

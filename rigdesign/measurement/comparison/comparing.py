@@ -40,7 +40,9 @@ def compare_measurement(
 
     def simulated(of: Data, channels: Sequence[Channel], what: str) -> Prediction:
         say(f"predicting {len(of.settings)} operating points of {what}")
-        return predict(case, of.settings, channels, model=model, fidelity=fidelity, circuit=measured_against(channels))
+        return predict(
+            case, of.settings, channels, model=model, fidelity=fidelity, circuit=measured_against(channels)
+        )
 
     prediction = simulated(data, [entry.channel for entry in data.channels.values()], "the set")
     if baseline is None or healthy is None:

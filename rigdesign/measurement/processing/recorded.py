@@ -89,7 +89,10 @@ def read_recordings(
         assert place is not None
         count = len(rows.rows_of(entry.point))
         read = _Recording(entry, document, plan.places, by_name[entry.point], findings)
-        numbers = [*read.numbers(here, signals), *_of_gauges(plan, entry, by_name[entry.point], roots, findings)]
+        numbers = [
+            *read.numbers(here, signals),
+            *_of_gauges(plan, entry, by_name[entry.point], roots, findings),
+        ]
         for feature, value in numbers:
             if feature not in known:
                 found.setdefault(feature, np.full(count, np.nan))[place] = value
