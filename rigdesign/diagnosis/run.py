@@ -143,10 +143,10 @@ def calibrate_case(
 
 
 def _simplified(effects: tuple[Effect, ...], points: int) -> tuple[Effect, ...]:
-    """Effects as they are run: where no name can come of it, one run each but for what shows over the face."""
+    """Effects as they are run: where no name can come of it, one run each of those of the power circuit."""
     if points >= LEAST_RUNNING_POINTS:
         return effects
-    return tuple(effect if effect.family.strain else replace(effect, linear=True) for effect in effects)
+    return tuple(replace(effect, linear=True) if effect.family.dynamic else effect for effect in effects)
 
 
 def candidates_of(

@@ -31,7 +31,10 @@ from rigdesign.strain_gauge.curve_windows import curve_windows
 Array = NDArray[np.float64]
 Index = Literal[0, 1]
 TURN = 2.0 * np.pi
-SAMPLES = 1024
+POSITIONS = 192
+"""Positions of the contact over a base pitch: three times those of a check, as differences of curves with steep edges
+are read."""
+SAMPLES = 2048
 """Samples of a turn on which a low-pass acts."""
 
 
@@ -147,6 +150,7 @@ def _contact(rig: Rig, done: IterationResult, number: int, torque: float) -> Hel
             flanks=flanks,
             force=torque / done.models[number].halves / flanks.pair.base_radii[0],
             influence=rig.tooth_influence,
+            positions=POSITIONS,
         )
     )
 

@@ -24,7 +24,7 @@ AWAY = 2.0
 REACH = 1.2
 """Angle to both sides of the highest strain that belongs to the tooth [angular pitches]."""
 STEPS = 400
-"""Steps of an angular pitch in which the curve is interpolated."""
+"""Steps of an angular pitch in which the curve is interpolated, and places of a mean over a window."""
 
 
 def curve_windows(angle: Array, strain: Array, pitch: float) -> Mapping[str, float]:
@@ -55,7 +55,7 @@ def curve_windows(angle: Array, strain: Array, pitch: float) -> Mapping[str, flo
     low, high = FLANKS[0] * pitch, FLANKS[1] * pitch
 
     def mean(first: float, last: float) -> float:
-        return sign * float(np.interp(np.arange(first, last, step), around, fine).mean())
+        return sign * float(np.interp(np.linspace(first, last, STEPS), around, fine).mean())
 
     return {
         "entry": mean(middle - high, middle - low),

@@ -172,6 +172,17 @@ def _together(outcome: Outcome) -> list[NextStep]:
         return []
     named = [name for name, right in outcome.ahead.verified if right]
     count = len(outcome.ahead.verified)
+    if outcome.ahead.causes:
+        why = f"the cheapest set that tells apart {_causes(outcome)}"
+        return [
+            NextStep(
+                text=" and ".join(found.titles),
+                why=why,
+                separation=found.separation,
+                cost=found.cost,
+                decides=True,
+            )
+        ]
     if count == 1:
         shown = f"{'names' if named else 'does not name'} the suspect"
     else:
@@ -203,12 +214,20 @@ def _baseline(outcome: Outcome) -> list[NextStep]:
 
 def _why(outcome: Outcome, proposal: Ranked) -> str:
     """What a proposal is good for."""
+    if outcome.ahead.causes:
+        return f"{'tells' if proposal.decides else 'partly tells'} apart {_causes(outcome)}"
     apart = (
         "the leading explanation from a healthy rig"
         if outcome.verdict == "data_insufficient" or outcome.suspected is not None
         else "the leading explanations"
     )
     return f"separates {apart}" if proposal.decides else f"partly separates {apart}"
+
+
+def _causes(outcome: Outcome) -> str:
+    """The causes that are told apart where the data are too few."""
+    titles = [outcome.names.title(name) for name in outcome.ahead.causes]
+    return f"{' and '.join(titles)}, each at the size that it would need"
 
 
 def _first(outcome: Outcome) -> list[NextStep]:

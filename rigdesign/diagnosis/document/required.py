@@ -1,27 +1,23 @@
-"""With too few data to name anything: how large each cause would have to be to explain the residual by itself."""
+"""With too few data to name anything: a table of the size that each cause would need to explain the residual."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import hypot
 from typing import Any
-
-import numpy as np
 
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.waiting import WAITING
 from rigdesign.diagnosis.decision.naming import Names, display_scale
+from rigdesign.diagnosis.decision.required import RequiredCause, required_causes
 from rigdesign.diagnosis.document.outcome import Outcome
-from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.residual.sensors import SensorError
-from rigdesign.diagnosis.statistics.required_size import RequiredSize, ResidualMetric
 
 FAR = 20.0
 """Size over its bound beyond which no number is given: the answer was continued too far."""
-EXPLAINS = 0.5
-"""Share of the square of the residual from which a cause explains it."""
+MOST_FACTOR = 100.0
+"""Factor up or down beyond which no number is given."""
 WITHIN, BEYOND, NOT_IT = "within the bound", "beyond the bound", "does not explain it"
-UNMOVED, NOT_MODELLED = "does not move these numbers", "not modelled"
-ORDER = (WITHIN, BEYOND, NOT_IT, UNMOVED, NOT_MODELLED)
+UNMOVED, NOT_COMPUTED, NOT_MODELLED = "does not move these numbers", "not computed", "not modelled"
+ORDER = (WITHIN, BEYOND, NOT_IT, UNMOVED, NOT_COMPUTED, NOT_MODELLED)
 """Verdicts of the rows, in their order."""
 
 
@@ -47,90 +43,71 @@ class RequiredRow:
 def required_rows(outcome: Outcome) -> tuple[RequiredRow, ...]:
     """Of verdict ``data_insufficient``: every effect and every error of sensors and settings, the least needed first.
 
-    The residual is measured by the noise of the readings and settings, and by the systematic uncertainties of sensors
-    and settings, which the causes do not have to explain. A tooth that may be any is the first one.
+    Effects that no channel of the set can show are left out; of a tooth that may be any the first one is meant.
     """
     if outcome.verdict != "data_insufficient":
         return ()
     residuals = outcome.result.problem.residuals.rows(outcome.result.diagnosis.kept)
-    found = [
-        *(_of_effect(residuals, outcome.names, effect) for effect in residuals.effects),
-        *(_of_error(residuals, outcome.names, error) for error in residuals.errors),
-    ]
-    ordered = sorted(found, key=lambda row: (ORDER.index(row.verdict), row.reach))
+    rows = [_row(outcome.names, cause) for cause in required_causes(residuals)]
+    ordered = sorted(rows, key=lambda row: (ORDER.index(row.verdict), row.reach))
     return (*ordered, *_not_modelled(outcome))
 
 
-def metric_of(residuals: ResidualProblem, without: str = "") -> ResidualMetric:
-    """Of the residual of a set; without the systematic part of one error."""
-    covariance = np.diag(residuals.noise**2) + residuals.scatter
-    for error in residuals.errors:
-        if error.name != without:
-            covariance = covariance + error.spread**2 * np.outer(error.values, error.values)
-    return ResidualMetric(residuals.residual, covariance)
-
-
-def _of_effect(residuals: ResidualProblem, names: Names, effect: Effect) -> RequiredRow:
-    response = residuals.library.responses.get(effect.name)
-    explanation = f"{effect.name}/0" if effect.any_tooth else effect.name
-    size = None
-    if response is not None:
-        metric = metric_of(residuals)
-        if response.nonlinear:
-            size = metric.of_runs(response.coordinates[:, 0], response.answers, effect.reach)
-        else:
-            size = metric.of_columns(response.sensitivity(), effect.reach)
-    within = size is not None and _admits(effect, size.coordinates)
-    return _row(names, explanation, size, within, _bounds(effect))
-
-
-def _of_error(residuals: ResidualProblem, names: Names, error: SensorError) -> RequiredRow:
-    size = metric_of(residuals, error.name).of_columns(error.values[:, None], error.bound)
-    scale, unit = display_scale(error.unit if error.unit != "SI" else "", False)
-    bounds = f"+-{scale * error.bound:.3g} {unit}, {error.times:g} times its uncertainty"
-    return _row(names, error.name, size, size is not None and size.reach <= 1.0, bounds)
-
-
-def _admits(effect: Effect, coordinates: tuple[float, ...]) -> bool:
-    """Whether a size lies within the bounds; that of a harmonic by its amplitude."""
-    if len(coordinates) > 1:
-        return hypot(*coordinates) <= effect.reach
-    low, high = effect.parameters[0].bounds
-    return low <= coordinates[0] <= high
-
-
-def _row(names: Names, explanation: str, size: RequiredSize | None, within: bool, bounds: str) -> RequiredRow:
-    title = names.title(explanation)
-    if size is None or size.reach > FAR:
+def _row(names: Names, cause: RequiredCause) -> RequiredRow:
+    title, bounds, size = names.title(cause.explanation), _bounds(cause.entry), cause.size
+    if size is None:
+        verdict = UNMOVED if cause.computed else NOT_COMPUTED
+        why = "" if cause.computed else "no channel of the set shows it, or the model refuses it"
         return RequiredRow(
-            effect=explanation, title=title, size="", parameters=(), share=None, bounds=bounds,
-            verdict=UNMOVED if size is None else BEYOND,
-            why="" if size is None else f"more than {FAR:g} times its bound", reach=FAR,
+            effect=cause.explanation, title=title, size="", parameters=(), share=None, bounds=bounds,
+            verdict=verdict, why=why,
         )  # fmt: skip
-    shown = names.sized(explanation, size.coordinates, [(one, one) for one in size.coordinates]).shown
-    values = tuple(
-        {"name": one.name, "value": one.value, "unit": one.unit, "factor": one.factor} for one in shown
-    )
+    verdict = (WITHIN if cause.within else BEYOND) if cause.explains else NOT_IT
+    if size.reach > FAR:
+        return RequiredRow(
+            effect=cause.explanation, title=title, size="", parameters=(), share=size.share, bounds=bounds,
+            verdict=verdict, why=f"more than {FAR:g} times its bound", reach=size.reach,
+        )  # fmt: skip
+    shown = names.sized(cause.explanation, size.coordinates, [(one, one) for one in size.coordinates]).shown
     first = shown[0]
     scale, unit = display_scale(first.unit, first.factor)
     number = f"x {first.value:.3g}" if first.factor else f"{scale * first.value:.3g} {unit}".rstrip()
-    verdict = WITHIN if within else BEYOND
+    far = first.factor and not 1.0 / MOST_FACTOR <= first.value <= MOST_FACTOR
     return RequiredRow(
-        effect=explanation,
+        effect=cause.explanation,
         title=title,
-        size=f"{first.name} {number}",
-        parameters=values,
+        size="" if far else f"{first.name} {number}",
+        parameters=() if far else tuple(
+            {"name": one.name, "value": one.value, "unit": one.unit, "factor": one.factor} for one in shown
+        ),
         share=size.share,
         bounds=bounds,
-        verdict=verdict if size.share >= EXPLAINS else NOT_IT,
-        why="continued beyond the runs of the model" if size.extrapolated else "",
+        verdict=verdict,
+        why=_why(cause, far),
         reach=size.reach,
-    )
+    )  # fmt: skip
 
 
-def _bounds(effect: Effect) -> str:
+def _why(cause: RequiredCause, far: bool) -> str:
+    """What to know of a size."""
+    assert cause.size is not None
+    if far:
+        return f"a factor beyond {MOST_FACTOR:g}"
+    if isinstance(cause.entry, Effect) and len(cause.size.coordinates) == 1 and not cause.within:
+        low, high = cause.entry.parameters[0].bounds
+        if (cause.size.coordinates[0] < 0.0 and low == 0.0) or (
+            cause.size.coordinates[0] > 0.0 and high == 0.0
+        ):
+            return "the other way round than it can be"
+    return "continued beyond the runs of the model" if cause.size.extrapolated else ""
+
+
+def _bounds(entry: Effect | SensorError) -> str:
     """Bounds of the first parameter, as its size is shown."""
-    one = effect.parameters[0]
+    if isinstance(entry, SensorError):
+        scale, unit = display_scale(entry.unit if entry.unit != "SI" else "", False)
+        return f"+-{scale * entry.bound:.3g} {unit}, {entry.times:g} times its uncertainty"
+    one = entry.parameters[0]
     scale, unit = display_scale(one.unit, one.factor)
     return f"{scale * one.low:.3g} to {scale * one.high:.3g} {unit}".rstrip()
 
