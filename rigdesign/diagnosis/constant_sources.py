@@ -104,6 +104,7 @@ SOURCES: Mapping[str, Source] = {
     "residual.gauge_modes.POINT_ERROR": Source("-", "choice", _JUDGEMENT),
     "residual.sensors.THERMAL_OUTPUT": Source("1/K", "choice", _PRACTICE),
     "residual.sensors.CENTRIFUGAL": Source("-", "choice", _PRACTICE),
+    "residual.metrology.REACH": Source("-", "choice", _JUDGEMENT),
     "statistics.required_size.MOST": Source("of the bound", "choice", _NUMERICS),
     "statistics.required_size.ALIKE": Source("-", "choice", _JUDGEMENT),
     "document.required.FAR": Source("of the bound", "choice", _REPORT),

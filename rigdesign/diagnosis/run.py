@@ -24,6 +24,7 @@ from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
 from rigdesign.diagnosis.library.candidates import spare_channels
 from rigdesign.diagnosis.library.library import Library
+from rigdesign.diagnosis.residual.metrology import inspected
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain
 from rigdesign.diagnosis.residual.sensors import Stated
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
@@ -183,8 +184,9 @@ def read_residuals(
         return build_library(case, (*data.settings, *extras), (*channels, *spare), effects, say)
 
     library = library_of(case, data.settings, channels, effects, build, say)
+    known = inspected(effects, measurement.inspections, str(measurement.folder))
     return data, compare(
-        data, library, effects, stated_settings(measurement), mesh_orders(case), teeth_a_turn(case)
+        data, library, known, stated_settings(measurement), mesh_orders(case), teeth_a_turn(case)
     )
 
 

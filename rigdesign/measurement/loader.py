@@ -100,6 +100,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         readings=readings,
         findings=tuple(findings),
         hash=hashed,
+        inspections={name: one.uncertainty for name, one in document.inspections.items()},
     )
 
 

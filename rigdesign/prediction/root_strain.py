@@ -172,7 +172,8 @@ def _lagged(curve: StrainCurve, lag: float) -> StrainCurve:
     if not lag:
         return curve
     first = 0.5 * float(curve.angle[0] + curve.angle[-1]) - 0.5 * TURN
-    angle = first + TURN / SAMPLES * np.arange(SAMPLES)
+    angle = first + TURN / SAMPLES * np.arange(SAMPLES, dtype=np.float64)
     strain = np.interp(angle, curve.angle, curve.strain, left=0.0, right=0.0)
     gain = 1.0 / (1.0 + 1j * lag * np.arange(SAMPLES // 2 + 1))
-    return StrainCurve(angle=angle, strain=np.fft.irfft(np.fft.rfft(strain) * gain, SAMPLES))
+    passed = np.fft.irfft(np.fft.rfft(strain) * gain, SAMPLES)
+    return StrainCurve(angle=np.asarray(angle, dtype=np.float64), strain=passed)

@@ -47,7 +47,7 @@ class ResidualMetric:
         if not largest * (MOST * bound) ** 2 > 1.0:
             return None
         right = columns.T @ self._white
-        sizes = np.linalg.lstsq(normal, right, rcond=1e-9)[0]
+        sizes = np.asarray(np.linalg.lstsq(normal, right, rcond=1e-9)[0], dtype=np.float64)
         return self._sized(sizes, float(right @ sizes), bound, extrapolated=False)
 
     def of_runs(self, coordinates: Array, answers: Array, bound: float) -> RequiredSize | None:

@@ -150,6 +150,15 @@ class Doubt(Part):
     """Those whose readings it touches."""
 
 
+class Inspection(Part):
+    """What gear metrology, an alignment or a contact pattern leaves open of an effect whose value the case has."""
+
+    uncertainty: Annotated[float, Quantity("length", above="0 um", at_most="1 mm", example="2 um")]
+    """1 sigma of the measured value."""
+    source: Text
+    """Report or method."""
+
+
 class MeasurementFile(Part):
     """Content of measurement.toml."""
 
@@ -163,5 +172,7 @@ class MeasurementFile(Part):
     points: Mapping[Label, Point] = {}
     settings: Mapping[Label, SettingColumn] = Field(min_length=1)
     channels: Mapping[Label, ChannelTable] = Field(min_length=1)
+    inspections: Mapping[Text, Inspection] = {}
+    """By effect, ``misalignment:test.main``: the case has the measured value, here is how well it is known."""
     doubts: tuple[Doubt, ...] = ()
     """What the writer of the set suspects of it; reported as suspected input errors."""

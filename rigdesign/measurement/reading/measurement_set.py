@@ -114,6 +114,8 @@ class MeasurementSet:
     readings: Mapping[Feature, NDArray[np.float64]]
     findings: tuple[DataFinding, ...] = field(default=())
     hash: str = ""
+    inspections: Mapping[str, float] = field(default_factory=dict)
+    """Effect -> standard deviation of what an inspection measured of it [m]."""
 
     @cached_property
     def by_channel(self) -> Mapping[str, Mapping[Feature, NDArray[np.float64]]]:
