@@ -107,6 +107,7 @@ SOURCES: Mapping[str, Source] = {
     "residual.metrology.REACH": Source("-", "choice", _JUDGEMENT),
     "statistics.required_size.MOST": Source("of the bound", "choice", _NUMERICS),
     "statistics.required_size.ALIKE": Source("-", "choice", _JUDGEMENT),
+    "document.gauge_modes.LEAST_GAUGES": Source("-", "definition", "a mode needs gauges to differ"),
     "document.required.FAR": Source("of the bound", "choice", _REPORT),
     "document.required.MOST_FACTOR": Source("-", "choice", _REPORT),
     "decision.proposals.MOST_BEYOND": Source("of the bound", "choice", _JUDGEMENT),
