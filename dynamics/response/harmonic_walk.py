@@ -47,9 +47,16 @@ def highest_mode(model: PortModel, form: ModalForm, cutoff: float) -> float:
 class HarmonicWalk:
     """Harmonic balance from speed to speed with its retries."""
 
-    def __init__(self, problem: BalanceProblem, period: Period, cutoff: float, tolerance: float) -> None:
+    def __init__(
+        self,
+        problem: BalanceProblem,
+        period: Period,
+        cutoff: float,
+        tolerance: float,
+        least: int = LEAST_HARMONICS,
+    ) -> None:
         """Choose the cell and the highest mode that the harmonics must reach, see ``periodic_response``."""
-        self.tolerance, self.cutoff = tolerance, cutoff
+        self.tolerance, self.cutoff, self.least = tolerance, cutoff, least
         self.cells, self.cell_angle = mesh_cells(problem.model, period, problem.load.control_mesh)
         self.take(problem)
 
@@ -67,7 +74,7 @@ class HarmonicWalk:
                 f"harmonic balance at {speed:.6g} rad/s: {needed} harmonics needed to reach 1.5 times "
                 f"the highest mode of {self.highest:.4g} Hz, limit {MOST_HARMONICS}; integrate in time"
             )
-        harmonics = max(needed, LEAST_HARMONICS)
+        harmonics = max(needed, self.least)
         samples = max(LEAST_SAMPLES, 1 << (4 * harmonics - 1).bit_length())
         return HarmonicGrid(
             cells=self.cells, harmonics=harmonics, samples=samples, cell_angle=self.cell_angle

@@ -15,7 +15,7 @@ from dynamics.response.periodic_response import PeriodicResponse
 from dynamics.response.waveform import Waveform, waveform
 
 Array = NDArray[np.float64]
-Method = Literal["harmonic_balance", "time_integration"]
+Method = Literal["harmonic_balance", "time_integration", "quasi_static"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,7 @@ from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_branches import BranchSearch, HarmonicStates
 from dynamics.response.harmonic_problem import BalanceProblem
-from dynamics.response.harmonic_walk import HarmonicWalk, mesh_cells
+from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk, mesh_cells
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.periodic_response import Period, TimeIntegration, TimeSettings
@@ -44,6 +44,7 @@ class SweepSettings:
     methods : what may be used, tried in this order at every speed
     branches : trace branches round their turning points and look for a second stable response; without it the harmonic
         balance walks from speed to speed, both ways, and keeps what is stable
+    harmonics : of the common mesh period at least, whatever the highest mode asks for
     """
 
     period: Period = "mesh"
@@ -51,6 +52,7 @@ class SweepSettings:
     tolerance: float = 1e-5
     methods: Sequence[Method] = ("harmonic_balance", "time_integration")
     branches: bool = True
+    harmonics: int = LEAST_HARMONICS
 
 
 DEFAULT_SWEEP = SweepSettings()
@@ -213,7 +215,9 @@ class _Loops:
 def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) -> HarmonicStates:
     """States by index on stable branches, see `BranchSearch`."""
     settings = loops.settings
-    walk = HarmonicWalk(loops.problem(speeds[0]), settings.period, settings.cutoff, settings.tolerance)
+    walk = HarmonicWalk(
+        loops.problem(speeds[0]), settings.period, settings.cutoff, settings.tolerance, settings.harmonics
+    )
     ratio = float(walk.problem.model.ratios[0])
     search = BranchSearch(
         walk,

@@ -152,6 +152,7 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
     QuantityKind("voltage", "V", {"V": "V", "mV": "mV", "uV": "uV"}, "5 V"),
     QuantityKind("resistance", "ohm", {"ohm": "ohm", "mohm": "milliohm", "kohm": "kiloohm"}, "120 ohm"),
     QuantityKind("voltage_ratio", "V/V", {"mV/V": "mV/V", "uV/V": "uV/V", "V/V": "V/V"}, "2 mV/V"),
+    QuantityKind("strain", "m/m", {"um/m": "um/m", "mm/m": "mm/m", "m/m": "m/m"}, "500 um/m"),
     QuantityKind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
 )
 """Every kind of quantity a case file knows, by name."""

@@ -4,9 +4,21 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Angle, Length, Offset, Part, Positive, Resistance, Size, Voltage, fault
+from rigdesign.case.fields import (
+    Angle,
+    Length,
+    Offset,
+    Part,
+    Positive,
+    Quantity,
+    Resistance,
+    Size,
+    Voltage,
+    fault,
+)
 
 ArmStrain = Annotated[float, Field(ge=-1.0, le=1.0)]
+ResponseTime = Annotated[float, Quantity("time", at_least="0 s", at_most="0.1 s", example="0.02 ms")]
 
 
 class StrainBridge(Part):
@@ -64,6 +76,9 @@ class StrainGaugeInput(Part):
     stress_state: Literal["uniaxial", "plane_strain"] = "uniaxial"
     """How strain becomes stress: uniaxial: E eps, as at the ends of the face; plane_strain: E eps / (1 - nu^2), a wide
     tooth at mid-face."""
+    response_time: ResponseTime = 0.0
+    """Time constant of slip ring, amplifier and logger taken as a first-order low-pass: 1 / (2 pi cut-off frequency);
+    0.02 ms pass 8 kHz. What a recording is compared with has it."""
     bridge: StrainBridge
     """Circuit that measures its resistance."""
 

@@ -9,6 +9,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_walk import LEAST_HARMONICS
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
@@ -114,8 +115,8 @@ class LoadedCircuit:
     """Of the drivetrain without its meshes."""
 
 
-def respond(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
-    """Periodic response at one operating point.
+def respond(rig: Rig, circuit: LoadedCircuit, harmonics: int = LEAST_HARMONICS) -> CurvePoint:
+    """Periodic response at one operating point; ``harmonics`` of the common mesh period at least.
 
     Raises
     ------
@@ -133,7 +134,9 @@ def respond(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
             twist=None if controlled else setting.twist,
         ),
         drag_torques=circuit.drags,
-        settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
+        settings=SweepSettings(
+            period=rig.case.numerics.response_period, cutoff=rig.highest_mode, harmonics=harmonics
+        ),
     )
     if curve.failed:
         raise DynamicsNotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")

@@ -104,6 +104,27 @@ SOURCES: Mapping[str, Source] = {
     "catalogue.circuit.LEAST_SOFTENING": Source(
         "-", "choice", "stiffness of a tooth over the depth of a crack"
     ),
+    "catalogue.gauges.MICROMETRE": Source("m", "definition", "units"),
+    "catalogue.gauges.AXES": Source("m", "choice", _PRACTICE),
+    "catalogue.gauges.MODIFICATION": Source("-", "choice", _PRACTICE),
+    "catalogue.gauges.LEAST_MODIFICATION": Source("m", "choice", _PRACTICE),
+    "catalogue.gauges.PLACE": Source("m", "choice", _PRACTICE),
+    "catalogue.gauges.LEAST_LAG": Source("s", "choice", _JUDGEMENT),
+    "catalogue.gauges.LONGEST_LAG": Source("s", "choice", _PRACTICE),
+    "residual.gauge_modes.MODEL_ERROR": Source(
+        "-", "literature", "P1, Figure 9; tilt and curvature: judgement"
+    ),
+    "residual.gauge_modes.POINT_ERROR": Source("-", "choice", _JUDGEMENT),
+    "residual.sensors.THERMAL_OUTPUT": Source("1/K", "choice", _PRACTICE),
+    "residual.sensors.CENTRIFUGAL": Source("-", "choice", _PRACTICE),
+    "residual.metrology.REACH": Source("-", "choice", _JUDGEMENT),
+    "statistics.required_size.MOST": Source("of the bound", "choice", _NUMERICS),
+    "statistics.required_size.ALIKE": Source("-", "choice", _JUDGEMENT),
+    "document.gauge_modes.LEAST_GAUGES": Source("-", "definition", "a mode needs gauges to differ"),
+    "document.required.FAR": Source("of the bound", "choice", _REPORT),
+    "document.required.MOST_FACTOR": Source("-", "choice", _REPORT),
+    "decision.proposals.MOST_BEYOND": Source("of the bound", "choice", _JUDGEMENT),
+    "decision.required.EXPLAINS": Source("-", "choice", _REPORT),
     "catalogue.families.FEWER_SIZES": Source("of the bound", "choice", _TIME),
     "catalogue.families.YIELDING_SIZES": Source("of the bound", "choice", _TIME),
     "catalogue.heat.FLOW_METER": Source("-", "choice", _PRACTICE),

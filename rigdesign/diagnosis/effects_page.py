@@ -38,6 +38,16 @@ SENSORS = (
         "first-order lag of a torque cell or its amplifier that the measurement does not state",
         "orders fade and fall behind the more the higher their frequency, the mean stays",
     ),
+    (
+        "gauge_factor:<channel>",
+        "gauge factor of a root gauge",
+        "one gauge alone, in proportion to its strain",
+    ),
+    (
+        "gauge_zero:<channel>, gauge_thermal_output:<channel>, gauge_centrifugal:<gear>",
+        "zero of a root gauge, its thermal output, strain by rotation",
+        "strain of the unloaded tooth alone: constant, with the oil temperature, with n^2 at all gauges of the gear",
+    ),
     ("angle_zero", "index pulse offset", "phase of all orders shifted in proportion to the order"),
     (
         "inlet_offset:<stream>, inlet_scale:<stream>",

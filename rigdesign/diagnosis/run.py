@@ -1,7 +1,7 @@
 """A diagnosis from files: measurement set, healthy baseline if there is one, library of the rig, verdict."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +20,13 @@ from rigdesign.diagnosis.decision.proposals import (
     extras_of,
     next_measurements,
 )
-from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
+from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS, Diagnosis, diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
 from rigdesign.diagnosis.library.candidates import spare_channels
 from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.library.library import Library
+from rigdesign.diagnosis.residual.metrology import inspected
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain
 from rigdesign.diagnosis.residual.sensors import Stated
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
@@ -69,7 +70,7 @@ def diagnose_measurement(
     """
     measurement = load_measurement(folder, case)
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
-    effects = effects_of(case, channels=_channels(case, measurement)[0])
+    effects = _simplified(effects_of(case, channels=_channels(case, measurement)[0]), len(measurement.points))
     with solver_errors(case):
         data, residuals = read_residuals(case, measurement, effects, say)
         before = None if healthy is None else read_residuals(case, healthy, effects, say)[1]
@@ -83,7 +84,7 @@ def diagnose_measurement(
         channels = tuple(entry.channel for entry in data.channels.values())
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)
-        offer = _offer(case, measurement, data.settings)
+        offer = _offer(case, measurement, data.settings, effects)
         say("looking for the next measurement")
         ahead = NOTHING_NEXT if offer is None else next_measurements(problem, found, offer, calibration)
     return Result(
@@ -143,12 +144,24 @@ def calibrate_case(
     )
 
 
-def _offer(case: Case, measurement: MeasurementSet, settings: tuple[OperatingCondition, ...]) -> Offer | None:
+def _simplified(effects: tuple[Effect, ...], points: int) -> tuple[Effect, ...]:
+    """Effects as they are run: where no name can come of it, one run each of those of the power circuit."""
+    if points >= LEAST_RUNNING_POINTS:
+        return effects
+    return tuple(replace(effect, linear=True) if effect.family.dynamic else effect for effect in effects)
+
+
+def _offer(
+    case: Case,
+    measurement: MeasurementSet,
+    settings: tuple[OperatingCondition, ...],
+    effects: tuple[Effect, ...],
+) -> Offer | None:
     """The points and sensors that could be added; None if the stored library of the rig has none."""
     channels, spare = _channels(case, measurement)
     extras = extras_of(case, settings)
     points = (*settings, *(extra.setting for extra in extras))
-    library = stored_library(case, points, (*channels, *spare), effects_of(case, channels=channels))
+    library = stored_library(case, points, (*channels, *spare), effects)
     costs = Costs(stated=measurement.costs)
     return None if library is None else Offer(library=library, extras=extras, costs=costs)
 
@@ -175,8 +188,9 @@ def read_residuals(
         return build_library(case, (*data.settings, *extras), (*channels, *spare), effects, say)
 
     library = library_of(case, data.settings, channels, effects, build, say)
+    known = inspected(effects, measurement.inspections, str(measurement.folder))
     return data, compare(
-        data, library, effects, stated_settings(measurement), mesh_orders(case), teeth_a_turn(case)
+        data, library, known, stated_settings(measurement), mesh_orders(case), teeth_a_turn(case)
     )
 
 

@@ -129,6 +129,9 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.gears.*.strain_gauges.*.stress_state": stations_at(
         rig__strain_gauges="strain to stress by Hooke's law"
     ),
+    "gearboxes.*.gears.*.strain_gauges.*.response_time": stations_at(
+        prediction__root_strain="low-pass of the measuring chain, in predictions that data are held against"
+    ),
     "gearboxes.*.gears.*.strain_gauges.*.bridge": stations_at(
         strain_gauge__bridge="strain to bridge voltage"
     ),

@@ -116,6 +116,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         findings=tuple(findings),
         costs=document.costs,
         hash=hashed,
+        inspections={name: one.uncertainty for name, one in document.inspections.items()},
     )
     return with_rates(loaded)
 

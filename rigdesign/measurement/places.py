@@ -25,7 +25,7 @@ class Places:
     """Places of a case by quantity, and its order lines."""
 
     def __init__(self, case: Case) -> None:
-        self._case = case
+        self.case = case
 
     def of(self, quantity: str) -> tuple[str, ...]:
         """Places where a channel or setting of this quantity can sit; empty when the rig has none.
@@ -33,7 +33,7 @@ class Places:
         Of ``natural_frequency`` and ``resonance_speed`` the first three; any higher number and the name of a mode is
         one, too (`is_mode`).
         """
-        power = self._case.drivetrain
+        power = self.case.drivetrain
         known = {
             "temperature": self.surfaces,
             "oil_outlet_temperature": self.streams,
@@ -49,6 +49,7 @@ class Places:
             "resonance_speed": self._driven("1", "2", "3"),
             "backlash": self.meshes,
             "seal_gap": self.seals,
+            "root_strain": self.strain_gauges,
         }
         return known.get(quantity, ())
 
@@ -67,39 +68,66 @@ class Places:
 
     def _driven(self, *places: str) -> tuple[str, ...]:
         """Places that need a power circuit."""
-        return places if self._case.drivetrain is not None else ()
+        return places if self.case.drivetrain is not None else ()
 
     @cached_property
     def streams(self) -> tuple[str, ...]:
         """Oil streams."""
-        return tuple(f"{box}.{oil}" for box in self._case.gearboxes for oil in ("gear_oil", "bearing_oil"))
+        return tuple(f"{box}.{oil}" for box in self.case.gearboxes for oil in ("gear_oil", "bearing_oil"))
 
     @cached_property
     def meshes(self) -> tuple[str, ...]:
         """Meshes, ``gearbox.mesh``."""
-        return tuple(f"{name}.{mesh}" for name, box in self._case.gearboxes.items() for mesh in box.meshes)
+        return tuple(f"{name}.{mesh}" for name, box in self.case.gearboxes.items() for mesh in box.meshes)
+
+    @cached_property
+    def strain_gauges(self) -> tuple[str, ...]:
+        """Strain gauges in tooth roots, ``gearbox.gear.gauge``; none without a drivetrain, whose torque they show."""
+        return (
+            tuple(
+                f"{name}.{gear}.{gauge}"
+                for name, box in self.case.gearboxes.items()
+                for gear, entry in box.gears.items()
+                for gauge in entry.strain_gauges
+            )
+            if self.case.drivetrain is not None
+            else ()
+        )
+
+    def teeth_of(self, gear: str) -> tuple[int, int]:
+        """Teeth of a gear, ``gearbox.gear``, and of its partner in its first mesh."""
+        name, own = gear.split(".")
+        box = self.case.gearboxes[name]
+        mesh = box.meshes[box.first_meshes()[own][0]]
+        partner = mesh.wheel if own == mesh.pinion else mesh.pinion
+        return box.gears[own].teeth, box.gears[partner].teeth
+
+    def face_position(self, gauge: str) -> float:
+        """Of a strain gauge, from mid-face [m]."""
+        name, gear, own = gauge.split(".")
+        return self.case.gearboxes[name].gears[gear].strain_gauges[own].face_position
 
     @cached_property
     def shafts(self) -> tuple[str, ...]:
         """Shafts of the power circuit."""
-        return () if self._case.drivetrain is None else tuple(self._case.drivetrain.shafts)
+        return () if self.case.drivetrain is None else tuple(self.case.drivetrain.shafts)
 
     def length(self, shaft: str) -> float:
         """Length of one of them [m]."""
-        assert self._case.drivetrain is not None
-        return fsum(section.length for section in self._case.drivetrain.shafts[shaft].sections)
+        assert self.case.drivetrain is not None
+        return fsum(section.length for section in self.case.drivetrain.shafts[shaft].sections)
 
     @cached_property
     def bearings(self) -> tuple[str, ...]:
         """Bearings of the power circuit, ``gearbox.bearing``."""
-        if self._case.drivetrain is None:
+        if self.case.drivetrain is None:
             return ()
-        return tuple(f"{name}.{part}" for name, box in self._case.gearboxes.items() for part in box.bearings)
+        return tuple(f"{name}.{part}" for name, box in self.case.gearboxes.items() for part in box.bearings)
 
     @cached_property
     def housings(self) -> tuple[str, ...]:
         """Gearboxes with a temperature field."""
-        return tuple(name for name, box in self._case.gearboxes.items() if box.housing is not None)
+        return tuple(name for name, box in self.case.gearboxes.items() if box.housing is not None)
 
     @cached_property
     def surfaces(self) -> tuple[str, ...]:
@@ -120,12 +148,12 @@ class Places:
 
     def from_file(self, gearbox: str) -> bool:
         """Whether the housing of a gearbox is a file, whose surfaces only its reader knows."""
-        box = self._case.gearboxes.get(gearbox)
+        box = self.case.gearboxes.get(gearbox)
         return box is not None and box.housing is not None and box.housing.part_file is not None
 
     def _geometries(self) -> Iterator[tuple[str, HousingGeometry]]:
         """Parametric housings."""
-        for name, box in self._case.gearboxes.items():
+        for name, box in self.case.gearboxes.items():
             if box.housing is not None:
                 yield name, housing_geometry(box)
 
@@ -133,7 +161,7 @@ class Places:
     def gear_orders(self) -> dict[str, Fraction]:
         """Turns of every gear, ``gearbox.gear``, per turn of the reference gear."""
         gears = {
-            f"{name}.{gear}": (name, gear) for name, box in self._case.gearboxes.items() for gear in box.gears
+            f"{name}.{gear}": (name, gear) for name, box in self.case.gearboxes.items() for gear in box.gears
         }
         turns = {self.counting_gear: Fraction(1)}
         links = list(self._links())
@@ -148,25 +176,25 @@ class Places:
     @cached_property
     def counting_gear(self) -> str:
         """Gear whose turns count."""
-        if self._case.drivetrain is not None:
-            return self._case.drivetrain.torque_at
-        name, box = next(iter(self._case.gearboxes.items()))
+        if self.case.drivetrain is not None:
+            return self.case.drivetrain.torque_at
+        name, box = next(iter(self.case.gearboxes.items()))
         return f"{name}.{next(iter(box.meshes.values())).pinion}"
 
     def _links(self) -> Iterator[tuple[str, str, Fraction]]:
         """Pairs of gears that turn together with the speed ratio of the second to the first."""
         on_shaft: dict[str, list[str]] = {}
-        for name, box in self._case.gearboxes.items():
+        for name, box in self.case.gearboxes.items():
             for mesh in box.meshes.values():
                 ratio = Fraction(box.gears[mesh.pinion].teeth, box.gears[mesh.wheel].teeth)
                 yield f"{name}.{mesh.pinion}", f"{name}.{mesh.wheel}", ratio
             for gear, entry in box.gears.items():
                 on_shaft.setdefault(entry.shaft, []).append(f"{name}.{gear}")
         joined = list(on_shaft.values())
-        if self._case.drivetrain is not None:
+        if self.case.drivetrain is not None:
             joined += [
                 [gear for shaft in coupling.shafts for gear in on_shaft.get(shaft, ())]
-                for coupling in self._case.drivetrain.couplings.values()
+                for coupling in self.case.drivetrain.couplings.values()
             ]
         for gears in joined:
             yield from ((gears[0], other, Fraction(1)) for other in gears[1:])
@@ -175,7 +203,7 @@ class Places:
     def mesh_orders(self) -> dict[str, Fraction]:
         """Tooth meshes per turn of the reference gear, by ``gearbox.mesh``."""
         orders = {}
-        for name, box in self._case.gearboxes.items():
+        for name, box in self.case.gearboxes.items():
             for mesh, entry in box.meshes.items():
                 pinion = f"{name}.{entry.pinion}"
                 if pinion in self.gear_orders:
@@ -185,7 +213,7 @@ class Places:
     @cached_property
     def cycle(self) -> int:
         """Turns of the reference gear until the same teeth meet everywhere: the hunting cycle."""
-        return lcm(1, *(self._cycle(name, box) for name, box in self._case.gearboxes.items()))
+        return lcm(1, *(self._cycle(name, box) for name, box in self.case.gearboxes.items()))
 
     def _cycle(self, name: str, box: Gearbox) -> int:
         turns = [self.gear_orders[gear] for gear in self.gear_orders if gear.startswith(f"{name}.")]

@@ -54,6 +54,8 @@ TORQUES = (-1e8, 1e8)
 POWERS = (-1e9, 1e9)
 CLEARANCES = (-1e-3, 1.0)
 """[m]; a dial gauge may read a closed gap a little below zero."""
+STRAINS = (-0.05, 0.05)
+"""Foil gauges end at 3 to 5 %."""
 LEAST_UNCERTAINTY = 1e-15
 """Share of the span of a quantity below which an uncertainty is none that an instrument has."""
 
@@ -80,6 +82,7 @@ CHANNELS: Mapping[str, Measured] = {
     "acceleration": Measured("acceleration", "0.02 m/s2", (-1e6, 1e6)),
     "shaft_displacement": Measured("length", "0.1 um", (-0.01, 0.01)),
     "resonance_speed": Measured("speed", "10 rpm", TURNING),
+    "root_strain": Measured("strain", "2 um/m", STRAINS),
 }
 """Quantities of ``rigdesign.prediction.model.Channel``."""
 

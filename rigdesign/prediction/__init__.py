@@ -10,7 +10,7 @@ from rigdesign.prediction.model import (
     Prediction,
     PredictionModel,
     features_of,
-    model_for,
+    measured_against,
 )
 
 __all__ = [
@@ -23,5 +23,5 @@ __all__ = [
     "Prediction",
     "PredictionModel",
     "features_of",
-    "model_for",
+    "measured_against",
 ]

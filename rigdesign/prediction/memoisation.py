@@ -24,7 +24,6 @@ from rigdesign.coupling.braced_loop import (
     BracingState,
     LoadedCircuit,
     brace_initial,
-    respond,
     shifted_laws,
     signed_torque,
 )
@@ -36,6 +35,7 @@ from rigdesign.coupling.mesh_friction import mesh_friction
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_model, mesh_phase
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.prediction.slow_response import respond_at_any_speed
 from rigdesign.prediction.static_tests import modes_at_rest, rig_at_rest
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
@@ -161,7 +161,7 @@ class Memoisation:
         return found
 
     def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
-        """As `respond`."""
+        """As `respond_at_any_speed`."""
         point, setting = circuit.point, circuit.bracing
         laws = periodic_laws(rig, shifted_laws(rig, circuit.models, setting))
         asked = signed_torque(rig, point) if setting.mode == "torque_controlled" else setting.twist
@@ -175,7 +175,7 @@ class Memoisation:
         )
         known = self._room("responses" if rig.shaft_model == "torsional" else "elastic responses")
         if key not in known:
-            known[key] = circuit.system, respond(rig, circuit)
+            known[key] = circuit.system, respond_at_any_speed(rig, circuit)
         found: tuple[LinearSystem, CurvePoint] = known[key]
         return found[1]
 

@@ -1,7 +1,7 @@
 """What is predicted: operating points as run, channels of the rig, and the numbers a channel gives at a point."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -23,8 +23,13 @@ Quantity = Literal[
     "acceleration",
     "shaft_displacement",
     "resonance_speed",
+    "root_strain",
 ]
-Part = Literal["value", "real", "imaginary"]
+RootWindow = Literal["entry", "maximum", "exit", "unloaded"]
+"""Numbers of the curve of a root gauge; see `rigdesign.strain_gauge.curve_windows`."""
+Part = Literal["value", "real", "imaginary"] | RootWindow
+ROOT_WINDOWS: tuple[RootWindow, ...] = ("entry", "maximum", "exit", "unloaded")
+"""All of them, in their order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +50,9 @@ TORSIONAL = PredictionModel(shafts="torsional")
 """The quick variant: shafts that only twist."""
 MEASURED_AGAINST = TORSIONAL
 """Model that measured data are held against, and that the constants of the diagnosis were fitted with; of sets with
-lateral channels it is `OWN_MODEL` (`model_for`)."""
+lateral channels it is `OWN_MODEL` (`measured_against`)."""
+GAUGES_AGAINST = PredictionModel(shafts="torsional", teeth="influence_numbers")
+"""The same of sets with root gauges, whose stress needs the influence numbers of the teeth anyway."""
 
 LATERAL_QUANTITIES = frozenset({"acceleration", "shaft_displacement"})
 """Quantities that shafts which only twist do not have."""
@@ -90,9 +97,10 @@ class Channel:
         time it is; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
         coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
         or the name of any mode (`dynamics.elastic_rig.mode_names`); of ``backlash`` a mesh, ``test.main``; of
-        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor; of ``acceleration``
-        a bearing, ``test.pinion_front``; of ``shaft_displacement`` a bearing, or a shaft with ``position``; of
-        ``resonance_speed`` a mode as of ``natural_frequency``
+        ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor; of ``root_strain`` a
+        strain gauge, ``test.pinion.ii``; of ``acceleration`` a bearing, ``test.pinion_front``; of
+        ``shaft_displacement`` a bearing, or a shaft with ``position``; of ``resonance_speed`` a mode as of
+        ``natural_frequency``
     """
 
     name: str
@@ -109,6 +117,11 @@ class Channel:
     torque: float | None = None
     """Of ``resonance_speed``: bracing torque of the sweep [N m]; that at rest when left out."""
 
+    windows: tuple[RootWindow, ...] = ROOT_WINDOWS
+    """Of ``root_strain``: the numbers that are read."""
+    face: float = 0.0
+    """Of ``root_strain``: face position of the gauge, from mid-face, as the case has it [m]."""
+
     @property
     def reads(self) -> tuple[object, ...]:
         """What and where it reads; names and orders of two channels that read the same may differ."""
@@ -118,7 +131,7 @@ class Channel:
 
 @dataclass(frozen=True, order=True)
 class Feature:
-    """One number: a channel at an operating point, of orders the real or imaginary part.
+    """One number: a channel at an operating point, of orders the real or imaginary part, of a root gauge the window.
 
     The signal is the sum of Re(X_k exp(i k phi)) over its orders k; phi is the angle of the reference gear,
     zero where its tooth 0 stands at the pitch point of its first mesh (plus the phase of the case).
@@ -142,12 +155,6 @@ class Prediction:
     """Stated error of temperatures against the full model [K]."""
 
 
-def model_for(channels: Iterable[Channel]) -> PredictionModel:
-    """The model that measured data are held against: with lateral channels that of the case, else MEASURED_AGAINST."""
-    lateral = any(channel.quantity in LATERAL_QUANTITIES for channel in channels)
-    return OWN_MODEL if lateral else MEASURED_AGAINST
-
-
 def features_of(settings: Iterable[OperatingCondition], channels: Iterable[Channel]) -> tuple[Feature, ...]:
     """Features in their fixed order: settings, then channels, then orders; standing quantities at the end."""
     channels = tuple(channels)
@@ -163,6 +170,8 @@ def features_of(settings: Iterable[OperatingCondition], channels: Iterable[Chann
 
 
 def _at(channel: Channel, setting: str) -> list[Feature]:
+    if channel.quantity == "root_strain":
+        return [Feature(channel.name, setting, part=window) for window in channel.windows]
     if channel.quantity not in ORDER_QUANTITIES:
         return [Feature(channel.name, setting)]
     return [Feature(channel.name, setting, order, part) for order in channel.orders for part in _parts(order)]
@@ -170,3 +179,13 @@ def _at(channel: Channel, setting: str) -> list[Feature]:
 
 def _parts(order: float) -> tuple[Part, ...]:
     return ("real", "imaginary") if order else ("value",)
+
+
+def measured_against(channels: Iterable[Channel]) -> PredictionModel:
+    """Model that data of these channels are held against: lateral ones need shafts that bend, root gauges teeth of
+    influence numbers."""
+    quantities = {channel.quantity for channel in channels}
+    lateral, gauges = not LATERAL_QUANTITIES.isdisjoint(quantities), "root_strain" in quantities
+    if lateral:
+        return replace(OWN_MODEL, teeth=GAUGES_AGAINST.teeth) if gauges else OWN_MODEL
+    return GAUGES_AGAINST if gauges else MEASURED_AGAINST

@@ -12,6 +12,7 @@ from rigdesign.prediction.model import LATERAL_QUANTITIES, ORDER_QUANTITIES, STA
 from rigdesign.prediction.order_motion import is_ideal
 from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import place_weights
+from rigdesign.prediction.root_strain import root_strain
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
 from thermal.conduction.capacity import StoredHeat
@@ -61,6 +62,8 @@ def rate_rows(channels: Iterable[Channel]) -> dict[int, int]:
 
 def count_of(channel: Channel) -> int:
     """How many numbers a channel gives at a point."""
+    if channel.quantity == "root_strain":
+        return len(channel.windows)
     return sum(2 if order else 1 for order in channel.orders) if channel.orders else 1
 
 
@@ -78,6 +81,8 @@ def _reading(rig: Rig, channel: Channel, orders: "_Orders") -> Reading:
             return _seal_gap(rig, channel)
         case "motor_power" | "drive_torque":
             return _drive(rig, channel)
+        case "root_strain":
+            return root_strain(rig, channel)
     raise UsageError(f"channel {channel.name!r}: quantity {channel.quantity!r} is not predicted")
 
 

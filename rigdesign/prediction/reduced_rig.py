@@ -22,6 +22,7 @@ from rigdesign.prediction.model import Channel, OperatingCondition, PredictionMo
 from rigdesign.prediction.operating import modelled_rig, operating_point, rig_at
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
+from rigdesign.prediction.slow_response import AT_ANY_SPEED
 from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.fe.mesh import FloatArray
@@ -120,7 +121,7 @@ class ReducedRig:
         found: dict[str, list[Sequence[Condition]]] = {name: [] for name in self.stated.models}
         for condition in furthest_apart(self.conditions, STATES) if found else ():
             rig = rig_at(self.stated, condition)
-            problem = PointProblem.braced(rig, operating_point(condition))
+            problem = PointProblem.braced(rig, operating_point(condition), AT_ANY_SPEED)
             steps = iterations(problem, PlainRelaxation(), CaseTolerances(rig.case.numerics), problem.initial)
             *_, last = islice(steps, STATE_ITERATIONS)
             for name, field in last.done.fields.items():

@@ -33,6 +33,8 @@ ROOT = radians(15.0)
 """Least angle between fillet and tooth axis of the root: nearer to the flank the stress is that of the contact."""
 TANGENT = radians(30.0)
 """Angle between fillet and tooth axis at the critical section of ISO 6336-3."""
+POSITIONS = 64
+"""Positions of a mesh cycle."""
 FINE = 256
 """Positions of a mesh cycle for the contact ratio without load."""
 KEPT = 64
@@ -44,12 +46,14 @@ class HeldContact:
     """A mesh under its mean load at a held point, and what follows from it, each computed when it is asked for.
 
     cold : the pair as drawn, of whose teeth the influence numbers are; force : transverse mesh force [N]
+    positions : of the cycle, over one base pitch
     """
 
     cold: GearPair
     flanks: HeldFlanks
     force: float
     influence: ToothInfluence
+    positions: int = POSITIONS
 
     @cached_property
     def gears(self) -> tuple[ElasticGear, ElasticGear]:
@@ -68,6 +72,7 @@ class HeldContact:
             gears=(self.gears[0].compliance, self.gears[1].compliance),
             grid=FaceGrid.over(pair.face_width, default_positions(pair, gap_varies=True)),
             gap=self.flanks.gap,
+            n_positions=self.positions,
         )
 
     @cached_property
@@ -118,7 +123,7 @@ def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
     if torque < LEAST_TORQUE:
         return None
     flanks = held_flanks(rig, point, mesh)
-    return _kept(
+    return kept_contact(
         HeldContact(
             cold=rig.pairs[rig.mesh_names[mesh]],
             flanks=flanks,
@@ -129,7 +134,7 @@ def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
 
 
 @lru_cache(maxsize=KEPT)
-def _kept(contact: HeldContact) -> HeldContact:
+def kept_contact(contact: HeldContact) -> HeldContact:
     """The first contact that was equal: what is computed of it serves ratings, checks and report alike."""
     return contact
 

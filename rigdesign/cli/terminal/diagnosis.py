@@ -15,6 +15,8 @@ DIAGNOSIS_STYLES = {"named": "bold green", "within_noise": "green", "input_error
 
 MOST_DOUBTS = 4
 """Suspected input errors that are printed."""
+MOST_NEEDED = 8
+"""Causes that are printed with the size they would need, where the data are too few."""
 
 
 def print_diagnosis(outcome: "Outcome", out: Path) -> None:
@@ -22,6 +24,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     from rigdesign.diagnosis.decision.naming import formatted
     from rigdesign.diagnosis.document.advice import VERDICTS, certainty, headline, steps
     from rigdesign.diagnosis.document.document import sentences
+    from rigdesign.diagnosis.document.required import BEYOND, WITHIN, required_rows
 
     console = new_console()
     found, measurement = outcome.result.diagnosis, outcome.result.measurement
@@ -61,6 +64,10 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     left = sentences(outcome.after, measurement) if outcome.in_model else []
     for text in left[:3]:
         console.print(Text("remains   ", "bold") + Text(text))
+    needed = [one for one in required_rows(outcome) if one.verdict in (WITHIN, BEYOND) and one.size]
+    for row in needed[:MOST_NEEDED]:
+        text = f"{row.title}: {row.size} would explain it ({row.verdict})"
+        console.print(Text("needed    ", "bold") + Text(text))
     for step in steps(outcome)[:5]:
         console.print(Text("next      ", "bold") + Text(f"{step.text}: {step.why}"))
     console.print(Text(calibration_line(outcome.result.calibration.origin), "dim"))

@@ -6,15 +6,10 @@ The modules imported here register their effects, in this order.
 from collections.abc import Iterable
 
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue import circuit, heat, lateral, local_heat  # noqa: F401 - register their effects
+from rigdesign.diagnosis.catalogue import circuit, gauges, heat, lateral, local_heat  # noqa: F401 - register effects
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.registry import registered_effects
-from rigdesign.prediction.model import MEASURED_AGAINST, OWN_MODEL, Channel, PredictionModel, model_for
-
-
-def model_of(effects: Iterable[Effect]) -> PredictionModel:
-    """The model in which all of these effects show: that of the case where one needs shafts that bend."""
-    return OWN_MODEL if any(effect.bends for effect in effects) else MEASURED_AGAINST
+from rigdesign.prediction.model import Channel, measured_against
 
 
 def effects_of(
@@ -29,7 +24,7 @@ def effects_of(
     channels : of the measurement; effects of shafts that bend are there where one of them shows such (`lateral`), and
         for None, which stands for any
     """
-    bending = channels is None or model_for(channels).shafts != "torsional"
+    bending = channels is None or measured_against(channels).shafts != "torsional"
     found = tuple(registered_effects(case, local=local, lateral=bending))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)

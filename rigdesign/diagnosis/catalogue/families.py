@@ -11,6 +11,7 @@ class Family:
     dynamic : leaves temperatures and losses nearly as they are, shows in orders and natural frequencies
     circuit : changes how the power circuit passes on what the teeth excite
     heat : a constant that moves the heat
+    strain : shows at strain gauges in tooth roots alone, but for traces in mesh orders
     sizes : shares of the bounds at which a nonlinear effect is run
     one_sided_sizes : the same of an effect whose size has one sign
     tooth_contact : every run solves the contact of the teeth anew
@@ -22,6 +23,7 @@ class Family:
     dynamic: bool = False
     circuit: bool = False
     heat: bool = False
+    strain: bool = False
     sizes: tuple[float, ...] = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
     one_sided_sizes: tuple[float, ...] = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
     tooth_contact: bool = False
@@ -57,4 +59,8 @@ ONE_FEED = replace(FLOW, name="one feed", one_sided_sizes=(0.4, 1.0))
 """Oil of one bearing: two runs, as there are many of them."""
 ONE_JOINT = replace(CONTACT, name="one joint", one_sided_sizes=(0.12, 1.0))
 """Joint of one shell, the same."""
+FACE = Family(name="face", amplitude="sensor", strain=True, sizes=FEWER_SIZES, tooth_contact=True, run_rank=0)
+"""Load over the face and profile; spreads as tolerances and inspection give them."""
+GAUGE_PLACE = Family(name="gauge place", amplitude="sensor", strain=True)
+CHAIN = Family(name="measuring chain", amplitude="sensor", strain=True, one_sided_sizes=(0.12, 0.4, 1.0))
 STATE = Family(name="state", amplitude="constant_loop", run_rank=5)

@@ -16,8 +16,6 @@ class Waiting:
     lacks: str
 
 
-GAUGES = "strain gauges in the tooth roots as channels"
-FACE = "a mesh that shares its load over the face in the periodic response, and strain gauges as channels"
 STEADY_LINES = "lines that do not turn with a gear as channels"
 
 WAITING = (
@@ -59,28 +57,11 @@ WAITING = (
         f"{STEADY_LINES}, and modes of the housing beyond those of its bearing seats",
     ),
     Waiting(
-        "misalignment",
-        "misaligned axes or helix slope",
-        "the load leans over the face at all speeds, less with torque",
-        FACE,
-    ),
-    Waiting(
-        "crowning",
-        "crowning or twist of the flanks",
-        "the load over the face is fuller or emptier in the middle",
-        FACE,
-    ),
-    Waiting(
         "sharing",
         "uneven sharing of a double helix",
         "one half carries more, with the axial order of the other",
-        "a share of the halves as a number of the case: `carrying_halves` knows both alike or one alone",
-    ),
-    Waiting(
-        "tooth_friction",
-        "friction of the teeth in the mesh force",
-        "a step at the pitch point, reversed with the direction",
-        "an entry: `friction_factor` of a mesh is in the case; torque hardly shows it, strain gauges would",
+        "a share of the halves as a number of the case: `carrying_halves` knows both alike or one alone; a gauge of a "
+        "double-helical gear stands for either half",
     ),
     Waiting(
         "backlash",
@@ -104,7 +85,7 @@ WAITING = (
         "extended_contact",
         "contact beyond the path of contact",
         "fast edges at entry and exit, more with torque",
-        GAUGES,
+        "a key of the case: the loaded contact behind the root gauges has it as the tips make it",
     ),
     Waiting(
         "crack_growth",
@@ -123,12 +104,6 @@ WAITING = (
         "drift or cross-talk of a torque flange",
         "mean torque that follows temperature or axial force",
         "temperature of the flange as a setting",
-    ),
-    Waiting(
-        "gauge_errors",
-        "gauge factor, place, zero or thermal output of a strain gauge",
-        "one gauge alone, constant, with temperature or n^2",
-        GAUGES,
     ),
     Waiting(
         "aliasing",
@@ -170,7 +145,7 @@ WAITING = (
         "heat_misalignment",
         "misalignment by uneven thermal expansion of the housing",
         "follows temperature, not time",
-        f"{FACE}; thermal expansion of the housing at every point",
+        "an entry: root gauges have the axes of the warm housing, as its films and joints make them",
     ),
 )
 """In the order of the page, which leaves out what the catalogue holds by now."""

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue import model_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names
 from rigdesign.diagnosis.decision.patch import Fitted, patched_case
@@ -26,7 +25,7 @@ from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import SEEN
 from rigdesign.diagnosis.statistics.heldout import Gap, gap
-from rigdesign.prediction.model import Channel, Feature, OperatingCondition
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition, measured_against
 from rigdesign.prediction.predict import predict
 
 Sizes = Mapping[str, tuple[float, ...]]
@@ -74,7 +73,7 @@ class FullRun:
             f"full model at {', '.join(one.name for one in settings)}, without and with {' and '.join(sizes)}"
         )
         with BackgroundTasks(
-            [partial(predict, case, settings, channels, circuit=model_of(self.effects)) for case in cases]
+            [partial(predict, case, settings, channels, circuit=measured_against(channels)) for case in cases]
         ) as tasks:
             before, after = tasks.results()
         place = {feature: row for row, feature in enumerate(before.features)}

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.required import required_causes
 from rigdesign.diagnosis.decision.simulation import Simulation
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Extra, extra_points
@@ -15,7 +17,9 @@ from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.detectability import ALIAS
+from rigdesign.diagnosis.statistics.evidence import Curve, Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.next_measurement import (
     Foreseen,
     Proposal,
@@ -31,6 +35,8 @@ from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
 RIVALS = 3
 """Explanations that are to be separated."""
+MOST_BEYOND = 3.0
+"""Size over its bound up to which a cause counts as a rival where the data are too few."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,11 +63,13 @@ class NextMeasurements:
 
     ranked : single measurements, best first; together : the cheapest set that decides, None where none was found
     verified : explanations for which a simulation of that set ended in their name, of those simulated
+    causes : with too few data, those that are told apart at the sizes that each would need
     """
 
     ranked: tuple[Ranked, ...] = ()
     together: SmallestSet | None = None
     verified: tuple[tuple[str, bool], ...] = ()
+    causes: tuple[str, ...] = ()
 
 
 NOTHING_NEXT = NextMeasurements()
@@ -75,34 +83,44 @@ def next_measurements(
 ) -> NextMeasurements:
     """Measurements that tell the leading rivals apart; none where something is named.
 
-    Of a single suspect, and with too few data to name anything: those that tell it from a healthy rig. The set is
-    verified by simulating it with each rival as the truth and diagnosing what it would read.
+    Of a single suspect: those that tell it from a healthy rig. With too few data to name anything: those that tell the
+    causes apart at the sizes that each would need, or the leading one from a healthy rig where no two come into
+    question. The set is verified by simulating it with each rival as the truth and diagnosing what it would read, not
+    with too few data.
     """
     if found.decision.verdict not in UNDECIDED:
         return NOTHING_NEXT
     rivals = _rivals(found)
-    alone = found.decision.verdict == "data_insufficient" or (
-        found.decision.verdict == "suspected" and len(found.decision.named) == 1
-    )
-    if len(rivals) < (1 if alone else 2):
-        return NOTHING_NEXT
     whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
-    answers = _answers(whole, rivals)
-    compared = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
-    if alone:
-        compared = [compared[0], _nothing(len(whole.features))]
+    insufficient = found.decision.verdict == "data_insufficient"
+    alone = insufficient or (found.decision.verdict == "suspected" and len(found.decision.named) == 1)
+    needed = _needed(whole, measured) if insufficient else []
+    if len(rivals) < (1 if alone else 2) and len(needed) < 2:
+        return NOTHING_NEXT
+    if len(needed) > 1:
+        compared = needed
+    else:
+        answers = _answers(whole, rivals)
+        compared = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
+        if alone:
+            compared = [compared[0], _nothing(len(whole.features))]
     mean, matrix = problem.healthy(whole, calibration)
     foreseen = Foreseen.of(matrix, found.residual, compared)
     offers = _offers(whole.features[measured:], whole.channels, offer)
     together = smallest_set(foreseen, offers)
     verified: tuple[tuple[str, bool], ...] = ()
-    if together is not None:
+    if together is not None and len(needed) < 2:
         simulation = Simulation(
             problem=problem, whole=whole, measured=measured, mean=mean, foreseen=foreseen, rows=together.rows
         )
         names = [one.hypothesis.parts[0] for one in (rivals[:1] if alone else rivals)]
         verified = simulation.verified(names, calibration)
-    return NextMeasurements(ranked=ranked(foreseen, offers), together=together, verified=verified)
+    return NextMeasurements(
+        ranked=ranked(foreseen, offers),
+        together=together,
+        verified=verified,
+        causes=tuple(one.name for one in needed) if len(needed) > 1 else (),
+    )
 
 
 def _rivals(found: Diagnosis) -> list[Evidence]:
@@ -176,6 +194,36 @@ def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
         slopes = hypothesis.columns
         answer = slopes @ sizes
     return Rival(name=one.hypothesis.name, answer=answer, slopes=slopes, deviations=np.array(one.deviations))
+
+
+def _needed(whole: ResidualProblem, measured: int) -> list[Rival]:
+    """With too few data: causes at the sizes at which each explains the residual, the least out of bounds first.
+
+    Of causes that leave the same trace in everything that could be read the first one stands for all.
+    """
+    causes = required_causes(whole.rows(range(measured)))
+    usable = [
+        one for one in causes
+        if one.explains and one.size is not None and one.size.reach <= MOST_BEYOND
+        and isinstance(one.entry, Effect) and not one.size.extrapolated
+    ]  # fmt: skip
+    found: list[Rival] = []
+    for cause in sorted(usable, key=lambda one: (not one.within, one.size.reach if one.size else 0.0)):
+        assert cause.size is not None and isinstance(cause.entry, Effect)
+        response = whole.library.responses[cause.entry.name]
+        sizes = np.array(cause.size.coordinates)
+        if response.nonlinear:
+            answer = Curve.of(response.coordinates[:, 0], response.answers).at(sizes)[0]
+        else:
+            answer = response.sensitivity() @ sizes
+        if all(_cosine(answer, one.answer) < ALIAS for one in found):
+            nothing = np.zeros((len(answer), 0))
+            found.append(Rival(name=cause.explanation, answer=answer, slopes=nothing, deviations=np.zeros(0)))
+    return found[:RIVALS]
+
+
+def _cosine(first: Array, second: Array) -> float:
+    return float(abs(first @ second) / (np.linalg.norm(first) * np.linalg.norm(second)))
 
 
 def _nothing(count: int) -> Rival:

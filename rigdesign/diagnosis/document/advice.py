@@ -181,6 +181,22 @@ def _together(outcome: Outcome) -> list[NextStep]:
     found = outcome.ahead.together
     if found is None:
         return []
+    why = f"the cheapest set that {_decides(outcome)}"
+    return [
+        NextStep(
+            text=" and ".join(found.titles),
+            why=why,
+            expected_evidence=found.expected_evidence,
+            cost=found.cost,
+            decides=True,
+        )
+    ]
+
+
+def _decides(outcome: Outcome) -> str:
+    """What the cheapest set tells apart, or what simulating it ended in."""
+    if outcome.ahead.causes:
+        return f"tells apart {_causes(outcome)}"
     named = [name for name, right in outcome.ahead.verified if right]
     count = len(outcome.ahead.verified)
     if count == 1:
@@ -189,15 +205,7 @@ def _together(outcome: Outcome) -> list[NextStep]:
         shown = "names it every time"
     else:
         shown = f"names {' and '.join(named) or 'none'} of {count}"
-    return [
-        NextStep(
-            text=" and ".join(found.titles),
-            why=f"the cheapest set that decides; in a simulation with each of them true the diagnosis {shown}",
-            expected_evidence=found.expected_evidence,
-            cost=found.cost,
-            decides=True,
-        )
-    ]
+    return f"decides; in a simulation with each of them true the diagnosis {shown}"
 
 
 def _baseline(outcome: Outcome) -> list[NextStep]:
@@ -216,12 +224,20 @@ def _baseline(outcome: Outcome) -> list[NextStep]:
 
 def _why(outcome: Outcome, proposal: Ranked) -> str:
     """What a proposal is good for."""
+    if outcome.ahead.causes:
+        return f"{'tells' if proposal.decides else 'partly tells'} apart {_causes(outcome)}"
     apart = (
         "the leading explanation from a healthy rig"
         if outcome.verdict == "data_insufficient" or outcome.suspected is not None
         else "the leading explanations"
     )
     return f"separates {apart}" if proposal.decides else f"partly separates {apart}"
+
+
+def _causes(outcome: Outcome) -> str:
+    """The causes that are told apart where the data are too few."""
+    titles = [outcome.names.title(name) for name in outcome.ahead.causes]
+    return f"{' and '.join(titles)}, each at the size that it would need"
 
 
 def _first(outcome: Outcome) -> list[NextStep]:

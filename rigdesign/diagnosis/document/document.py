@@ -15,7 +15,9 @@ from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.gap import gap_document, refused_rows
+from rigdesign.diagnosis.document.gauge_modes import gauge_mode_rows
 from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.diagnosis.document.required import required_document
 from rigdesign.diagnosis.statistics.detectability import Detectability
 from rigdesign.measurement import MeasurementSet
 from rigdesign.measurement.comparison.compare import sentence, significant
@@ -65,6 +67,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
         "aliases": _aliases(outcome),
         "gap": gap_document(outcome),
         "located": [_located(one, result.measurement) for one in outcome.before],
+        "gauge_modes": gauge_mode_rows(outcome),
         "unexplained": _unexplained(outcome),
         "costs_stated": bool(result.measurement.costs),
         "next_measurements": [
@@ -78,6 +81,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
             }
             for one in steps(outcome)
         ],
+        "required_sizes": required_document(outcome),
         "data": {
             "findings": result.data.findings,
             "rejected_readings": _rejected(outcome),

@@ -193,7 +193,7 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
     if found.decision.named:
         wanted = list(found.decision.named)
     elif found.decision.verdict == "data_insufficient":
-        singles = [one for one in found.deciding.evidence if _single(one)]
+        singles = [one for one in found.deciding.evidence if one.hypothesis.family not in ("pair", "input")]
         ordered = sorted(singles, key=lambda one: -weights.masses[one.hypothesis.name])
         wanted = list(dict.fromkeys(one.hypothesis.parts[0] for one in ordered))[:SHOWN]
     else:
@@ -208,10 +208,6 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
             Suspect(name=name, title=title, inclusion=weights.inclusion.get(name, 0.0), size=size)
         )
     return tuple(suspects)
-
-
-def _single(one: Evidence) -> bool:
-    return one.hypothesis.family != "pair"
 
 
 def _best(result: Result, names: Names, name: str) -> Evidence | None:

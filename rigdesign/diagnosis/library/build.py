@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import RigdesignError
 from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue import model_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
@@ -17,8 +16,10 @@ from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.prediction.model import (
     MODAL_QUANTITIES,
     ORDER_QUANTITIES,
+    STANDING_QUANTITIES,
     Channel,
     OperatingCondition,
+    measured_against,
 )
 from rigdesign.prediction.predictor import Predictor
 
@@ -53,7 +54,7 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     metered = (POWER,) if case.drivetrain is not None else ()
-    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=model_of(effects))
+    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=measured_against(channels))
     predictor.prepare()
     base = predictor.base
     parts = Parts.of(case, settings, channels, effects)
@@ -92,8 +93,17 @@ def build_library(
 
 
 def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
-    """Whether an effect can show at all: teeth and alternating torques only where orders or modes are read."""
-    dynamic = any(channel.quantity in ORDER_QUANTITIES | MODAL_QUANTITIES for channel in channels)
+    """Whether an effect can show at all.
+
+    Teeth and alternating torques only where orders, modes or root gauges are read, the load over the face at root
+    gauges; what moves the heat not where they are all that is read at the points.
+    """
+    quantities = {channel.quantity for channel in channels}
+    if effect.family.strain:
+        return "root_strain" in quantities
+    if effect.family.heat:
+        return not quantities <= {"root_strain", *STANDING_QUANTITIES}
+    dynamic = not quantities.isdisjoint({*ORDER_QUANTITIES, *MODAL_QUANTITIES, "root_strain"})
     return dynamic or not effect.family.dynamic
 
 
@@ -155,7 +165,7 @@ class _Runs:
                 continue
             changes = effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                run = self._predictor.oscillating if effect.oscillates else self._predictor.response
+                run = self._predictor.oscillating if self._in_orders(effect) else self._predictor.response
                 answers.append(run(changes) - base)
                 coordinates.append(place)
             except RigdesignError:
@@ -163,6 +173,11 @@ class _Runs:
         if len(coordinates) < 1 + len(effect.parameters):
             return None
         return Response(coordinates=np.array(coordinates), answers=np.array(answers))
+
+    def _in_orders(self, effect: Effect) -> bool:
+        """Whether orders are all that an effect moves: root gauges follow their own tooth through the turn."""
+        gauges = any(channel.quantity == "root_strain" for channel in self._predictor.channels)
+        return effect.oscillates and not gauges
 
 
 def run_places(effect: Effect) -> list[Array]:

@@ -119,7 +119,9 @@ def _key(case: Case, effects: Sequence[Effect]) -> str:
         "schema": SCHEMA,
         "version": __version__,
         "case": case.hash,
-        "effects": [[effect.name, *(part.bounds for part in effect.parameters)] for effect in effects],
+        "effects": [
+            [effect.name, effect.linear, *(part.bounds for part in effect.parameters)] for effect in effects
+        ],
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
 

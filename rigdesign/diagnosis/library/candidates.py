@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from rigdesign.case.model import Case
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.reading.document import ExtraPoint
-from rigdesign.prediction.model import Channel, OperatingCondition, Quantity
+from rigdesign.prediction.model import STANDING_QUANTITIES, Channel, OperatingCondition, Quantity
 
 SPARE = "could be: "
 """Start of the names of sensors and points that are not measured."""
@@ -25,6 +25,7 @@ NOISE: dict[Quantity, float] = {
     "acceleration": 0.05,
     "shaft_displacement": 2e-7,
     "resonance_speed": 1.0,
+    "root_strain": 4e-6,
 }
 """Standard deviation of a reading of a sensor that would be added, its systematic part included [SI]."""
 
@@ -43,20 +44,28 @@ class Extra:
 
 
 def spare_channels(case: Case, used: Sequence[Channel], orders: tuple[float, ...]) -> tuple[Channel, ...]:
-    """Channels of the rig that the set does not have; orders and modes only where some are read already."""
+    """Channels of the rig that the set does not have; orders, modes and root gauges only where some are read already.
+
+    Where root gauges are all that is read, other gauges alone: what shows in temperatures then is not run.
+    """
     places = Places(case)
     have = {(channel.quantity, channel.place) for channel in used}
-    quantities: list[Quantity] = ["oil_outlet_temperature", "motor_power"]
+    gauges_alone = {channel.quantity for channel in used} <= {"root_strain", *STANDING_QUANTITIES}
+    quantities: list[Quantity] = [] if gauges_alone else ["oil_outlet_temperature", "motor_power"]
     if any(channel.orders for channel in used):
         quantities += ["torque", "natural_frequency"]
+    if any(channel.quantity == "root_strain" for channel in used):
+        quantities.append("root_strain")
     wanted = [(quantity, place) for quantity in quantities for place in places.of(quantity)]
-    wanted += [("temperature", place) for place in _thermocouples(places)]
+    if not gauges_alone:
+        wanted += [("temperature", place) for place in _thermocouples(places)]
     return tuple(
         Channel(
             name=f"{SPARE}{quantity.replace('_', ' ')} {place}",
             quantity=quantity,
             place=place,
             orders=orders if quantity == "torque" else (),
+            face=places.face_position(place) if quantity == "root_strain" else 0.0,
         )
         for quantity, place in wanted
         if (quantity, place) not in have
@@ -79,7 +88,7 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
     slow, fast = (pick(one.speed for one in settings) for pick in (min, max))
     light, heavy = (pick(abs(one.torque) for one in settings) for pick in (min, max))
     found = []
-    if len(settings) > 1:
+    if len(settings) > 1 and light < heavy:
         found += [
             Extra(
                 title="a point at the least speed and the greatest torque",
@@ -92,6 +101,7 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
                 changed="operating_point",
             ),
         ]
+    found += _between(middle, (slow, fast), (light, heavy))
     if middle.inlet_temperature:
         colder = {stream: value - 20.0 for stream, value in middle.inlet_temperature.items()}
         found.append(
@@ -120,3 +130,24 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
             )
         )
     return tuple(found)
+
+
+def _between(
+    middle: OperatingCondition, speeds: tuple[float, float], torques: tuple[float, float]
+) -> list[Extra]:
+    """Points where a plan has one torque, or two speeds: half the torque, and a speed between."""
+    found = []
+    if torques[0] == torques[1]:
+        found.append(
+            Extra(
+                title="a point at half the torque",
+                setting=replace(middle, name=f"{SPARE}half torque", torque=0.5 * middle.torque),
+                changed="operating_point",
+            )
+        )
+        if speeds[0] < speeds[1]:
+            between = replace(middle, name=f"{SPARE}speed between", speed=0.5 * (speeds[0] + speeds[1]))
+            found.append(
+                Extra(title="a point at a speed between", setting=between, changed="operating_point")
+            )
+    return found

@@ -18,6 +18,7 @@ USUAL_COST: dict[str, float] = {
     "acceleration": 3.0,
     "shaft_displacement": 6.0,
     "resonance_speed": 4.0,
+    "root_strain": 8.0,
     "operating_point": 1.0,
     "oil_flow": 1.0,
     "inlet_temperature": 1.5,

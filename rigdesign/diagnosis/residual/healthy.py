@@ -11,6 +11,7 @@ import numpy as np
 
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import NEAR_SENSOR, Library
+from rigdesign.diagnosis.residual.gauge_modes import mode_columns
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
 from rigdesign.prediction.model import (
@@ -41,6 +42,7 @@ def healthy_columns(
         *_sources(library),
         *_channels(library.features, level, speed, channels),
         *_series(library.features, level, speed, channels, mesh_orders),
+        *mode_columns(library.features, level, channels),
     )
 
 

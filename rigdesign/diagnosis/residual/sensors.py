@@ -14,6 +14,7 @@ from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.diagnosis.statistics.reference_scale import excess
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition
+from rigdesign.strain_gauge.gauge import REFERENCE_TEMPERATURE
 
 TIMES = 12.0
 """Bound of a sensor error over its stated systematic uncertainty."""
@@ -70,7 +71,14 @@ UNITS = {
     "acceleration": "m/s2",
     "shaft_displacement": "m",
     "resonance_speed": "rad/s",
+    "root_strain": "m/m",
 }
+
+THERMAL_OUTPUT = 1e-6
+"""Apparent strain of a gauge per kelvin that nobody corrected [1/K], one sigma: as data sheets leave it on steel."""
+
+CENTRIFUGAL = 5e-6
+"""Strain of a root by rotation at the fastest point of a set [-], one sigma: rho v^2 / E at 12 m/s."""
 
 
 def sensor_errors(
@@ -85,6 +93,9 @@ def sensor_errors(
         if not own.any():
             continue
         orders = channel.quantity in ORDER_QUANTITIES
+        if channel.quantity == "root_strain":
+            found += _of_gauge(library, name, one)
+            continue
         if one.offset > 0.0:
             mean = np.array([feature.order == 0.0 for feature in library.features], dtype=np.float64)
             found.append(
@@ -108,7 +119,74 @@ def sensor_errors(
                     spread=one.scale,
                 )
             )
-    return (*found, *_angle_zero(library), *_lags(library, channels))
+    return (*found, *_angle_zero(library), *_lags(library, channels), *_centrifugal(library, channels))
+
+
+def _of_gauge(library: Library, name: str, stated: Stated) -> list[SensorError]:
+    """Gauge factor on all numbers of a gauge; zero and thermal output on the strain of the unloaded tooth alone."""
+    own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
+    unloaded = own * _unloaded(library)
+    found = []
+    if stated.scale > 0.0:
+        found.append(
+            SensorError(
+                name=f"gauge_factor:{name}", title=f"gauge factor of {name}", kind="sensor",
+                values=own * library.base, unit="", spread=stated.scale,
+            )
+        )  # fmt: skip
+    if stated.offset > 0.0 and unloaded.any():
+        found.append(
+            SensorError(
+                name=f"gauge_zero:{name}", title=f"zero of {name}", kind="sensor", values=unloaded,
+                unit="m/m", spread=stated.offset,
+            )
+        )  # fmt: skip
+    warm = unloaded * np.array([_warmer(library, feature.setting) for feature in library.features])
+    if warm.any():
+        found.append(
+            SensorError(
+                name=f"gauge_thermal_output:{name}", title=f"thermal output of {name}", kind="sensor",
+                values=warm, unit="1/K", spread=THERMAL_OUTPUT,
+            )
+        )  # fmt: skip
+    return found
+
+
+def _unloaded(library: Library) -> Array:
+    """(n,) one where a number is the strain of a gauge under no load."""
+    return np.array([feature.part == "unloaded" for feature in library.features], dtype=np.float64)
+
+
+def _warmer(library: Library, point: str) -> float:
+    """Inlets of the oils at a point over 20 degC [K], which the gears follow; 0 where nothing is stated."""
+    setting = next((one for one in library.settings if one.name == point), None)
+    inlets = () if setting is None else tuple(setting.inlet_temperature.values())
+    return float(np.mean(inlets)) - REFERENCE_TEMPERATURE if inlets else 0.0
+
+
+def _centrifugal(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
+    """Strain by rotation of all gauges of a gear, over that at the fastest point."""
+    speeds = {setting.name: setting.speed for setting in library.settings}
+    fastest = max(speeds.values(), default=1.0)
+    squares = np.array([(speeds.get(one.setting, 0.0) / fastest) ** 2 for one in library.features])
+    places = [channels[one.channel].place for one in library.features]
+    quantities = [channels[one.channel].quantity for one in library.features]
+    found = []
+    for gear in dict.fromkeys(
+        place.rpartition(".")[0] for place, q in zip(places, quantities) if q == "root_strain"
+    ):
+        on_gear = [
+            q == "root_strain" and place.startswith(f"{gear}.") for place, q in zip(places, quantities)
+        ]
+        values = np.array(on_gear, dtype=np.float64) * squares * _unloaded(library)
+        if values.any():
+            found.append(
+                SensorError(
+                    name=f"gauge_centrifugal:{gear}", title=f"centrifugal strain of the gauges of {gear}",
+                    kind="sensor", values=values, unit="m/m", spread=CENTRIFUGAL,
+                )
+            )  # fmt: skip
+    return found
 
 
 ANGLE_ZERO = 2e-3

@@ -9,6 +9,8 @@ NEAR = 1e-6
 OUTSIDE = ("outer_",)
 FIELD = ("field", "housing_foot")
 COLD = ("cold", "bearing_bore", "journal", "_end")
+WINDOWS = {"unloaded": "unloaded tooth"}
+"""Window of a root gauge -> in words, where it needs others."""
 ROTATING = ("gear_", "shaft_")
 
 
@@ -43,6 +45,9 @@ class Bands:
                 return "natural frequencies (static tests)"
             case "backlash":
                 return "backlash of the cold rig"
+            case "root_strain":
+                gear = channel.place.rpartition(".")[0]
+                return f"root strain of {gear}, {WINDOWS.get(feature.part, feature.part)}"
             case "seal_gap":
                 return f"seal gaps of gearbox {self._gearbox(channel.place)}"
         return str(channel.quantity)

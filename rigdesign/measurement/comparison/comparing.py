@@ -10,7 +10,7 @@ from rigdesign.measurement.data import Data
 from rigdesign.measurement.loader import load_measurement
 from rigdesign.measurement.processing.baseline import HealthySet, at_all, shared_channels
 from rigdesign.measurement.processing.features import features
-from rigdesign.prediction.model import Channel, Prediction, model_for
+from rigdesign.prediction.model import Channel, Prediction, measured_against
 from rigdesign.prediction.predict import Thermal, predict
 
 Progress = Callable[[str], None]
@@ -40,8 +40,9 @@ def compare_measurement(
 
     def simulated(of: Data, channels: Sequence[Channel], what: str) -> Prediction:
         say(f"predicting {len(of.settings)} operating points of {what}")
-        circuit = model_for(entry.channel for entry in data.channels.values())
-        return predict(case, of.settings, channels, model=model, fidelity=fidelity, circuit=circuit)
+        return predict(
+            case, of.settings, channels, model=model, fidelity=fidelity, circuit=measured_against(channels)
+        )
 
     prediction = simulated(data, [entry.channel for entry in data.channels.values()], "the set")
     if baseline is None or healthy is None:

@@ -12,6 +12,7 @@ from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import unknown, written
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.processing.averaging import MeasuredOrders, signal_orders
+from rigdesign.measurement.processing.root_gauges import RecordedGauges
 from rigdesign.measurement.quality.signal_checks import (
     lines_off_the_mesh,
     signal_findings,
@@ -77,8 +78,10 @@ def read_recordings(
             faults += error.faults
             continue
         lasting.setdefault(entry.point, {})[entry.file] = max(float(np.ptp(s.time)) for s in signals.values())
-        here = {name: channel for name, channel in plan.channels.items()
-                if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
+        recorded = {name: channel for name, channel in plan.channels.items()
+                    if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
+        roots = {name: one for name, one in recorded.items() if one.channel.quantity == "root_strain"}
+        here = {name: one for name, one in recorded.items() if name not in roots}
         faults += _unit_faults(entry, here, signals)
         if faults:
             continue
@@ -86,13 +89,35 @@ def read_recordings(
         assert place is not None
         count = len(rows.rows_of(entry.point))
         read = _Recording(entry, document, plan.places, by_name[entry.point], findings)
-        for feature, value in read.numbers(here, signals):
+        numbers = [
+            *read.numbers(here, signals),
+            *_of_gauges(plan, entry, by_name[entry.point], roots, findings),
+        ]
+        for feature, value in numbers:
             if feature not in known:
                 found.setdefault(feature, np.full(count, np.nan))[place] = value
     if faults:
         raise MeasurementError(faults)
     findings.extend(_shorter(lasting))
     return found
+
+
+def _of_gauges(
+    plan: SetPlan,
+    entry: Recording,
+    point: MeasuredPoint,
+    channels: Mapping[str, MeasuredChannel],
+    findings: MutableSequence[DataFinding],
+) -> Iterator[tuple[Feature, float]]:
+    """Numbers of the root gauges of a recording."""
+    if not channels:
+        return
+    gauges = RecordedGauges.of(plan.places.case, plan.folder, plan.document.data)
+    for found in gauges.numbers(entry, point, channels):
+        if isinstance(found, DataFinding):
+            findings.append(found)
+        else:
+            yield found
 
 
 def _shorter(lasting: Mapping[str, Mapping[str, float]]) -> Iterator[DataFinding]:

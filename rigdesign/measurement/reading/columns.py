@@ -22,6 +22,7 @@ from rigdesign.measurement.reading.measurement_set import MeasuredChannel, Setti
 from rigdesign.prediction.model import (
     MODAL_QUANTITIES,
     ORDER_QUANTITIES,
+    ROOT_WINDOWS,
     WITHOUT_MEAN,
     Channel,
 )
@@ -72,6 +73,8 @@ def channels_of(document: MeasurementFile, places: Places) -> dict[str, Measured
                 direction=None if entry.direction is None else direction_of(entry.direction),
                 position=entry.position,
                 torque=entry.torque,
+                windows=entry.windows or ROOT_WINDOWS,
+                face=places.face_position(entry.place) if entry.quantity == "root_strain" else 0.0,
             ),
             unit=_spelled(entry.unit, measured),
             noise=units.parse(entry.uncertainty, measured.spread),
@@ -172,9 +175,27 @@ def _channel(name: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
         )
     if entry.orders is not None and not entry.orders:
         yield Fault(f"{at}.orders", "[]", "no order is named", "name some or leave the key out")
+    yield from _windows(at, entry)
     if entry.quantity in WITHOUT_MEAN and entry.orders == (0.0,):
         said = entry.quantity.replace("_", " ")
         yield Fault(f"{at}.orders", "[0]", f"the mean of {an(said)} says nothing", "name orders above 0")
+
+
+def _windows(at: str, entry: ChannelTable) -> Iterator[Fault]:
+    """Keys that root gauges alone have, or have not."""
+    gauge = entry.quantity == "root_strain"
+    if entry.windows is not None and not gauge:
+        yield Fault(f"{at}.windows", "", f"{entry.quantity} has no windows", "remove the key")
+    if entry.windows is not None and len(set(entry.windows)) < max(1, len(entry.windows)):
+        yield Fault(
+            f"{at}.windows", ", ".join(entry.windows), "must be different ones, one at least",
+            f"choose of {', '.join(ROOT_WINDOWS)}, or leave the key out",
+        )  # fmt: skip
+    if gauge and entry.transfer is not None:
+        yield Fault(
+            f"{at}.transfer", "", "a curve cannot be corrected for it",
+            f"write response_time of the gauge {entry.place} in the case: the prediction then has the low-pass",
+        )  # fmt: skip
 
 
 def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:

@@ -109,7 +109,8 @@ class DataSection(Part):
     sweeps: tuple[Sweep, ...] = ()
     impacts: tuple[Impact, ...] = ()
     tach: Tach | None = None
-    """Needed for recordings of channels that are read by orders, and for sweeps."""
+    """Needed for recordings of channels that are read by orders, and for sweeps; of root gauges the speed of the table
+    serves without one."""
 
     @model_validator(mode="after")
     def _signs(self) -> "DataSection":
@@ -185,6 +186,9 @@ class ChannelTable(Part):
     orders: tuple[Annotated[float, Field(ge=0.0)], ...] | None = None
     """Per turn of the reference gear, 0 is the mean; from tooth numbers when left out. Of a resonance speed the one
     order that meets it."""
+    windows: tuple[prediction.RootWindow, ...] | None = None
+    """Of a root_strain: numbers of its curve that are known, each a column `<channel>.<window>`, or the column of the
+    channel where it is one; all when left out."""
     transfer: Transfer | None = None
     signal: Label | None = None
     """Name in recordings, sweeps and blows; that of the channel when left out."""
@@ -207,6 +211,15 @@ class Doubt(Part):
     """Those whose readings it touches."""
 
 
+class Inspection(Part):
+    """What gear metrology, an alignment or a contact pattern leaves open of an effect whose value the case has."""
+
+    uncertainty: Annotated[float, Quantity("length", above="0 um", at_most="1 mm", example="2 um")]
+    """1 sigma of the measured value."""
+    source: Text
+    """Report or method."""
+
+
 class MeasurementFile(Part):
     """Content of measurement.toml."""
 
@@ -222,5 +235,7 @@ class MeasurementFile(Part):
     channels: Mapping[Label, ChannelTable] = Field(min_length=1)
     costs: Mapping[Text, Annotated[float, Field(gt=0.0)]] = {}
     """Of one sensor more by its quantity, and of one point more by what is changed for it, in any one unit."""
+    inspections: Mapping[Text, Inspection] = {}
+    """By effect, ``misalignment:test.main``: the case has the measured value, here is how well it is known."""
     doubts: tuple[Doubt, ...] = ()
     """What the writer of the set suspects of it; reported as suspected input errors."""

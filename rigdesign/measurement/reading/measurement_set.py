@@ -118,6 +118,8 @@ class MeasurementSet:
     costs: Mapping[str, float] = field(default_factory=dict)
     """Of further sensors and points, as stated."""
     hash: str = ""
+    inspections: Mapping[str, float] = field(default_factory=dict)
+    """Effect -> standard deviation of what an inspection measured of it [m]."""
 
     @cached_property
     def by_channel(self) -> Mapping[str, Mapping[Feature, NDArray[np.float64]]]:

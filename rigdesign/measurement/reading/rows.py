@@ -28,7 +28,15 @@ from rigdesign.measurement.reading.measurement_set import (
     SettingSensor,
 )
 from rigdesign.measurement.reading.table import Table, numbers
-from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, OperatingCondition
+from rigdesign.prediction.model import (
+    ORDER_QUANTITIES,
+    ROOT_WINDOWS,
+    STANDING_QUANTITIES,
+    Channel,
+    Feature,
+    OperatingCondition,
+    RootWindow,
+)
 
 STATIC_TESTS = "standstill"
 """Name of rows that hold numbers of the rig at rest, at the temperature of the room; they need no settings."""
@@ -39,6 +47,11 @@ WHOLE = re.compile(r"[0-9]{1,9}")
 """A repeat as the table may have it."""
 SHOWN = 5
 """Columns that are named of those not described."""
+
+
+def window_columns(name: str, windows: Sequence[RootWindow]) -> tuple[str, ...]:
+    """Columns of the windows of a root gauge: that of the channel where it is one."""
+    return (name,) if len(windows) == 1 else tuple(f"{name}.{window}" for window in windows)
 
 
 class Rows:
@@ -111,6 +124,9 @@ class Rows:
         """Readings of the columns by feature; the column of an order channel is its mean."""
         found: dict[Feature, NDArray[np.float64]] = {}
         for name, channel in channels.items():
+            if channel.channel.quantity == "root_strain":
+                found |= self._windows(channel.channel, points)
+                continue
             if name not in self._columns:
                 continue
             if channel.channel.quantity in STANDING_QUANTITIES:
@@ -123,9 +139,22 @@ class Rows:
                 found[Feature(name, point.name)] = self._columns[name][self.rows_of(point.name)]
         return found
 
+    def _windows(
+        self, channel: Channel, points: Sequence[MeasuredPoint]
+    ) -> dict[Feature, NDArray[np.float64]]:
+        """Readings of the columns of a root gauge."""
+        return {
+            Feature(channel.name, point.name, part=window): self._columns[column][self.rows_of(point.name)]
+            for window, column in zip(channel.windows, window_columns(channel.name, channel.windows))
+            if column in self._columns
+            for point in points
+        }
+
     def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[DataFinding]:
         """What the table holds that is not used, readings that cannot be, and a last row that was cut."""
         known = {*KEYS, *self._document.settings, *channels}
+        for name, one in channels.items():
+            known |= set(window_columns(name, one.channel.windows))
         if self._time_unit is not None:
             known.add(TIME)
         unused = [name for name in self.table.names if name not in known]
@@ -183,10 +212,10 @@ class Rows:
             for name in wanted
             if name not in self.table.places
         ]
-        wanted |= {
-            name: (f"channels.{name}", CHANNELS[entry.quantity], entry.unit)
-            for name, entry in self._document.channels.items()
-        }
+        for name, entry in self._document.channels.items():
+            gauge = entry.quantity == "root_strain"
+            columns = window_columns(name, entry.windows or ROOT_WINDOWS) if gauge else (name,)
+            wanted |= dict.fromkeys(columns, (f"channels.{name}", CHANNELS[entry.quantity], entry.unit))
         for name, (key, measured, unit) in wanted.items():
             if name not in self.table.places:
                 continue

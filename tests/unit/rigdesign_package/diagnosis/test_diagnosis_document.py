@@ -304,11 +304,12 @@ def test_degrees_are_what_an_engineer_reads() -> None:
 
 
 def test_the_page_of_effects_is_that_of_the_catalogue() -> None:
-    cases = [load_case(CASES / name) for name in ("loop_1to1", "loop_hunting", "uhcf_prototype", "uhcf_main")]
+    shipped = ("loop_1to1", "loop_hunting", "uhcf_prototype", "uhcf_main", "strain_gauge_rig")
+    cases = [load_case(CASES / name) for name in shipped]
     written = (CASES / "effects.md").read_text(encoding="utf-8")
     assert written == effects_page(cases), (
         "python -m rigdesign.diagnosis.effects_page cases/loop_1to1 cases/loop_hunting cases/uhcf_prototype "
-        "cases/uhcf_main > cases/effects.md"
+        "cases/uhcf_main cases/strain_gauge_rig > cases/effects.md"
     )
 
 

@@ -7,10 +7,16 @@ import numpy as np
 import pytest
 
 from rigdesign.case import Case
-from rigdesign.diagnosis.catalogue import effects_of, model_of
+from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.prediction.changes import changed_case
-from rigdesign.prediction.model import MEASURED_AGAINST, OWN_MODEL, Channel, OperatingCondition
+from rigdesign.prediction.model import (
+    MEASURED_AGAINST,
+    OWN_MODEL,
+    Channel,
+    OperatingCondition,
+    measured_against,
+)
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 from tests.builders.order import shipped
@@ -34,7 +40,7 @@ def lateral() -> dict[str, Effect]:
 
 @cache
 def predictor() -> Predictor:
-    return Predictor(shipped("loop_1to1"), [POINT], CHANNELS, circuit=model_of(lateral().values()))
+    return Predictor(shipped("loop_1to1"), [POINT], CHANNELS, circuit=measured_against(CHANNELS))
 
 
 def test_sets_without_lateral_channels_keep_their_catalogue() -> None:
@@ -42,7 +48,7 @@ def test_sets_without_lateral_channels_keep_their_catalogue() -> None:
     without = effects_of(case, channels=[TORQUE])
     assert [effect.name for effect in without] == [effect.name for effect in effects_of(case)]
     assert not any(effect.bends for effect in without)
-    assert model_of(without) == MEASURED_AGAINST and model_of(lateral().values()) == OWN_MODEL
+    assert measured_against([]) == MEASURED_AGAINST and measured_against(CHANNELS) == OWN_MODEL
     kinds = {effect.kind for effect in lateral().values() if effect.bends}
     assert kinds == {"unbalance", "shaft_bow", "flange_run_out", "flange_tilt", "bearing_clearance"}
     twisting = case.with_value("drivetrain.shaft_model", "torsional")

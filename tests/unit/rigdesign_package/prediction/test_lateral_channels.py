@@ -15,7 +15,14 @@ from rigdesign.base.errors import UsageError
 from rigdesign.coupling.braced_loop import LoadedCircuit
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import OWN_MODEL, TORSIONAL, Channel, OperatingCondition, Quantity, model_for
+from rigdesign.prediction.model import (
+    OWN_MODEL,
+    TORSIONAL,
+    Channel,
+    OperatingCondition,
+    Quantity,
+    measured_against,
+)
 from rigdesign.prediction.operating import modelled_rig
 from rigdesign.prediction.orders import Orders, shaft_orders
 from rigdesign.prediction.predict import predict
@@ -189,8 +196,11 @@ def test_shafts_that_only_twist_have_no_lateral_motion() -> None:
     channel = probe("a_front", "acceleration", "test.pinion_front", SIDEWAYS["y"])
     with pytest.raises(UsageError, match=r"'a_front': acceleration needs shafts that bend.*shaft_model"):
         predict(shipped("loop_1to1"), [point], [channel], circuit=TORSIONAL)
-    assert model_for([channel]) == OWN_MODEL
-    assert model_for([Channel(name="M", quantity="torque", place="wheel_side", orders=(1.0,))]) == TORSIONAL
+    assert measured_against([channel]) == OWN_MODEL
+    assert (
+        measured_against([Channel(name="M", quantity="torque", place="wheel_side", orders=(1.0,))])
+        == TORSIONAL
+    )
 
 
 @pytest.mark.parametrize(
