@@ -8,12 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tests.builders.paths import CASES
-from tests.virtual_rig import loop_changes
+from tests.virtual_rig import heat_constants, loop_changes, sump_constants
 from tests.virtual_rig.case_reader import read_case
-from tests.virtual_rig.generate_plans import STREAMS, Sensor, TruePoint
-from tests.virtual_rig.heat_constants import draw_constants as draw_heat
-from tests.virtual_rig.heat_constants import nominal
-from tests.virtual_rig.heat_effects import EFFECTS
+from tests.virtual_rig.fzg_drawing import dips, drawn
+from tests.virtual_rig.generate_plans import STREAMS, SUMPS, Sensor, TruePoint
+from tests.virtual_rig.heat_effects import is_heat
 from tests.virtual_rig.heat_truth import HeatTruth, boxes_of
 from tests.virtual_rig.loop import LoopTruth, Point
 from tests.virtual_rig.loop_changes import CHANGES, LoopConstants
@@ -40,17 +39,29 @@ class Constants(NamedTuple):
 @lru_cache(maxsize=4)
 def case_of(rig: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """Tree of a case and its boxes, built once."""
-    tree = read_case(CASES / rig / "case.toml")
+    tree = drawn(read_case(CASES / rig / "case.toml"))
     return tree, boxes_of(tree)
 
 
 def has_loop(rig: str) -> bool:
-    return rig.startswith("loop_")
+    """Whether a rig is marched in time."""
+    return rig.startswith("loop_") or rig == "fzg"
+
+
+def has_sumps(rig: str) -> bool:
+    """Whether its gears run in sumps, without streams of oil."""
+    return dips(case_of(rig)[0])
+
+
+def heat_table(rig: str) -> Mapping[str, heat_constants.Constant]:
+    """Constants of the heat part of a rig."""
+    return sump_constants.CONSTANTS if has_sumps(rig) else heat_constants.CONSTANTS
 
 
 def nominal_constants(rig: str) -> Constants:
     """The middle of the population, without tooth errors."""
-    return Constants(nominal(), LoopConstants() if has_loop(rig) else None, {})
+    heat = {name: constant.value for name, constant in heat_table(rig).items()}
+    return Constants(heat, LoopConstants() if has_loop(rig) else None, {})
 
 
 def draw_rig(
@@ -58,7 +69,7 @@ def draw_rig(
 ) -> Constants:
     """A rig as built."""
     tree, boxes = case_of(rig)
-    heat = draw_heat(rng, shift)
+    heat = {name: heat_constants.drawn(one, rng, shift) for name, one in heat_table(rig).items()}
     loop = None
     if has_loop(rig):
         loop = loop_changes.draw_constants(rng, tree, LoopTruth(tree).meshes, shift=shift)
@@ -93,7 +104,7 @@ class RigTruth:
     def __init__(self, rig: str, constants: Constants, effects: Sequence[Mapping[str, Any]] = ()) -> None:
         self.rig, self.constants = rig, constants
         self.tree, boxes = case_of(rig)
-        hot = {e["effect"]: e["size"] for e in effects if heat_key(e["effect"]) in EFFECTS}
+        hot = {e["effect"]: e["size"] for e in effects if is_heat(e["effect"])}
         self.loop, damping = None, {}
         if constants.loop is not None:
             moving = [e for e in effects if e["effect"].partition(":")[0] in CHANGES]
@@ -188,7 +199,7 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
             continue
         if kind == "bearing":
             shafts = [entry["bearings"][part]["shaft"]]
-        elif kind == "windage":
+        elif kind in ("windage", "churning"):
             shafts = [entry["gears"][part]["shaft"]]
         elif kind == "seal":
             shafts = [part]
@@ -206,12 +217,6 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
         drags=drags,
         tooth_offset=point.tooth_offset,
     )
-
-
-def heat_key(name: str) -> str:
-    """Key of a name in the table of heat effects."""
-    kind, _, place = name.partition(":")
-    return f"film:{place.partition('.')[2]}" if kind == "film" else kind
 
 
 def _heat_point(point: TruePoint) -> dict[str, Any]:
@@ -233,7 +238,7 @@ def true_points(rig: str, plans: Sequence[Any], rng: np.random.Generator | None 
     found = []
     for index, plan in enumerate(plans):
         inlet, flow = {}, {}
-        for stream in STREAMS:
+        for stream in () if has_sumps(rig) else STREAMS:
             box, kind = stream.split(".")
             entry = tree["gearboxes"][box]["oil" if kind == "gear_oil" else "bearing_oil"]
             factor = plan.gear_flow if kind == "gear_oil" else plan.bearing_flow
@@ -242,6 +247,8 @@ def true_points(rig: str, plans: Sequence[Any], rng: np.random.Generator | None 
             if box == "reference" and not has_loop(rig):
                 own = entry["inlet_temperature"] - 273.15
             inlet[stream] = about(own + 273.15, absolute=1.0)
+        for sump in SUMPS if has_sumps(rig) else ():
+            inlet[sump] = about(plan.gear_oil + 273.15, absolute=1.0)
         found.append(
             TruePoint(
                 name=f"P{index + 1:02d}",
