@@ -13,7 +13,7 @@ from tests.virtual_rig.heat_network import OUTSIDE, Loads, Solved
 from tests.virtual_rig.losses_rig import Gearbox
 from tests.virtual_rig.sump_losses import SumpLosses
 
-BARE_PLATE = 0.4
+BARE_PLATE = 0.3
 """Emissivity of a machined clamping field."""
 LEVICH = 0.62
 """Nu = 0.62 Pr^(1/3) Re^(1/2) on R and omega R: laminar boundary layer of a disc at a large Prandtl number (V. G. Levich,
