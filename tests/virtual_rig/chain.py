@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.virtual_rig.generate_plans import SETTING_NOISE, SETTING_OFFSET, Sensor, TruePoint
+from tests.virtual_rig.generate_plans import SETTING_NOISE, SETTING_OFFSET, STREAMS, Sensor, TruePoint
 from tests.virtual_rig.generate_truth import Reading
 
 TACH_JITTER = 2e-4
@@ -54,7 +54,10 @@ class Chain:
 
 
 def draw_chain(
-    sensors: Sequence[Sensor], rng: np.random.Generator, inlets: Sequence[str], flows: Sequence[str]
+    sensors: Sequence[Sensor],
+    rng: np.random.Generator,
+    inlets: Sequence[str] = STREAMS,
+    flows: Sequence[str] = STREAMS,
 ) -> Chain:
     """A healthy measuring system; inlets, flows : oil streams whose temperature and flow are read."""
     return Chain(

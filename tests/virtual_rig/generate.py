@@ -61,8 +61,7 @@ def make_set(
     if spec.get("noise", 1.0) != 1.0:
         own = [replace(s, noise=s.noise * spec["noise"]) for s in own]
     constants = draw_rig(rig, rng, own, shift=shift)
-    inlets, flows = streams(rig)
-    chain = draw_chain(own, rng, inlets, flows)
+    chain = draw_chain(own, rng, *streams(rig))
     if "rig_seed" in spec:
         rng = np.random.default_rng([seed, RIGS.index(rig), *spec.get("kind", "given").encode()])
     points = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
