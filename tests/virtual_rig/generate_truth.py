@@ -14,8 +14,12 @@ from tests.virtual_rig.fzg_drawing import dips, drawn
 from tests.virtual_rig.generate_plans import STREAMS, SUMPS, Sensor, TruePoint
 from tests.virtual_rig.heat_effects import is_heat
 from tests.virtual_rig.heat_truth import HeatTruth, boxes_of
-from tests.virtual_rig.loop import LoopTruth, Point
+from tests.virtual_rig.loop import COLD, MATERIAL_GROWTH, LoopTruth, Point
 from tests.virtual_rig.loop_changes import CHANGES, LoopConstants
+from tests.virtual_rig.sump_losses import SumpLosses
+
+IRON_GROWTH = 10.5e-6
+"""Of a housing of grey iron [1/K]."""
 
 
 class Reading(NamedTuple):
@@ -126,7 +130,7 @@ class RigTruth:
             if heat:
                 self._read_heat(point, sensors, warm, found)
             if loop and self.loop is not None and orders:
-                self._read_loop(point, sensors, warm["losses"], orders, found)
+                self._read_loop(point, sensors, warm, orders, found)
         if loop and self.loop is not None:
             self._read_standing(sensors, found)
         rows = readings(sensors, points)
@@ -158,12 +162,12 @@ class RigTruth:
         self,
         point: TruePoint,
         sensors: Sequence[Sensor],
-        losses: Mapping[str, float],
+        warm: Mapping[str, Any],
         orders: Sequence[float],
         found: dict,
     ) -> None:
         assert self.loop is not None
-        answer = self.loop.solve(loop_point(self.loop, self.heat, point, losses), orders)
+        answer = self.loop.solve(loop_point(self.loop, self.heat, point, warm), orders)
         for sensor in sensors:
             if sensor.quantity == "torque":
                 found[sensor.name, point.name] = answer.torques[sensor.place]
@@ -176,11 +180,16 @@ class RigTruth:
             if sensor.quantity == "natural_frequency":
                 found[sensor.name, ""] = self.loop.natural_frequencies(int(sensor.place))[-1]
             elif sensor.quantity == "backlash":
-                found[sensor.name, ""] = self.loop.backlash(sensor.place)
+                # the first loops have theirs along the path, in all their sets; a rig is measured at its pitch circle
+                play = self.loop.circumferential_play if has_sumps(self.rig) else self.loop.backlash
+                found[sensor.name, ""] = play(sensor.place)
 
 
-def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mapping[str, float]) -> Point:
-    """Point of the loop with friction and drags of the heat part: its losses, spread over shafts and meshes."""
+def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, warm: Mapping[str, Any]) -> Point:
+    """Point of the loop with friction and drags of the heat part: its losses, spread over shafts and meshes.
+
+    warm : answer of the heat part; where it knows gears and housing, they close the flanks as they expand
+    """
     tree, ratio = heat.tree, heat.model.ratio
     base = ratio[heat.model.reference_shaft]
     drags: dict[str, float] = {}
@@ -190,7 +199,7 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
         for box, part in tree["gearboxes"].items()
         for gear, entry in part["gears"].items()
     }
-    for name, power in losses.items():
+    for name, power in warm["losses"].items():
         box, _, rest = name.partition(".")
         kind, _, part = rest.partition(":")
         entry = tree["gearboxes"][box]
@@ -216,7 +225,21 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
         friction={mesh: power / powers[mesh] for mesh, power in friction.items()},
         drags=drags,
         tooth_offset=point.tooth_offset,
+        growth=_growth(loop, heat, warm) if dips(tree) else {},
     )
+
+
+def _growth(loop: LoopTruth, heat: HeatTruth, warm: Mapping[str, Any]) -> dict[str, float]:
+    """By mesh: radii of the gears that grow more than the distance of their axes, along the path [m]."""
+    model = heat.model
+    assert isinstance(model, SumpLosses)
+    found = {}
+    for mesh in loop.meshes:
+        gears, housing = model.bulk_temperatures(mesh.name.split(".")[0], warm)
+        distance = sum(mesh.working_radii)
+        wider = MATERIAL_GROWTH * (gears - COLD) - IRON_GROWTH * (housing - COLD)
+        found[mesh.name] = wider * distance * math.sin(mesh.working_angle)
+    return found
 
 
 def _heat_point(point: TruePoint) -> dict[str, Any]:

@@ -77,4 +77,6 @@ class SumpBox(Box):
         return float(self.box["bearings"][self.bearing(shaft, plate.split("_")[1])]["outside"]) / 2.0
 
     def _hidden_ways(self) -> None:
-        """None."""
+        """None; but gears in mesh touch."""
+        for mesh in self.box["meshes"].values():
+            self.net.join(self.rim[mesh["pinion"]], self.rim[mesh["wheel"]], 0.0, 0.0, 1.0, "flank")

@@ -94,6 +94,11 @@ class SumpField(FieldModel):
         self.box, self.model, self.c = box, model, model.c
         self.films = SumpFilms(box, model)
 
+    def _joint(self, name: str, run: Gearbox) -> float:
+        if name != "flank":
+            return super()._joint(name, run)
+        return 1.0 / (self.c["flank_contact"] * run.relative_speed**0.5 * max(run.relative_torque, 0.01) ** 0.25)
+
     def _guess(self, run: Gearbox, room: float) -> np.ndarray:
         guess = np.full(self.box.net.size, 0.8 * run.gear_inlet + 0.2 * room)
         for name in run.entry["bearings"]:
