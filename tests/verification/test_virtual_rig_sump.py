@@ -113,8 +113,8 @@ RESOLVED = {
     "meshes": ("normal_module", "centre_distance", "pressure_angle", "helix_angle"),
 }
 HOUSING = (
-    "wall_thickness", "floor_thickness", "top_thickness", "end_wall_thickness", "end_seal_width", "shaft_height", "width",
-    "height", "warm_length", "material",
+    "wall_thickness", "floor_thickness", "top_thickness", "end_wall_thickness", "end_seal_width", "shaft_height",
+    "width", "height", "warm_length", "material",
 )  # fmt: skip
 
 
@@ -143,7 +143,9 @@ def test_drawing_of_the_circuit_is_what_the_case_resolves_to():
     for name, shaft in power.shafts.items():
         (section,), own = shaft.sections, drawn["shafts"][name]
         assert same(own["sections"][0], section, ("length", "outer_diameter", "inner_diameter")), name
-        assert same(own["discs"]["coupling_half"], shaft.discs["coupling_half"], ("position", "inertia")), name
+        assert same(own["discs"]["coupling_half"], shaft.discs["coupling_half"], ("position", "inertia")), (
+            name
+        )
     for name, coupling in power.couplings.items():
         assert same(drawn["couplings"][name], coupling, ("torsional_stiffness", "torsional_damping"))
         assert list(coupling.shafts) == drawn["couplings"][name]["shafts"]
@@ -199,7 +201,11 @@ def test_both_bounds_can_be_solved(name):
 
 def test_every_constant_matters():
     constants = nominal_constants("fzg").heat
-    point = {**FULL, "speed": 60.0 * math.pi, "inlet_temperature": {"test.gear_oil": 340.0, "slave.gear_oil": 340.0}}
+    point = {
+        **FULL,
+        "speed": 60.0 * math.pi,
+        "inlet_temperature": {"test.gear_oil": 340.0, "slave.gear_oil": 340.0},
+    }
     base = truth().solve(point)
     for name, entry in sump_constants.CONSTANTS.items():
         moved = truth(constants={name: constants[name] + step_of(entry)}).solve(point)
@@ -222,7 +228,9 @@ def test_loop_pays_what_the_heat_says():
     rig = RigTruth("fzg", nominal_constants("fzg"))
     own = [s for s in sensors("fzg", "sparse") if s.quantity in ("torque", "motor_power")]
     point = true_points("fzg", plan_points("fzg", 9))[4:5]
-    found = dict(zip(((r.channel, r.order) for r in readings(own, point)), rig.values(point, own), strict=False))
+    found = dict(
+        zip(((r.channel, r.order) for r in readings(own, point)), rig.values(point, own), strict=False)
+    )
     assert abs(found["M_1", 0.0]) == pytest.approx(point[0].torque, rel=0.03)
     assert found["P_motor", 0.0] == pytest.approx(990.0, rel=0.05)
     assert rig.loop.cycle_turns == 3
@@ -235,7 +243,9 @@ def test_candidates_are_what_the_checker_can_name():
     assert not set(names) & set(outside)
     assert {"bearing_loss:slave", "film:test.oil", "mesh_stiffness:test.main"} <= set(names)
     assert {"churning_loss:test", "oil_level:slave", "x_absorber:wheel_side"} <= set(outside)
-    assert not any(name.startswith(("spline_stiffness", "jet", "leak", "bypass", "pump")) for name in (*names, *outside))
+    assert not any(
+        name.startswith(("spline_stiffness", "jet", "leak", "bypass", "pump")) for name in (*names, *outside)
+    )
 
 
 # ---------------------------------------------------------------- sets
@@ -268,7 +278,9 @@ def blunt(monkeypatch):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_set_of_every_kind_is_made_and_loads(kind, blunt, tmp_path):
-    entry = make_set("fzg", {"kind": kind, "sensors": "sparse", "plan": 9, "baseline": kind == "single"}, 11, tmp_path)
+    entry = make_set(
+        "fzg", {"kind": kind, "sensors": "sparse", "plan": 9, "baseline": kind == "single"}, 11, tmp_path
+    )
     assert entry["rig"] == "fzg" and len(entry["effects"]) == {"none": 0, "pair": 2}.get(kind, 1)
     folder = tmp_path / "set_1" if kind == "single" else tmp_path
     measured = load_measurement(folder, load_case(ROOT / "cases" / "fzg"))
@@ -278,9 +290,17 @@ def test_a_set_of_every_kind_is_made_and_loads(kind, blunt, tmp_path):
     assert kind != "single" or measured.baseline is not None
 
 
-DRAWN = {"uhcf_prototype": "b9ef77f6b14eb5af", "loop_1to1": "1507af575b5a58b8", "loop_hunting": "1938eaf5cf747d81"}
+DRAWN = {
+    "uhcf_prototype": "b9ef77f6b14eb5af",
+    "loop_1to1": "1507af575b5a58b8",
+    "loop_hunting": "1938eaf5cf747d81",
+}
 """Of rig, measuring system and points, drawn by seed 4; from before the fourth rig was put in."""
-WRITTEN = {"uhcf_prototype": "8a4d1dab008402ad", "loop_1to1": "45f48a6a475e3e72", "loop_hunting": "868f0e357a0e4633"}
+WRITTEN = {
+    "uhcf_prototype": "8a4d1dab008402ad",
+    "loop_1to1": "45f48a6a475e3e72",
+    "loop_hunting": "868f0e357a0e4633",
+}
 """Of the files of a healthy set of three points each; last digits may depend on the machine."""
 
 
@@ -299,7 +319,9 @@ def test_other_rigs_are_drawn_as_before(rig):
 @pytest.mark.slow
 @pytest.mark.parametrize("rig", WRITTEN)
 def test_sets_of_the_other_rigs_are_as_before(rig, blunt, tmp_path):
-    make_set(rig, {"kind": "none", "sensors": "usual", "plan": 9, "baseline": rig == "loop_1to1"}, 4, tmp_path)
+    make_set(
+        rig, {"kind": "none", "sensors": "usual", "plan": 9, "baseline": rig == "loop_1to1"}, 4, tmp_path
+    )
     digest = hashlib.sha256()
     for file in sorted(path for path in tmp_path.rglob("*") if path.is_file()):
         digest.update(file.read_bytes())

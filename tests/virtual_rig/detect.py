@@ -302,8 +302,8 @@ def _version(rig: str) -> str:
     """Hash of the truth's own sources and the case: sensitivities are computed again when one changes."""
     here = Path(__file__).resolve().parent
     digest = hashlib.sha256()
-    for pattern in ("loop*.py", "teeth.py", "heat*.py", "losses*.py", "oil*.py", "sump*.py", "fzg*.py", "case_reader.py",
-                    "generate_plans.py", "generate_truth.py"):  # fmt: skip
+    for pattern in ("loop*.py", "teeth.py", "heat*.py", "losses*.py", "oil*.py", "sump*.py", "fzg*.py",
+                    "case_reader.py", "generate_plans.py", "generate_truth.py"):  # fmt: skip
         for file in sorted(here.glob(pattern)):
             digest.update(file.read_bytes())
     digest.update((here.parents[1] / "cases" / rig / "case.toml").read_bytes())

@@ -47,7 +47,8 @@ HOUSING: Mapping[str, Any] = {
     },
 }  # fmt: skip
 LENGTHS: Mapping[str, tuple[float, float]] = {
-    "test_pinion": (0.184, 0.184), "test_wheel": (0.184, 0.184), "slave_pinion": (0.205, 0.0), "slave_wheel": (0.28, 0.0),
+    "test_pinion": (0.184, 0.184), "test_wheel": (0.184, 0.184),
+    "slave_pinion": (0.205, 0.0), "slave_wheel": (0.28, 0.0),
 }  # fmt: skip
 """Of each shaft, and where the half of its coupling sits [m]."""
 COUPLING_HALF = 7.31e-4

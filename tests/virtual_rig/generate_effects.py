@@ -93,7 +93,8 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
     if catalogue:
         places = {
             "coupling_order_2": couplings, "coupling_stiffness": couplings, "coupling_damping": couplings,
-            "spline_stiffness": splined, "mesh_stiffness": meshes, "mesh_damping": meshes, "inertia": [*gears, "motor"], "motor_ripple": [""],
+            "spline_stiffness": splined,
+            "mesh_stiffness": meshes, "mesh_damping": meshes, "inertia": [*gears, "motor"], "motor_ripple": [""],
             "bracing_drift": [""],
         }  # fmt: skip
         kinds = [kind for kind, entry in LOOP.items() if entry.catalogue]

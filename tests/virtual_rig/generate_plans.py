@@ -150,8 +150,9 @@ _PLACES: Mapping[str, tuple[float, float, float]] = {
 }  # fmt: skip
 """Thermocouples of the prototype [m]: top, side walls warm and cold, end walls, clamping field."""
 _FZG_PLACES: Mapping[str, tuple[float, float, float]] = {
-    "TC01": (0.073, 0.0, 0.220), "TC02": (0.073, 0.140, 0.150), "TC03": (0.0, 0.0, 0.190), "TC04": (0.073, -0.140, 0.150),
-    "TC05": (0.146, 0.0, 0.190), "TC06": (0.073, 0.140, 0.050), "TC07": (0.0, -0.110, 0.040), "TC08": (0.073, 0.240, 0.0),
+    "TC01": (0.073, 0.0, 0.220), "TC02": (0.073, 0.140, 0.150), "TC03": (0.0, 0.0, 0.190),
+    "TC04": (0.073, -0.140, 0.150), "TC05": (0.146, 0.0, 0.190), "TC06": (0.073, 0.140, 0.050),
+    "TC07": (0.0, -0.110, 0.040), "TC08": (0.073, 0.240, 0.0),
 }  # fmt: skip
 """Of the test gearbox of the FZG rig: top, side walls over and in the sump, end walls, clamping field."""
 

@@ -91,7 +91,15 @@ class Box:
     def _field_lines(self) -> list[float]:
         """Lines along the shafts that the field under the box takes over."""
         x, parts = self.lines.x, self.lines.parts
-        return [x[0], x[1], x[parts["cold_front"][1]], 0.5 * self.length, x[parts["cold_rear"][0]], x[-2], x[-1]]
+        return [
+            x[0],
+            x[1],
+            x[parts["cold_front"][1]],
+            0.5 * self.length,
+            x[parts["cold_rear"][0]],
+            x[-2],
+            x[-1],
+        ]
 
     def _zones(self, shaft: str) -> list[Zone]:
         """Stretches of a shaft from the front."""

@@ -1,7 +1,7 @@
 """Cells of a housing over a sump: one chamber between two end walls, roller bearings in these, gears half in the oil.
 
-The sump is held at a temperature, so it is no unknown: every film of oil ends there. Only the oil in a bearing has a cell
-of its own.
+The sump is held at a temperature, so it is no unknown: every film of oil ends there. Only the oil in a bearing has a
+cell of its own.
 """
 
 import numpy as np
@@ -23,7 +23,11 @@ class SumpBox(Box):
 
     def _stations(self) -> tuple[tuple[str, ...], tuple[float, ...], tuple[int, ...]]:
         end = self.house["end_wall_thickness"]
-        return ("end_front", "warm", "end_rear"), (end, self.house["warm_length"], end), (1, 4 * self.refine, 1)
+        return (
+            ("end_front", "warm", "end_rear"),
+            (end, self.house["warm_length"], end),
+            (1, 4 * self.refine, 1),
+        )
 
     def _field_lines(self) -> list[float]:
         x = self.lines.x
@@ -36,9 +40,14 @@ class SumpBox(Box):
         land, d = (house["warm_length"] - width) / 2.0, entry["outside_diameter"]
 
         def half(side: str) -> list[Zone]:
-            over, bearing = entry[f"overhang_{side}"], self.box["bearings"][self.bearing(shaft, side)]["width"]
+            over, bearing = (
+                entry[f"overhang_{side}"],
+                self.box["bearings"][self.bearing(shaft, side)]["width"],
+            )
             gap = house["end_wall_thickness"] - bearing
-            ends: list[Zone] = [("outside", side, over, d, 2 * r), ("end_seal", side, gap, d, 1)] if over else []
+            ends: list[Zone] = (
+                [("outside", side, over, d, 2 * r), ("end_seal", side, gap, d, 1)] if over else []
+            )
             return [*ends, ("journal", side, bearing, d, 2 * r), ("warm", side, land, d, 2 * r)]
 
         return [*half("front"), ("gear", "", width, d, 1), *reversed(half("rear"))]

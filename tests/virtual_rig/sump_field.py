@@ -16,8 +16,8 @@ from tests.virtual_rig.sump_losses import SumpLosses
 BARE_PLATE = 0.3
 """Emissivity of a machined clamping field."""
 LEVICH = 0.62
-"""Nu = 0.62 Pr^(1/3) Re^(1/2) on R and omega R: laminar boundary layer of a disc at a large Prandtl number (V. G. Levich,
-Physicochemical Hydrodynamics, 1962; Pr over 100, omega R^2/nu below 2e5)."""
+"""Nu = 0.62 Pr^(1/3) Re^(1/2) on R and omega R: laminar boundary layer of a disc at a large Prandtl number (V. G.
+Levich, Physicochemical Hydrodynamics, 1962; Pr over 100, omega R^2/nu below 2e5)."""
 
 
 class SumpFilms(FilmModel):
@@ -60,13 +60,19 @@ class SumpFilms(FilmModel):
         if group.startswith("gear_side_"):
             return self._side(group.removeprefix("gear_side_"), run)
         if group == "shaft_warm":
-            mist = films.drum(run.speed[self.model.reference_shaft], self.box.box["bearings"]["pinion_front"]["diameter"], 1.0)
+            mist = films.drum(
+                run.speed[self.model.reference_shaft],
+                self.box.box["bearings"]["pinion_front"]["diameter"],
+                1.0,
+            )
             return c["film_drum"] * mist * (1.0 + self.size("film:shafts"))
         if group == "end_seal":
             return c["film_seal_end"] * (1.0 + self.size("film:shafts"))
         entry = next(iter(run.entry["bearings"].values()))
         ring = ("outer_raceway", "outside") if group == "bearing" else ("inner_raceway", "diameter")
-        share = entry[ring[0]] / entry[ring[1]]  # the film acts on the raceway, the cell has the area of the seat
+        share = (
+            entry[ring[0]] / entry[ring[1]]
+        )  # the film acts on the raceway, the cell has the area of the seat
         key = "raceway_outer" if group == "bearing" else "raceway_inner"
         return c[key] * share * (1.0 + self.size("bearing_film"))
 
@@ -97,7 +103,9 @@ class SumpField(FieldModel):
     def _joint(self, name: str, run: Gearbox) -> float:
         if name != "flank":
             return super()._joint(name, run)
-        return 1.0 / (self.c["flank_contact"] * run.relative_speed**0.5 * max(run.relative_torque, 0.01) ** 0.25)
+        return 1.0 / (
+            self.c["flank_contact"] * run.relative_speed**0.5 * max(run.relative_torque, 0.01) ** 0.25
+        )
 
     def _guess(self, run: Gearbox, room: float) -> np.ndarray:
         guess = np.full(self.box.net.size, 0.8 * run.gear_inlet + 0.2 * room)

@@ -70,8 +70,8 @@ class SumpLosses(LossModel):
     def bulk_temperatures(self, box: str, warm: Mapping[str, Any]) -> tuple[float, float]:
         """Gears and housing of a gearbox [K]; of one that is not solved from the one that is.
 
-        warm : answer of the heat part. Gears that are not solved stand over their sump as the losses of their teeth over
-        the width do; the housing follows its sump.
+        warm : answer of the heat part. Gears that are not solved stand over their sump as the losses of their teeth
+        over the width do; the housing follows its sump.
         """
         solved = next(name for name, entry in self.tree["gearboxes"].items() if "housing" in entry)
         own = warm["temperatures"]
@@ -81,7 +81,9 @@ class SumpLosses(LossModel):
         if box == solved:
             return gears, housing
         here, there = (warm["oil_outlets"][f"{name}.gear_oil"] for name in (solved, box))
-        heat = [warm["losses"][f"{name}.mesh:main"] / self.paths[name, "main"].width for name in (solved, box)]
+        heat = [
+            warm["losses"][f"{name}.mesh:main"] / self.paths[name, "main"].width for name in (solved, box)
+        ]
         return there + (gears - here) * heat[1] / heat[0], there + (housing - here)
 
     def sump(self, run: Gearbox) -> dict[str, float]:
