@@ -12,7 +12,7 @@ from rigdesign.case import load_case
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement import load_measurement
 from tests.builders.paths import ROOT
-from tests.virtual_rig import fzg_drawing, generate_plans, sump_constants
+from tests.virtual_rig import fzg_drawing, generate, generate_plans, sump_constants
 from tests.virtual_rig.chain import draw_chain
 from tests.virtual_rig.generate import KINDS, Detectors, make_set
 from tests.virtual_rig.generate_effects import candidates, kind_of
@@ -274,6 +274,7 @@ def blunt(monkeypatch):
     )
     short = {rig: points[:3] for rig, points in generate_plans._PLANS.items()}
     monkeypatch.setattr(generate_plans, "_PLANS", short)
+    monkeypatch.setattr(generate, "TRIAL_POINTS", 1)
 
 
 @pytest.mark.parametrize("kind", KINDS)
