@@ -98,7 +98,7 @@ def test_case_tree_follows_extends_and_drops_remarks(tmp_path):
     ids=lambda p: f"{p.parent.name}-{p.stem}",
 )
 def test_every_shipped_case_is_read(path):
-    """All but two that depend on the defaults of the tool and on dip lubrication: the virtual rig knows neither."""
+    """All but two that depend on the defaults of the tool; the drawing of one of them is in the virtual rig."""
     tree = read_case(path)
     assert all(isinstance(b["oil"]["flow"], float) for b in tree.get("gearboxes", {}).values())
 

@@ -53,13 +53,18 @@ class Chain:
     """Out of catalogue: share by which broadband noise of torque and angle grows at low torque."""
 
 
-def draw_chain(sensors: Sequence[Sensor], rng: np.random.Generator) -> Chain:
-    """A healthy measuring system."""
+def draw_chain(
+    sensors: Sequence[Sensor],
+    rng: np.random.Generator,
+    inlets: Sequence[str] = STREAMS,
+    flows: Sequence[str] = STREAMS,
+) -> Chain:
+    """A healthy measuring system; inlets, flows : oil streams whose temperature and flow are read."""
     return Chain(
         offset={s.name: s.offset * rng.standard_normal() for s in sensors},
         scale={s.name: s.scale * rng.standard_normal() for s in sensors},
-        inlet={stream: SETTING_OFFSET["inlet_temperature"] * rng.standard_normal() for stream in STREAMS},
-        flow={stream: SETTING_OFFSET["flow"] * rng.standard_normal() for stream in STREAMS},
+        inlet={stream: SETTING_OFFSET["inlet_temperature"] * rng.standard_normal() for stream in inlets},
+        flow={stream: SETTING_OFFSET["flow"] * rng.standard_normal() for stream in flows},
         room=SETTING_OFFSET["ambient_temperature"] * rng.standard_normal(),
         lock=SETTING_OFFSET["torque"] * rng.standard_normal(),
         angle=TACH_ZERO * rng.standard_normal(),
@@ -233,9 +238,10 @@ def write_set(
 
 def _settings(sensors: Sequence[Sensor], points: Sequence[TruePoint]) -> dict[str, tuple[str, str]]:
     found = {"n": ("speed", ""), "T_brace": ("torque", "")}
-    for stream in STREAMS:
+    for stream in points[0].inlet:
         found[f"T_{stream.replace('.', '_')}_in"] = ("inlet_temperature", stream)
-        found[f"Q_{stream.replace('.', '_')}"] = ("flow", stream)
+        if stream in points[0].flow:
+            found[f"Q_{stream.replace('.', '_')}"] = ("flow", stream)
     found["T_room"] = ("ambient_temperature", "")
     return found
 

@@ -29,7 +29,6 @@ from tests.virtual_rig import heat_constants
 from tests.virtual_rig.chain import TACH_ZERO
 from tests.virtual_rig.generate_plans import (
     SETTING_OFFSET,
-    STREAMS,
     Sensor,
     Sensors,
     TruePoint,
@@ -42,6 +41,7 @@ from tests.virtual_rig.generate_truth import (
     RigTruth,
     case_of,
     has_loop,
+    heat_table,
     nominal_constants,
     readings,
     true_points,
@@ -248,7 +248,7 @@ def _sensitivities(rig: str) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
 def _steps(rig: str, middle: Constants):  # type: ignore[no-untyped-def]
     """Constants moved by one spread each, with the parts of the truth they touch."""
     for name in middle.heat:
-        moved = {**middle.heat, name: middle.heat[name] + heat_constants.sigma(name)}
+        moved = {**middle.heat, name: middle.heat[name] + heat_constants.step_of(heat_table(rig)[name])}
         yield name, middle._replace(heat=moved), {"heat": True, "loop": False}
     if middle.loop is None:
         return
@@ -272,11 +272,13 @@ def _input_columns(
 ) -> list[np.ndarray]:
     """Answers to settings that were other than read: inlets, flows, bracing torque, room."""
     moves = []
-    for stream in STREAMS:
+    for stream in points[0].inlet:
         for kind, key, step in (
             ("inlet", "inlet", SETTING_OFFSET["inlet_temperature"]),
             ("flow", "flow", None),
         ):
+            if stream not in getattr(points[0], key):
+                continue
             moved = [
                 replace(p, **{key: {**getattr(p, key), stream: getattr(p, key)[stream] + step
                                     if step else getattr(p, key)[stream] * (1.0 + SETTING_OFFSET["flow"])}})
@@ -300,8 +302,8 @@ def _version(rig: str) -> str:
     """Hash of the truth's own sources and the case: sensitivities are computed again when one changes."""
     here = Path(__file__).resolve().parent
     digest = hashlib.sha256()
-    for pattern in ("loop*.py", "teeth.py", "heat*.py", "losses*.py", "oil*.py", "case_reader.py", "generate_plans.py",
-                    "generate_truth.py"):  # fmt: skip
+    for pattern in ("loop*.py", "teeth.py", "heat*.py", "losses*.py", "oil*.py", "sump*.py", "fzg*.py",
+                    "case_reader.py", "generate_plans.py", "generate_truth.py"):  # fmt: skip
         for file in sorted(here.glob(pattern)):
             digest.update(file.read_bytes())
     digest.update((here.parents[1] / "cases" / rig / "case.toml").read_bytes())

@@ -1,4 +1,4 @@
-"""Blind measurement sets of the three rigs.
+"""Blind measurement sets of the four rigs.
 
     python tests/virtual_rig/generate.py --rig loop_1to1 --kind single --seed 7 --out DIR [--count 20] [--baseline]
 
@@ -26,7 +26,7 @@ if __package__ in (None, ""):
 from tests.virtual_rig.chain import draw_chain, put_in, repeats, systematic, write_set
 from tests.virtual_rig.detect import Detector, detector
 from tests.virtual_rig.generate_effects import CHAIN_KINDS, draw_effect, draw_input_error, reach, sized
-from tests.virtual_rig.generate_plans import PLANS, RIGS, Sensor, TruePoint, plan_points, sensors
+from tests.virtual_rig.generate_plans import PLANS, RIGS, Sensor, TruePoint, plan_points, sensors, streams
 from tests.virtual_rig.generate_truth import Constants, RigTruth, draw_rig, has_loop, readings, true_points
 from tests.virtual_rig.loop_changes import CHANGES
 
@@ -61,7 +61,7 @@ def make_set(
     if spec.get("noise", 1.0) != 1.0:
         own = [replace(s, noise=s.noise * spec["noise"]) for s in own]
     constants = draw_rig(rig, rng, own, shift=shift)
-    chain = draw_chain(own, rng)
+    chain = draw_chain(own, rng, *streams(rig))
     if "rig_seed" in spec:
         rng = np.random.default_rng([seed, RIGS.index(rig), *spec.get("kind", "given").encode()])
     points = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
@@ -119,7 +119,8 @@ class _Set:
         self.rows = readings(own, points)
         self._base: np.ndarray | None = None
         self._known: dict[str, np.ndarray] = {}
-        self.chain = draw_chain([replace(s, offset=0.0, scale=0.0) for s in own], np.random.default_rng(0))
+        exact = [replace(s, offset=0.0, scale=0.0) for s in own]
+        self.chain = draw_chain(exact, np.random.default_rng(0), *streams(rig))
 
     def truth(self, effects: Sequence[Mapping[str, Any]]) -> np.ndarray:
         """Readings [SI] without sensor errors, with the effects of the rig itself."""

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from tests.virtual_rig.chain import UNITS
-from tests.virtual_rig.generate_plans import STREAMS, Sensor, TruePoint
+from tests.virtual_rig.generate_plans import Sensor, TruePoint
 from tests.virtual_rig.generate_truth import case_of, has_loop
-from tests.virtual_rig.heat_effects import EFFECTS, effect_names, effect_of
+from tests.virtual_rig.heat_effects import EFFECTS, effect_names, effect_of, heat_key
 
 
 @dataclass(frozen=True)
@@ -89,9 +89,11 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
     couplings = list(tree["drivetrain"]["couplings"])
     # a catalogue changes reliefs that a gear has; on another gear a relief is news to the case
     relieved = [gear for gear in gears if _flank(tree, gear).get("tip_relief_length", 0.0) > 0.0]
+    splined = [gear for gear in gears if "spline" in _gear(tree, gear)]
     if catalogue:
         places = {
             "coupling_order_2": couplings, "coupling_stiffness": couplings, "coupling_damping": couplings,
+            "spline_stiffness": splined,
             "mesh_stiffness": meshes, "mesh_damping": meshes, "inertia": [*gears, "motor"], "motor_ripple": [""],
             "bracing_drift": [""],
         }  # fmt: skip
@@ -112,9 +114,14 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
     return [*found, *heat]
 
 
-def _flank(tree: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
+def _gear(tree: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
     box, name = gear.split(".")
-    flank: Mapping[str, Any] = tree["gearboxes"][box]["gears"][name].get("flank", {})
+    entry: Mapping[str, Any] = tree["gearboxes"][box]["gears"][name]
+    return entry
+
+
+def _flank(tree: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
+    flank: Mapping[str, Any] = _gear(tree, gear).get("flank", {})
     return flank
 
 
@@ -122,9 +129,9 @@ def draw_effect(rig: str, own: Sequence[Sensor], rng: np.random.Generator, *, ca
                 ) -> dict[str, Any]:  # fmt: skip
     """An effect without its size: kind drawn evenly, then place, sign, phase, order, tooth."""
     names = [n for n in candidates(rig, own, catalogue=catalogue) if kind_of(n).family not in avoid]
-    kinds = sorted({_group(n) for n in names})
+    kinds = sorted({heat_key(n) for n in names})
     chosen = kinds[rng.integers(len(kinds))]
-    mine = [n for n in names if _group(n) == chosen]
+    mine = [n for n in names if heat_key(n) == chosen]
     name = mine[rng.integers(len(mine))]
     entry = kind_of(name)
     effect: dict[str, Any] = {"effect": name, "unit": entry.unit, "family": entry.family}
@@ -161,10 +168,14 @@ def draw_input_error(
 ) -> dict[str, Any]:
     """An error of sensor or input, with its size: three to ten of its spreads, or a swap."""
     cells = [s for s in own if s.quantity == "torque"]
-    kinds = [k for k in SENSOR_KINDS if k not in ("torque_zero", "angle_zero") or cells]
+    kinds = [
+        k
+        for k in SENSOR_KINDS
+        if (k not in ("torque_zero", "angle_zero") or cells) and (k != "flow_scale" or points[0].flow)
+    ]
     kind = kinds[rng.integers(len(kinds))]
     big = float(rng.choice([-1.0, 1.0]) * math.exp(rng.uniform(math.log(3.0), math.log(10.0))))
-    stream = STREAMS[rng.integers(2)]
+    stream = list(points[0].inlet)[rng.integers(2)]
 
     def one(group: Sequence[Sensor]) -> Sensor:
         return group[rng.integers(len(group))]
@@ -212,11 +223,6 @@ def draw_input_error(
 
 def _input(name: str, size: float, unit: str) -> dict[str, Any]:
     return {"effect": name, "size": size, "unit": unit, "family": "input"}
-
-
-def _group(name: str) -> str:
-    kind, _, place = name.partition(":")
-    return f"film:{place.partition('.')[2]}" if kind == "film" else kind
 
 
 def _teeth(rig: str, gear: str) -> int:

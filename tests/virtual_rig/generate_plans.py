@@ -1,4 +1,4 @@
-"""Operating points and sensors of the three rigs: fixed plans, three sets of sensors each."""
+"""Operating points and sensors of the rigs: fixed plans, three sets of sensors each."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,19 +6,23 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Sensors = Literal["rich", "usual", "sparse"]
-RIGS = ("uhcf_prototype", "loop_1to1", "loop_hunting")
+RIGS = ("uhcf_prototype", "loop_1to1", "loop_hunting", "fzg")
+"""The seed of a set has the place of its rig: new ones come last."""
 PLANS = (9, 12, 15)
 LITRE = 1e-3 / 60.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """One operating point: speed [rpm], torque [N m], oil inlets [degC], factors of the flows, room [degC]."""
+    """One operating point: speed [rpm], torque [N m], oil inlets [degC], factors of the flows, room [degC].
+
+    Of a rig with sumps ``gear_oil`` is the temperature both are held at; it has no other oil.
+    """
 
     speed: float
     torque: float
     gear_oil: float
-    bearing_oil: float
+    bearing_oil: float = 0.0
     gear_flow: float = 1.0
     bearing_flow: float = 1.0
     room: float = 22.0
@@ -108,8 +112,33 @@ _PLANS = {
         Plan(speed=3300, torque=220, gear_oil=50, bearing_oil=50),
         Plan(speed=1200, torque=120, gear_oil=50, bearing_oil=85, bearing_flow=1.5),
     ],
+    "fzg": [  # load stages 4 to 12 of DIN ISO 14635-1, sumps held
+        Plan(speed=2250, torque=372.6, gear_oil=90),
+        Plan(speed=1000, torque=94.1, gear_oil=90),
+        Plan(speed=2250, torque=94.1, gear_oil=60, room=24),
+        Plan(speed=1000, torque=372.6, gear_oil=60),
+        Plan(speed=1500, torque=239.3, gear_oil=90, room=20),
+        Plan(speed=3000, torque=183.4, gear_oil=90),
+        Plan(speed=2250, torque=239.3, gear_oil=110, room=24),
+        Plan(speed=3000, torque=302.0, gear_oil=75),
+        Plan(speed=700, torque=183.4, gear_oil=90, room=19),
+        Plan(speed=1500, torque=135.3, gear_oil=60),
+        Plan(speed=2600, torque=372.6, gear_oil=100, room=25),
+        Plan(speed=1200, torque=302.0, gear_oil=75),
+        Plan(speed=2250, torque=60.8, gear_oil=90),
+        Plan(speed=1750, torque=372.6, gear_oil=80, room=20),
+        Plan(speed=3000, torque=94.1, gear_oil=110),
+    ],
 }
 STREAMS = ("test.gear_oil", "test.bearing_oil", "reference.gear_oil", "reference.bearing_oil")
+SUMPS = ("test.gear_oil", "slave.gear_oil")
+"""Oils of the FZG rig: a temperature each, no flow."""
+
+
+def streams(rig: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Oils of a rig whose temperature is read, and those whose flow is."""
+    return (SUMPS, ()) if rig == "fzg" else (STREAMS, STREAMS)
+
 
 _PLACES: Mapping[str, tuple[float, float, float]] = {
     "TC01": (0.133, 0.0, 0.280), "TC02": (0.133, 0.160, 0.190), "TC03": (0.133, -0.160, 0.190),
@@ -120,10 +149,18 @@ _PLACES: Mapping[str, tuple[float, float, float]] = {
     "TC16": (0.141, -0.420, 0.0),
 }  # fmt: skip
 """Thermocouples of the prototype [m]: top, side walls warm and cold, end walls, clamping field."""
+_FZG_PLACES: Mapping[str, tuple[float, float, float]] = {
+    "TC01": (0.073, 0.0, 0.220), "TC02": (0.073, 0.140, 0.150), "TC03": (0.0, 0.0, 0.190),
+    "TC04": (0.073, -0.140, 0.150), "TC05": (0.146, 0.0, 0.190), "TC06": (0.073, 0.140, 0.050),
+    "TC07": (0.0, -0.110, 0.040), "TC08": (0.073, 0.240, 0.0),
+}  # fmt: skip
+"""Of the test gearbox of the FZG rig: top, side walls over and in the sump, end walls, clamping field."""
 
 
 def sensors(rig: str, level: Sensors) -> list[Sensor]:
     """Channels of a rig."""
+    if rig == "fzg":
+        return _fzg(level)
     return _prototype(level) if rig == "uhcf_prototype" else _loop(rig, level)
 
 
@@ -145,6 +182,23 @@ def _prototype(level: Sensors) -> list[Sensor]:
     return [*found, *_outlets(streams), _power(25.0)]
 
 
+def _fzg(level: Sensors) -> list[Sensor]:
+    """Those of a loop without its outlets, and thermocouples as on the prototype."""
+    count = {"rich": 8, "usual": 5, "sparse": 2}[level]
+    found = [sensor for sensor in _loop("fzg", level) if sensor.quantity != "oil_outlet_temperature"]
+    found += [
+        Sensor(name=name, quantity="temperature", place="test", at=at, noise=0.1, offset=0.4, scale=0.015)
+        for name, at in list(_FZG_PLACES.items())[:count]
+    ]
+    if level != "sparse":
+        found.append(_inside("T_gear", "test.gear_test_pinion"))
+    if level == "rich":
+        found.append(_inside("T_gear_wheel", "test.gear_test_wheel"))
+        found.append(_inside("T_bearing_front", "test.bearing_bore_test_pinion_front"))
+        found.append(_inside("T_bearing_rear", "test.bearing_bore_test_wheel_rear"))
+    return found
+
+
 def _loop(rig: str, level: Sensors) -> list[Sensor]:
     orders = loop_orders(rig, level)
     first, second = ("wheel_side", "pinion_side") if rig == "loop_1to1" else ("pinion_side", "wheel_side")
@@ -163,7 +217,8 @@ def _loop(rig: str, level: Sensors) -> list[Sensor]:
                 orders=orders,
             )
         )
-    angles = {"rich": ("test_pinion", "reference_wheel"), "usual": ("test_pinion",), "sparse": ()}[level]
+    other = "slave" if rig == "fzg" else "reference"
+    angles = {"rich": ("test_pinion", f"{other}_wheel"), "usual": ("test_pinion",), "sparse": ()}[level]
     found += [
         Sensor(name=f"phi_{i + 1}", quantity="angle", place=shaft, noise=2e-6, orders=orders[1:])
         for i, shaft in enumerate(angles)
@@ -176,7 +231,7 @@ def _loop(rig: str, level: Sensors) -> list[Sensor]:
     if level == "rich":
         found += [
             Sensor(name=f"play_{box}", quantity="backlash", place=f"{box}.main", noise=4e-6)
-            for box in ("test", "reference")
+            for box in ("test", other)
         ]
     streams = {"rich": STREAMS, "usual": STREAMS[:3], "sparse": STREAMS[:1]}[level]
     return [*found, *_outlets(streams), _power(8.0)]
@@ -184,14 +239,16 @@ def _loop(rig: str, level: Sensors) -> list[Sensor]:
 
 def loop_orders(rig: str, level: Sensors) -> tuple[float, ...]:
     """Orders per turn of the test pinion: mean, shafts, mesh with sidebands; fewer with sparse sensors."""
-    teeth, wheel = (28, 1.0) if rig == "loop_1to1" else (16, 0.64)
+    teeth, wheel = {"loop_1to1": (28, 1.0), "fzg": (16, 2.0 / 3.0)}.get(rig, (16, 0.64))
     shafts = {1.0, 2.0, wheel, 2.0 * wheel} | (
         set() if level == "sparse" else {3.0, 4.0, 3.0 * wheel, 4.0 * wheel}
     )
     bands = {0.0} if level == "sparse" else {-1.0, 0.0, 1.0, -wheel, wheel}
     high = {h * teeth + band for h in (1, 2) for band in bands}
     extra = {0.5 * teeth} if level == "rich" else set()
-    return tuple(sorted(round(order, 6) for order in {0.0} | shafts | high | extra))
+    whole = sorted({0.0} | shafts | high | extra)
+    # thirds stay as they are: the truth looks orders up
+    return tuple(whole) if rig == "fzg" else tuple(round(order, 6) for order in whole)
 
 
 def _inside(name: str, place: str) -> Sensor:

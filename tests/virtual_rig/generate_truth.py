@@ -8,15 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tests.builders.paths import CASES
-from tests.virtual_rig import loop_changes
+from tests.virtual_rig import heat_constants, loop_changes, sump_constants
 from tests.virtual_rig.case_reader import read_case
-from tests.virtual_rig.generate_plans import STREAMS, Sensor, TruePoint
-from tests.virtual_rig.heat_constants import draw_constants as draw_heat
-from tests.virtual_rig.heat_constants import nominal
-from tests.virtual_rig.heat_effects import EFFECTS
+from tests.virtual_rig.fzg_drawing import dips, drawn
+from tests.virtual_rig.generate_plans import STREAMS, SUMPS, Sensor, TruePoint
+from tests.virtual_rig.heat_effects import is_heat
 from tests.virtual_rig.heat_truth import HeatTruth, boxes_of
-from tests.virtual_rig.loop import LoopTruth, Point
+from tests.virtual_rig.loop import COLD, MATERIAL_GROWTH, LoopTruth, Point
 from tests.virtual_rig.loop_changes import CHANGES, LoopConstants
+from tests.virtual_rig.sump_losses import SumpLosses
+
+IRON_GROWTH = 10.5e-6
+"""Of a housing of grey iron [1/K]."""
 
 
 class Reading(NamedTuple):
@@ -40,17 +43,29 @@ class Constants(NamedTuple):
 @lru_cache(maxsize=4)
 def case_of(rig: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """Tree of a case and its boxes, built once."""
-    tree = read_case(CASES / rig / "case.toml")
+    tree = drawn(read_case(CASES / rig / "case.toml"))
     return tree, boxes_of(tree)
 
 
 def has_loop(rig: str) -> bool:
-    return rig.startswith("loop_")
+    """Whether a rig is marched in time."""
+    return rig.startswith("loop_") or rig == "fzg"
+
+
+def has_sumps(rig: str) -> bool:
+    """Whether its gears run in sumps, without streams of oil."""
+    return dips(case_of(rig)[0])
+
+
+def heat_table(rig: str) -> Mapping[str, heat_constants.Constant]:
+    """Constants of the heat part of a rig."""
+    return sump_constants.CONSTANTS if has_sumps(rig) else heat_constants.CONSTANTS
 
 
 def nominal_constants(rig: str) -> Constants:
     """The middle of the population, without tooth errors."""
-    return Constants(nominal(), LoopConstants() if has_loop(rig) else None, {})
+    heat = {name: constant.value for name, constant in heat_table(rig).items()}
+    return Constants(heat, LoopConstants() if has_loop(rig) else None, {})
 
 
 def draw_rig(
@@ -58,7 +73,7 @@ def draw_rig(
 ) -> Constants:
     """A rig as built."""
     tree, boxes = case_of(rig)
-    heat = draw_heat(rng, shift)
+    heat = {name: heat_constants.drawn(one, rng, shift) for name, one in heat_table(rig).items()}
     loop = None
     if has_loop(rig):
         loop = loop_changes.draw_constants(rng, tree, LoopTruth(tree).meshes, shift=shift)
@@ -93,7 +108,7 @@ class RigTruth:
     def __init__(self, rig: str, constants: Constants, effects: Sequence[Mapping[str, Any]] = ()) -> None:
         self.rig, self.constants = rig, constants
         self.tree, boxes = case_of(rig)
-        hot = {e["effect"]: e["size"] for e in effects if heat_key(e["effect"]) in EFFECTS}
+        hot = {e["effect"]: e["size"] for e in effects if is_heat(e["effect"])}
         self.loop, damping = None, {}
         if constants.loop is not None:
             moving = [e for e in effects if e["effect"].partition(":")[0] in CHANGES]
@@ -115,7 +130,7 @@ class RigTruth:
             if heat:
                 self._read_heat(point, sensors, warm, found)
             if loop and self.loop is not None and orders:
-                self._read_loop(point, sensors, warm["losses"], orders, found)
+                self._read_loop(point, sensors, warm, orders, found)
         if loop and self.loop is not None:
             self._read_standing(sensors, found)
         rows = readings(sensors, points)
@@ -147,12 +162,12 @@ class RigTruth:
         self,
         point: TruePoint,
         sensors: Sequence[Sensor],
-        losses: Mapping[str, float],
+        warm: Mapping[str, Any],
         orders: Sequence[float],
         found: dict,
     ) -> None:
         assert self.loop is not None
-        answer = self.loop.solve(loop_point(self.loop, self.heat, point, losses), orders)
+        answer = self.loop.solve(loop_point(self.loop, self.heat, point, warm), orders)
         for sensor in sensors:
             if sensor.quantity == "torque":
                 found[sensor.name, point.name] = answer.torques[sensor.place]
@@ -165,11 +180,16 @@ class RigTruth:
             if sensor.quantity == "natural_frequency":
                 found[sensor.name, ""] = self.loop.natural_frequencies(int(sensor.place))[-1]
             elif sensor.quantity == "backlash":
-                found[sensor.name, ""] = self.loop.backlash(sensor.place)
+                # the first loops have theirs along the path, in all their sets; a rig is measured at its pitch circle
+                play = self.loop.circumferential_play if has_sumps(self.rig) else self.loop.backlash
+                found[sensor.name, ""] = play(sensor.place)
 
 
-def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mapping[str, float]) -> Point:
-    """Point of the loop with friction and drags of the heat part: its losses, spread over shafts and meshes."""
+def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, warm: Mapping[str, Any]) -> Point:
+    """Point of the loop with friction and drags of the heat part: its losses, spread over shafts and meshes.
+
+    warm : answer of the heat part; where it knows gears and housing, they close the flanks as they expand
+    """
     tree, ratio = heat.tree, heat.model.ratio
     base = ratio[heat.model.reference_shaft]
     drags: dict[str, float] = {}
@@ -179,7 +199,7 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
         for box, part in tree["gearboxes"].items()
         for gear, entry in part["gears"].items()
     }
-    for name, power in losses.items():
+    for name, power in warm["losses"].items():
         box, _, rest = name.partition(".")
         kind, _, part = rest.partition(":")
         entry = tree["gearboxes"][box]
@@ -188,7 +208,7 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
             continue
         if kind == "bearing":
             shafts = [entry["bearings"][part]["shaft"]]
-        elif kind == "windage":
+        elif kind in ("windage", "churning"):
             shafts = [entry["gears"][part]["shaft"]]
         elif kind == "seal":
             shafts = [part]
@@ -205,13 +225,21 @@ def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mappi
         friction={mesh: power / powers[mesh] for mesh, power in friction.items()},
         drags=drags,
         tooth_offset=point.tooth_offset,
+        growth=_growth(loop, heat, warm) if dips(tree) else {},
     )
 
 
-def heat_key(name: str) -> str:
-    """Key of a name in the table of heat effects."""
-    kind, _, place = name.partition(":")
-    return f"film:{place.partition('.')[2]}" if kind == "film" else kind
+def _growth(loop: LoopTruth, heat: HeatTruth, warm: Mapping[str, Any]) -> dict[str, float]:
+    """By mesh: radii of the gears that grow more than the distance of their axes, along the path [m]."""
+    model = heat.model
+    assert isinstance(model, SumpLosses)
+    found = {}
+    for mesh in loop.meshes:
+        gears, housing = model.bulk_temperatures(mesh.name.split(".")[0], warm)
+        distance = sum(mesh.working_radii)
+        wider = MATERIAL_GROWTH * (gears - COLD) - IRON_GROWTH * (housing - COLD)
+        found[mesh.name] = wider * distance * math.sin(mesh.working_angle)
+    return found
 
 
 def _heat_point(point: TruePoint) -> dict[str, Any]:
@@ -233,7 +261,7 @@ def true_points(rig: str, plans: Sequence[Any], rng: np.random.Generator | None 
     found = []
     for index, plan in enumerate(plans):
         inlet, flow = {}, {}
-        for stream in STREAMS:
+        for stream in () if has_sumps(rig) else STREAMS:
             box, kind = stream.split(".")
             entry = tree["gearboxes"][box]["oil" if kind == "gear_oil" else "bearing_oil"]
             factor = plan.gear_flow if kind == "gear_oil" else plan.bearing_flow
@@ -242,6 +270,8 @@ def true_points(rig: str, plans: Sequence[Any], rng: np.random.Generator | None 
             if box == "reference" and not has_loop(rig):
                 own = entry["inlet_temperature"] - 273.15
             inlet[stream] = about(own + 273.15, absolute=1.0)
+        for sump in SUMPS if has_sumps(rig) else ():
+            inlet[sump] = about(plan.gear_oil + 273.15, absolute=1.0)
         found.append(
             TruePoint(
                 name=f"P{index + 1:02d}",

@@ -1,5 +1,6 @@
 """Clamping field under a housing: layers that thicken downwards, cells that widen outwards."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +12,11 @@ if TYPE_CHECKING:
     from tests.virtual_rig.heat_box import Box
 
 
-def add_field(box: "Box") -> None:
-    """Cells of the plate under the housing, joined to its floor where that stands."""
+def add_field(box: "Box", inner_x: Sequence[float]) -> None:
+    """Cells of the plate under the housing, joined to its floor where that stands.
+
+    inner_x : lines under the box [m]
+    """
     plate = box.house.get("field")
     floor = box.belt["floor"]
     fx, fy = box.lines.x, np.concatenate([[-box.width / 2], box.lines.y[1:-1], [box.width / 2]])
@@ -20,9 +24,6 @@ def add_field(box: "Box") -> None:
         return
     r = box.refine
     steel = STEEL[plate["material"]]
-    parts = box.lines.parts
-    inner_x = [fx[0], fx[1], fx[parts["cold_front"][1]], 0.5 * box.length, fx[parts["cold_rear"][0]],
-               fx[-2], fx[-1]]  # fmt: skip
     inner_y = [-box.width / 2, -box.width / 4, 0.0, box.width / 4, box.width / 2]
     x = _apron(inner_x, box.length / 2.0, plate["length"], r)
     y = _apron(inner_y, 0.0, plate["width"], r)
@@ -68,7 +69,7 @@ def _overlap(a: float, b: float, c: float, d: float) -> float:
     return max(0.0, min(b, d) - max(a, c))
 
 
-def _apron(inner: list[float], centre: float, total: float, refine: int) -> np.ndarray:
+def _apron(inner: Sequence[float], centre: float, total: float, refine: int) -> np.ndarray:
     """Lines of the field: those under the box and three widening steps to each edge."""
     low, high = centre - total / 2.0, centre + total / 2.0
     marks = np.array([0.0, 0.22, 0.55, 1.0])

@@ -15,7 +15,7 @@ import numpy as np
 from tests.virtual_rig.heat_base import add_field
 from tests.virtual_rig.heat_network import OUTSIDE, Network
 from tests.virtual_rig.heat_parts import OIL_FILM, SIDES, STEEL, Face, middle_of
-from tests.virtual_rig.heat_rotors import add_shaft
+from tests.virtual_rig.heat_rotors import Zone, add_shaft, cold_zones
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,10 @@ class Lines:
 
 class Box:
     """Network of one gearbox, with the numbers of its cells and films by meaning."""
+
+    plates = ("end_front", "partition_front", "partition_rear", "end_rear")
+    square = 0.32
+    """Half side of the squares round the shafts over the least distance of two."""
 
     def __init__(self, tree: Mapping[str, Any], name: str, refine: int = 1) -> None:
         self.name, self.refine = name, refine
@@ -60,20 +64,18 @@ class Box:
         self._oil_cells()
         self._belts()
         self._transverse()
-        add_field(self)
+        add_field(self, self._field_lines())
         for shaft in self.shafts:
-            add_shaft(self, shaft)
+            add_shaft(self, shaft, self._zones(shaft))
         self._hidden_ways()
         self.net.finish()
 
     # ---------------------------------------------------------------- sizes and lines
 
-    def _shapes(self) -> None:
+    def _stations(self) -> tuple[tuple[str, ...], tuple[float, ...], tuple[int, ...]]:
+        """Parts along the shafts, their lengths [m] and intervals."""
         h, r = self.house, self.refine
         end, part = h["end_wall_thickness"], h["partition_thickness"]
-        stations = np.cumsum(
-            [0.0, end, h["cold_length_front"], part, h["warm_length"], part, h["cold_length_rear"], end]
-        )
         names = (
             "end_front",
             "cold_front",
@@ -83,7 +85,30 @@ class Box:
             "cold_rear",
             "end_rear",
         )
-        counts = (1, 2 * r, 1, 3 * r, 1, 2 * r, 1)
+        lengths = (end, h["cold_length_front"], part, h["warm_length"], part, h["cold_length_rear"], end)
+        return names, lengths, (1, 2 * r, 1, 3 * r, 1, 2 * r, 1)
+
+    def _field_lines(self) -> list[float]:
+        """Lines along the shafts that the field under the box takes over."""
+        x, parts = self.lines.x, self.lines.parts
+        return [
+            x[0],
+            x[1],
+            x[parts["cold_front"][1]],
+            0.5 * self.length,
+            x[parts["cold_rear"][0]],
+            x[-2],
+            x[-1],
+        ]
+
+    def _zones(self, shaft: str) -> list[Zone]:
+        """Stretches of a shaft from the front."""
+        return cold_zones(self, shaft)
+
+    def _shapes(self) -> None:
+        h, r = self.house, self.refine
+        names, lengths, counts = self._stations()
+        stations = np.cumsum([0.0, *lengths])
         x, parts, first = [np.zeros(1)], {}, 0
         for name, low, high, count in zip(names, stations[:-1], stations[1:], counts, strict=True):
             x.append(np.linspace(low, high, count + 1)[1:])
@@ -94,7 +119,7 @@ class Box:
         at = {s: h["shafts"][s]["lateral_position"] for s in self.shafts}
         order = sorted(self.shafts, key=lambda s: at[s])
         gap = min((at[b] - at[a] for a, b in pairwise(order)), default=0.1)
-        half = 0.32 * gap
+        half = self.square * gap
         marks = [-self.width / 2.0 + wall, *(at[s] + sign * half for s in order for sign in (-1, 1)),
                  self.width / 2.0 - wall]  # fmt: skip
         y, first_y = [np.array([marks[0]])], {}
@@ -235,7 +260,7 @@ class Box:
         outer_z = np.diff(np.concatenate([[0.0], z[1:-1], [self.height]]))
         self.bore: dict[tuple[str, str], list[int]] = {}
         """Innermost cells of the patch of a shaft in a plate."""
-        for plate in ("end_front", "partition_front", "partition_rear", "end_rear"):
+        for plate in self.plates:
             row = self.lines.parts[plate][0]
             t = float(np.diff(self.lines.x)[row])
             cells = np.full((len(dy), len(dz)), -1)

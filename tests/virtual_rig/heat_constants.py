@@ -75,16 +75,21 @@ def draw_constants(rng: np.random.Generator, shift: bool = False) -> dict[str, f
 
     shift : another population: other draught, layered air and oil, wider exponents; for part of the test split
     """
-    return {name: _drawn(constant, rng, shift) for name, constant in CONSTANTS.items()}
+    return {name: drawn(constant, rng, shift) for name, constant in CONSTANTS.items()}
 
 
 def sigma(name: str) -> float:
     """Spread of a constant in its own unit, for sensitivities (1 sigma about the nominal value)."""
-    constant = CONSTANTS[name]
+    return step_of(CONSTANTS[name])
+
+
+def step_of(constant: Constant) -> float:
+    """One standard deviation of a constant in its own unit."""
     return constant.spread if constant.absolute else abs(constant.value) * constant.spread
 
 
-def _drawn(constant: Constant, rng: np.random.Generator, shift: bool) -> float:
+def drawn(constant: Constant, rng: np.random.Generator, shift: bool) -> float:
+    """A value of a constant."""
     step = (
         float(np.clip(rng.standard_normal(), -3.0, 3.0))
         * constant.spread

@@ -197,18 +197,63 @@ EFFECTS: Mapping[str, Effect] = {**CATALOGUE, **OUTSIDE}
 ``kind:gearbox``."""
 
 
-def effect_of(name: str) -> tuple[Effect, str, str]:
-    """Entry, key and gearbox of a name; KeyError for a name not in the table."""
+# fmt: off
+SUMP: Mapping[str, Effect] = {
+    **{key: EFFECTS[key] for key in (
+        "mesh_loss", "bearing_loss", "seal_loss", "aeration", "oil_viscosity", "ambient_film", "bearing_film",
+        "shell_contact", "not_steady", "ambient", "draught_one_side", "hot_neighbour", "coupling_heat",
+        "stratified_chamber", "insulating_deposit", "frame_bolted", "one_bearing", "spline_fretting", "lamp_on_top",
+        "floor_heating",
+    )},
+    "film:oil": Effect(
+        "1", -0.7, 2.0, "film",
+        "relative change of the films on all inner walls", field=True,
+    ),
+    "film:shafts": Effect(
+        "1", -0.8, 4.0, "film",
+        "relative change of the films on shafts and under seals", field=True,
+    ),
+    "film:sides": Effect(
+        "1", -0.8, 4.0, "film",
+        "relative change of the films on the sides of the gears", field=True,
+    ),
+    "churning_loss": Effect(
+        "1", -0.8, 3.0, "loss, sump",
+        "relative change of the churning of both gears", catalogue=False,
+    ),
+    "oil_level": Effect(
+        "m", -0.045, 0.02, "sump",
+        "level of the oil over that of the case: churning, wetted walls and sides", catalogue=False,
+    ),
+}
+# fmt: on
+"""What a gearbox with a sump has: no streams, so none of their effects; the sump is held, so its heat shows nowhere.
+Emissivity is not among them: the case has one film for convection and radiation."""
+
+
+def heat_key(name: str) -> str:
+    """Key of a name in the tables: its kind, of a film with its part."""
     kind, _, place = name.partition(":")
-    gearbox, _, part = place.partition(".")
-    key = f"film:{part}" if kind == "film" else kind
-    return EFFECTS[key], key, gearbox
+    return f"film:{place.partition('.')[2]}" if kind == "film" else kind
+
+
+def is_heat(name: str) -> bool:
+    """Whether a name is an effect of the heat part."""
+    return heat_key(name) in EFFECTS or heat_key(name) in SUMP
+
+
+def effect_of(name: str) -> tuple[Effect, str, str]:
+    """Entry, key and gearbox of a name; KeyError for a name not in the tables."""
+    key = heat_key(name)
+    gearbox = name.partition(":")[2].partition(".")[0]
+    return (EFFECTS[key] if key in EFFECTS else SUMP[key]), key, gearbox
 
 
 def effect_names(tree: Mapping[str, Any], catalogue: bool | None = None) -> Iterator[str]:
     """Every name that makes sense on a case; only those in or outside the catalogue if asked."""
     for gearbox, box in tree["gearboxes"].items():
-        for key, effect in EFFECTS.items():
+        dips = box["oil"].get("lubrication") == "dip"
+        for key, effect in (SUMP if dips else EFFECTS).items():
             if (effect.field and "housing" not in box) or catalogue not in (None, effect.catalogue):
                 continue
             if key == "mesh_loss":

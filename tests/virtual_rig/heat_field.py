@@ -160,20 +160,21 @@ class FieldModel:
             inner, outer = model.seals(run, shaft)
             paid[f"seal:{shaft}"] = inner + outer
             body, house = split.get("seal_into_shaft", 0.25), split.get("seal_into_housing", 0.25)
-            _spread(source, box.seal_cells[shaft], inner * body)
+            spread(source, box.seal_cells[shaft], inner * body)
             bores = [n for side in ("front", "rear") for n in box.bore[f"partition_{side}", shaft]]
-            _spread(source, bores, inner * house)
+            spread(source, bores, inner * house)
             source[mist] += inner * (1.0 - body - house)
             for side in ("front", "rear"):
                 source[box.oil[f"end_{side}"]] += 0.5 * outer
+        source[box.oil["sump"]] += self.size("pump_heat")
         self._hidden_sources(run, source, paid)
         return paid
 
     def _hidden_sources(self, run: Gearbox, source: np.ndarray, paid: dict[str, float]) -> None:
+        """Heat that no loss of a healthy rig makes."""
         box, net = self.box, self.box.net
         pinion = run.meshes[0].pinion
         shaft = run.entry["gears"][pinion]["shaft"]
-        source[box.oil["sump"]] += self.size("pump_heat")
         source[box.ends[shaft]] += self.size("coupling_heat") * run.relative_speed**0.5
         fretting = self.size("spline_fretting") * run.relative_speed * run.relative_torque
         source[box.bodies[f"gear_{shaft}"][0]] += fretting
@@ -264,5 +265,6 @@ def _mixed(past: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     return latest - np.array([latest - older for older, _ in past[:-1]]).T @ weights
 
 
-def _spread(source: np.ndarray, cells: Any, power: float) -> None:
+def spread(source: np.ndarray, cells: Any, power: float) -> None:
+    """A power over cells alike."""
     source[list(cells)] += power / len(cells)

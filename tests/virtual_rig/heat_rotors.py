@@ -1,9 +1,9 @@
 """Shafts in one dimension along x, gears in one along the radius."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,14 +14,23 @@ if TYPE_CHECKING:
     from tests.virtual_rig.heat_box import Box
 
 
-def add_shaft(box: "Box", shaft: str) -> None:
+Zone = tuple[str, str, float, float, int]
+"""What is round a stretch of shaft, its side, length and diameter [m], cells."""
+
+
+def gear_on(box: "Box", shaft: str) -> str | None:
+    """Gear of a shaft."""
+    return next((n for n, g in box.box["gears"].items() if g["shaft"] == shaft), None)
+
+
+def add_shaft(box: "Box", shaft: str, zones: Sequence[Zone]) -> None:
     """Cells of a shaft along x and of its gear along the radius, with their films."""
     entry = box.house["shafts"][shaft]
     steel = STEEL[entry.get("material", "case_hardened_steel")]
-    gear = next((n for n, g in box.box["gears"].items() if g["shaft"] == shaft), None)
+    gear = gear_on(box, shaft)
     seat = box.box["gears"][gear]["bore_diameter"] if gear else entry["seal_diameter"]
     previous: tuple[int, float, float] | None = None
-    for zone, side, length, diameter, count in _zones(box, shaft, entry, seat, gear):
+    for zone, side, length, diameter, count in zones:
         area, radius = math.pi * diameter**2 / 4.0, diameter / 2.0
         for _ in range(count):
             step = length / count
@@ -40,14 +49,16 @@ def add_shaft(box: "Box", shaft: str) -> None:
         box.ends[shaft] = previous[0]
 
 
-def _zones(box: "Box", shaft: str, entry: Mapping[str, Any], seat: float, gear: str | None) -> list[tuple]:
-    h, r = box.house, box.refine
+def cold_zones(box: "Box", shaft: str) -> list[Zone]:
+    """Of a shaft that passes partitions and cold sections to its bearings."""
+    h, r, entry, gear = box.house, box.refine, box.house["shafts"][shaft], gear_on(box, shaft)
+    seat = box.box["gears"][gear]["bore_diameter"] if gear else entry["seal_diameter"]
     width = box.box["gears"][gear]["face_width"] if gear else 0.0
     land = (h["warm_length"] - width) / 2.0
     outside, seal = entry["outside_diameter"], entry["seal_diameter"]
     bearings = {side: box.box["bearings"][box.bearing(shaft, side)] for side in SIDES}
 
-    def half(side: str) -> list[tuple]:
+    def half(side: str) -> list[Zone]:
         over = entry.get(f"overhang_{side}", 0.0)
         gap = h["end_wall_thickness"] - bearings[side]["width"]
         zones = [("outside", side, over, outside, 2 * r), ("end_seal", side, gap, outside, 1)] if over else []

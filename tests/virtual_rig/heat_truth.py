@@ -13,11 +13,15 @@ from typing import Any
 import numpy as np
 
 from tests.virtual_rig.case_reader import read_case, value_at
+from tests.virtual_rig.fzg_drawing import dips, drawn
 from tests.virtual_rig.heat_box import Box
 from tests.virtual_rig.heat_constants import nominal
 from tests.virtual_rig.heat_field import FieldModel, FieldState
 from tests.virtual_rig.heat_places import body_temperatures, temperature_at
 from tests.virtual_rig.losses_rig import Gearbox, LossModel
+from tests.virtual_rig.sump_box import SumpBox
+from tests.virtual_rig.sump_field import SumpField
+from tests.virtual_rig.sump_losses import SumpLosses
 
 Point = Mapping[str, Any]
 """speed [rad/s] and torque [N m] where the case counts them; inlet_temperature [K] and flow [m3/s] by
@@ -33,9 +37,9 @@ class HeatTruth:
         self.tree = tree
         self.constants = dict(nominal() if constants is None else constants)
         self.effects = dict(effects or {})
-        self.model = LossModel(tree, self.constants, self.effects)
+        self.model = (SumpLosses if dips(tree) else LossModel)(tree, self.constants, self.effects)
         self.boxes = dict(boxes if boxes is not None else boxes_of(tree, refine))
-        self.fields = {name: FieldModel(self._own(box), self.model) for name, box in self.boxes.items()}
+        self.fields = {name: _field(self._own(box), self.model) for name, box in self.boxes.items()}
 
     def solve(self, point: Point, places: Mapping[str, tuple[float, float, float]] | None = None,
               start: Mapping[str, np.ndarray] | None = None) -> dict[str, Any]:  # fmt: skip
@@ -59,6 +63,8 @@ class HeatTruth:
                 state = self.fields[name].solve(run, room, (start or {}).get(name))
                 self._read(name, state, places or {}, answer)
                 losses, outlets = state.losses, state.outlets
+            elif isinstance(self.model, SumpLosses):
+                losses, outlets = self.model.sump(run), {"gear_oil": run.gear_inlet}
             else:
                 losses, outlets = self._lumped(run, room)
             answer["losses"] |= {f"{name}.{kind}": power for kind, power in losses.items()}
@@ -127,7 +133,7 @@ class HeatTruth:
 
     def _own(self, box: Box) -> Box:
         """The box with the conductivities of this rig; everything else is shared."""
-        own = object.__new__(Box)
+        own = object.__new__(type(box))
         own.__dict__.update(box.__dict__)
         net = object.__new__(type(box.net))
         net.__dict__.update(box.net.__dict__)
@@ -139,13 +145,18 @@ class HeatTruth:
         return own
 
 
+def _field(box: Box, model: LossModel) -> FieldModel:
+    return SumpField(box, model) if isinstance(model, SumpLosses) else FieldModel(box, model)
+
+
 def boxes_of(tree: Mapping[str, Any], refine: int = 1) -> dict[str, Box]:
     """Cells of every gearbox with housing; share them between the rigs of a case."""
-    return {name: Box(tree, name, refine) for name, box in tree["gearboxes"].items() if "housing" in box}
+    kind = SumpBox if dips(tree) else Box
+    return {name: kind(tree, name, refine) for name, box in tree["gearboxes"].items() if "housing" in box}
 
 
 @lru_cache(maxsize=8)
 def rig(path: str | Path) -> tuple[dict[str, Any], dict[str, Box]]:
     """Tree and boxes of a case file, built once."""
-    tree = read_case(path)
+    tree = drawn(read_case(path))
     return tree, boxes_of(tree)

@@ -46,6 +46,8 @@ class Point:
     """Braking torque on the shaft of each gear [N m]: bearings, windage, seals."""
     tooth_offset: Mapping[str, int] = field(default_factory=dict)
     """By mesh: teeth by which the wheel was put on further; its eccentricity goes with its teeth."""
+    growth: Mapping[str, float] = field(default_factory=dict)
+    """By mesh: how much thermal expansion closes each flank, along the path [m]; left out: teeth as warm as the oil."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +100,11 @@ class LoopTruth:
         found = next(m for m in self.meshes if m.name == mesh)
         return found.backlash * self.constants.scale.get(f"backlash:{mesh}", 1.0)
 
+    def circumferential_play(self, mesh: str) -> float:
+        """Cold play on the working pitch circle [m]."""
+        found = next(m for m in self.meshes if m.name == mesh)
+        return self.backlash(mesh) / math.cos(found.working_angle)
+
     def sliding_power(self, speed: float, torque: float) -> dict[str, float]:
         """Power [W] each mesh would lose with a coefficient of friction of one."""
         point = Point(speed=speed, torque=torque, friction={m.name: 1.0 for m in self.meshes})
@@ -145,7 +152,10 @@ class LoopTruth:
         cold = self._tables(circuit, point.speed, 1e-5, point, (0.0,) * len(self.meshes))
         growth = [0.0] * len(self.meshes)
         if running:
-            growth = [MATERIAL_GROWTH * (point.oil - COLD) * 0.5 * m.module for m in self.meshes]
+            growth = [
+                point.growth.get(m.name, MATERIAL_GROWTH * (point.oil - COLD) * 0.5 * m.module)
+                for m in self.meshes
+            ]
         port = _ports(circuit, self.meshes)
         n_meshes = len(self.meshes)
         coupling = circuit.couplings[self.tree["drivetrain"]["bracing"]["coupling"]]

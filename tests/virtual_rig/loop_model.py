@@ -14,11 +14,14 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigh
 
+from tests.virtual_rig.losses_sump import roller_stiffness
 from tests.virtual_rig.teeth import Teeth
 
 SHEAR, YOUNG, DENSITY = 79.0e9, 206.0e9, 7850.0
 ELEMENT = 0.09
 """Longest torsional element [m]."""
+ROLLER_DAMPING = 1.25e-5
+"""Damping over stiffness of a rolling bearing [s]."""
 RIGID_SEAT = 5e7
 """Gear without a spline [N m/rad]."""
 
@@ -275,10 +278,7 @@ def _sideways(
     scale: Mapping[str, float],
     at_rest: bool,
 ) -> int:
-    """Freedoms of gear and journals along the line of action: shaft bending in series with two oil films.
-
-    Films: stiffness grows with the load over the clearance, damping with stiffness over speed.
-    """
+    """Freedoms of gear and journals along the line of action: shaft bending in series with its two bearings."""
     box = tree["gearboxes"][gear.split(".")[0]]
     entry = _gear(tree, gear)
     bearings = [b for b in box["bearings"].values() if b["shaft"] == entry["shaft"]]
@@ -288,19 +288,36 @@ def _sideways(
     seat = max(entry.get("bore_diameter", 0.0), bearings[0]["diameter"])
     bending = 3.0 * YOUNG * math.pi * seat**4 / 64.0 * span / (left * (span - left)) ** 2
     bending *= scale.get("shaft_bending", 1.0)
-    gap = 0.5 * bearings[0]["diametral_clearance"]
-    film = (
-        len(bearings) * (3e7 + 3.0 * abs(force) / len(bearings) / gap) * scale.get("journal_stiffness", 1.0)
-    )
-    damping = 0.5 * film / max(speed, 50.0) * scale.get("journal_damping", 1.0)
+    film, damping = (_rollers if "rollers" in bearings[0] else _films)(bearings, force, speed, scale)
     if at_rest:
-        film, damping = 2e9, 0.0
+        film, damping = film if "rollers" in bearings[0] else 2e9, 0.0
     shaft_mass = DENSITY * 0.25 * math.pi * seat**2 * span
     wheel = parts.add(f"{gear}/sideways", mass + 0.5 * shaft_mass)
     journal = parts.add(f"{gear}/journal", 0.5 * shaft_mass)
     parts.join(wheel, journal, bending)
     parts.join(journal, -1, film, damping)
     return wheel
+
+
+def _films(
+    bearings: Sequence[Mapping[str, Any]], force: float, speed: float, scale: Mapping[str, float]
+) -> tuple[float, float]:
+    """Oil films: stiffness grows with the load over the clearance, damping with stiffness over speed."""
+    gap = 0.5 * bearings[0]["diametral_clearance"]
+    film = (
+        len(bearings) * (3e7 + 3.0 * abs(force) / len(bearings) / gap) * scale.get("journal_stiffness", 1.0)
+    )
+    return film, 0.5 * film / max(speed, 50.0) * scale.get("journal_damping", 1.0)
+
+
+def _rollers(
+    bearings: Sequence[Mapping[str, Any]], force: float, speed: float, scale: Mapping[str, float]
+) -> tuple[float, float]:
+    """Rollers: line contacts, damping in proportion (Kraemer: 0.25e-5 to 2.5e-5 s times the stiffness)."""
+    one = bearings[0]
+    each = roller_stiffness(abs(force) / len(bearings), one["rollers"], one["roller_length"])
+    stiffness = len(bearings) * each * scale.get("journal_stiffness", 1.0)
+    return stiffness, ROLLER_DAMPING * stiffness * scale.get("journal_damping", 1.0)
 
 
 def _lines(power: Mapping[str, Any], shaft_of: Sequence[str]) -> np.ndarray:
