@@ -76,6 +76,7 @@ class ReducedRig:
                 continue
             near = min(range(index), key=lambda i: distance(self.conditions[i], condition), default=None)
             points.append(converge_point(problem, None if near is None else points[near]))
+        self.memoisation.start_from(point.last for point in points)
         return points
 
     def problem(self, rig: Rig, condition: OperatingCondition) -> PointProblem:
