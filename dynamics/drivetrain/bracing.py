@@ -139,25 +139,32 @@ class BracingDrift:
     torque_change: float
 
 
-def brace(
+def brace(system: LinearSystem, laws: Sequence[MeshLaw], torque: float, bracing: LoopBracing) -> BracedLoop:
+    """Twist or shift that makes a mean torque at the pinion of the control mesh [N m], without friction.
+
+    Raises DynamicsNotConverged if no setting makes the torque.
+    """
+    shift, state = braced_state(system, laws, torque, bracing)
+    gear = bracing.moved_gear
+    return _state(system, laws if gear is None else _shifted(laws, gear, shift), bracing, state, shift)
+
+
+def braced_state(
     system: LinearSystem,
     laws: Sequence[MeshLaw],
     torque: float,
     bracing: LoopBracing,
     near: StaticState | None = None,
-) -> BracedLoop:
-    """Twist or shift that makes a mean torque at the pinion of the control mesh [N m], without friction.
+) -> tuple[float, StaticState]:
+    """Shift [m], 0 where the twist makes the torque, and static state of a braced loop.
 
-    near : state of a loop that differs little, to start from
-
-    Raises DynamicsNotConverged if no setting makes the torque.
+    near : state of a loop that differs little, to start from; arguments and errors else as of `brace`
     """
     load = LoopLoad(torque=torque, control_mesh=bracing.control_mesh)
     gear = bracing.moved_gear
     if gear is None:
-        return _state(system, laws, bracing, _static(port_model(system, laws), load, near), 0.0)
-    shift, state = _solve_shift(system, laws, load, gear, bracing.twist)
-    return _state(system, _shifted(laws, gear, shift), bracing, state, shift)
+        return 0.0, _static(port_model(system, laws), load, near)
+    return _solve_shift(system, laws, load, gear, bracing.twist)
 
 
 def drift(

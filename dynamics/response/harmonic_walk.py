@@ -112,6 +112,7 @@ class HarmonicWalk:
         finer = replace(grid, samples=4 * grid.samples)
         if last is not None:
             yield resample(last, grid)
+        if last is not None and last.speed != speed:
             yield resample(last, finer)
             with suppress(DynamicsNotConverged):
                 yield self._approach(resample(last, grid), speed, drags)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
+from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, braced_state
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import StaticState
@@ -103,9 +103,10 @@ def brace_initial(
         return BracingState(mode=mode)
     met = mesh_models(rig, point, initial) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
-    state = brace(system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)), near)
+    bracing = LoopBracing(mode=mode, gear=shifted_gear(rig))
+    shift, state = braced_state(system, laws, signed_torque(rig, point), bracing, near)
     twist = state.twist if mode == "twist_held" else 0.0
-    return BracingState(mode=mode, twist=twist, shift=state.shift, static=state.static)
+    return BracingState(mode=mode, twist=twist, shift=shift, static=state)
 
 
 @dataclass(frozen=True)

@@ -134,6 +134,8 @@ class Memoisation:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
+        if rig.case.drivetrain.bracing.mode == "torque_controlled":
+            return BracingState(mode="torque_controlled")
         models = self.models(rig, point, initial)
         system = self.system(rig, point, initial, self.bearings(rig, point, initial))
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
