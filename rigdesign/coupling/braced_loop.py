@@ -122,7 +122,7 @@ class LoadedCircuit:
     """Of the drivetrain without its meshes."""
 
 
-NEAR_TOLERANCE = 1e-8
+NEAR_TOLERANCE = 1e-7
 """Tolerance of a harmonic balance that starts next to its solution: its small changes are what is asked for [-]."""
 
 

@@ -13,7 +13,13 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.model import MEASURED_AGAINST, ORDER_QUANTITIES, Channel, OperatingCondition
+from rigdesign.prediction.model import (
+    MEASURED_AGAINST,
+    ORDER_QUANTITIES,
+    Channel,
+    OperatingCondition,
+    PredictionModel,
+)
 from rigdesign.prediction.predictor import Predictor
 
 Progress = Callable[[str], None]
@@ -37,8 +43,11 @@ def build_library(
     channels: Sequence[Channel],
     effects: Sequence[Effect],
     say: Progress = lambda message: None,
+    circuit: PredictionModel = MEASURED_AGAINST,
 ) -> Library:
     """Run the model at the plan for everything that may be off; on all cores.
+
+    circuit : shafts and teeth of the power circuit
 
     Finished responses are kept until the library is whole, so that an interrupted run goes on there.
 
@@ -47,10 +56,10 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     metered = (POWER,) if case.drivetrain is not None else ()
-    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=MEASURED_AGAINST)
+    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=circuit)
     predictor.prepare()
     base = predictor.base
-    parts = Parts.of(case, settings, channels, effects)
+    parts = Parts.of(case, settings, channels, effects, circuit)
     moving = [effect for effect in effects if _reaches(effect, channels)]
     responses = _responses(predictor, case, moving, parts, say)
     say("local conductances, sources, settings")

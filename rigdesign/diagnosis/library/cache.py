@@ -22,7 +22,7 @@ from rigdesign.base.version import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.prediction.model import Channel, OperatingCondition
+from rigdesign.prediction.model import MEASURED_AGAINST, Channel, OperatingCondition, PredictionModel
 
 SCHEMA = 4
 """Of the stored libraries; raise it with any change of what they hold."""
@@ -89,9 +89,10 @@ class Parts:
         settings: Sequence[OperatingCondition],
         channels: Sequence[Channel],
         effects: Sequence[Effect],
+        circuit: PredictionModel = MEASURED_AGAINST,
     ) -> "Parts":
-        """Of one library: its rig, plan and sensors."""
-        plan = hashlib.sha256(repr((tuple(settings), tuple(channels))).encode()).hexdigest()[:16]
+        """Of one library: its rig, plan, sensors and model."""
+        plan = hashlib.sha256(repr((tuple(settings), tuple(channels), circuit)).encode()).hexdigest()[:16]
         return cls(_folder(case, effects) / f"{plan}.parts")
 
     def known(self, say: Progress = _silent) -> dict[str, Response | None]:
@@ -119,6 +120,7 @@ def _key(case: Case, effects: Sequence[Effect]) -> str:
         "schema": SCHEMA,
         "version": __version__,
         "case": case.hash,
+        "circuit": repr(MEASURED_AGAINST),
         "effects": [[effect.name, *(part.bounds for part in effect.parameters)] for effect in effects],
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
