@@ -18,7 +18,7 @@ from tests.builders.paths import CASES
 
 CLOSE = 1e-4
 """Difference of two answers over the largest answer of a channel and order."""
-NOISE = 1e-8
+NOISE = 1e-6
 """Share of the base of its channel below which an answer is rounding."""
 SIZES = {
     "spline_stiffness": 0.4, "coupling_stiffness": -1.0, "mesh_stiffness": 0.4, "inertia": 1.0,
