@@ -16,6 +16,7 @@ out of that gap. Shell and housing behind it are the caller's: they are softer.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +81,7 @@ class _Place:
     regime: Regime
 
 
+@lru_cache(maxsize=4096)
 def journal_lateral(film: RunningFilm, operation: LateralOperation) -> LateralCoefficients:
     """Stiffness, damping and static position of a plain bearing.
 

@@ -7,6 +7,7 @@ follows the torque. In a held mode every change of backlash, stiffness or axial 
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import StaticState, loaded_share, port_model, solve_static
+from dynamics.drivetrain.static_loop import PortModel, StaticState, loaded_share, port_model, solve_static
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 
@@ -143,12 +144,27 @@ def brace(system: LinearSystem, laws: Sequence[MeshLaw], torque: float, bracing:
 
     Raises DynamicsNotConverged if no setting makes the torque.
     """
+    shift, state = braced_state(system, laws, torque, bracing)
+    gear = bracing.moved_gear
+    return _state(system, laws if gear is None else _shifted(laws, gear, shift), bracing, state, shift)
+
+
+def braced_state(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    torque: float,
+    bracing: LoopBracing,
+    near: StaticState | None = None,
+) -> tuple[float, StaticState]:
+    """Shift [m], 0 where the twist makes the torque, and static state of a braced loop.
+
+    near : state of a loop that differs little, to start from; arguments and errors else as of `brace`
+    """
     load = LoopLoad(torque=torque, control_mesh=bracing.control_mesh)
     gear = bracing.moved_gear
     if gear is None:
-        return _state(system, laws, bracing, solve_static(port_model(system, laws), load), 0.0)
-    shift, state = _solve_shift(system, laws, load, gear, bracing.twist)
-    return _state(system, _shifted(laws, gear, shift), bracing, state, shift)
+        return 0.0, _static(port_model(system, laws), load, near)
+    return _solve_shift(system, laws, load, gear, bracing.twist)
 
 
 def drift(
@@ -187,6 +203,14 @@ def drift(
     warm = _state(system, laws, bracing, state, initial.shift)
     change = float(warm.torque[mesh] - initial.torque[mesh])
     return BracingDrift(initial=initial, warm=warm, torque_change=change)
+
+
+def _static(model: PortModel, load: LoopLoad, near: StaticState | None) -> StaticState:
+    """State from one nearby, where that leads there."""
+    if near is not None:
+        with suppress(DynamicsNotConverged):
+            return solve_static(model, load, start=near)
+    return solve_static(model, load)
 
 
 def _open_loop(state: StaticState) -> StaticState:

@@ -9,7 +9,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.drivetrain.mesh_wrench import MeshWrench
-from dynamics.drivetrain.modal_form import ModalForm, modal_form
+from dynamics.drivetrain.modal_form import ModalForm, known_modal_form
 from dynamics.drivetrain.periodic_load import PeriodicLoad
 
 Array = NDArray[np.float64]
@@ -98,7 +98,7 @@ class LinearSystem:
         for branch in np.unique(inner.branches):
             own = np.flatnonzero(inner.branches == branch)
             block = np.ix_(own, own)
-            form = modal_form(
+            form = known_modal_form(
                 inner.inertia[block], inner.damping[block], inner.stiffness[block], inner.rigid[own]
             )
             forms.append(form.seen(inner.freedoms[:, own]))

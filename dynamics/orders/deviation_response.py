@@ -74,18 +74,19 @@ class DeviationResponse:
         self,
         system: LinearSystem,
         laws: Sequence[MeshLaw],
-        base: CurvePoint,
+        base: CurvePoint | MeshPeriodic,
         *,
         twist_held: bool = False,
         steps: int = CYCLE_STEPS,
     ) -> None:
         """Linearise about ``base``, found for the laws with all teeth alike (``alike_teeth``), over one mesh period.
 
+        base : or what was linearised about it before, of the same drivetrain and laws but for what turns with a gear
         laws : with their deviations; twist_held : the twist is held and not the mean torque of the first mesh
         steps : corrections beyond first order; 0 is the linear response
         """
         self.laws, self.steps = tuple(laws), steps
-        self.loop = MeshPeriodic(system, [alike_teeth(law) for law in laws], base, twist_held=twist_held)
+        self.loop = base if isinstance(base, MeshPeriodic) else linearised(system, laws, base, twist_held)
         self.forcing = ToothForcing(self.laws, self.loop)
 
     @cached_property
@@ -158,6 +159,9 @@ class DeviationResponse:
             forces = self.forcing.of_class(residue, number)
         if not (np.any(given) or np.any(forces)):
             return _Class(given, rows)
+        if not len(rows):
+            (known,) = self.loop.classes([residue], reach)
+            return _Class(known.solve(forces, given).torque, rows)
         receptance = self.loop.receptance(self.loop.omega(residue, reach), rows)
         return _Class(HillSystem(self.loop, residue, tangent, receptance).solve(forces, given).torque, rows)
 
@@ -181,6 +185,13 @@ class _Class(NamedTuple):
 
     torque: Complex
     rows: Array
+
+
+def linearised(
+    system: LinearSystem, laws: Sequence[MeshLaw], base: CurvePoint, twist_held: bool
+) -> MeshPeriodic:
+    """The loop about a motion with all teeth alike; arguments as of `DeviationResponse`."""
+    return MeshPeriodic(system, [alike_teeth(law) for law in laws], base, twist_held=twist_held)
 
 
 def mean_windup(

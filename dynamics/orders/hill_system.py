@@ -38,7 +38,7 @@ class MeshPeriodic:
     phi is the mean angle of the pinion of the first mesh, zero where its pair 0 stands at the path position ``phase``
     of its law. A cell is the period: a whole number of mesh periods of every mesh.
 
-    speed : of the pinion of the first mesh [rad/s]; start : phi at the first sample [rad]
+    base : the motion; speed : of the pinion of the first mesh [rad/s]; start : phi at the first sample [rad]
     cell_order : cells per turn of that pinion; meshes : (n_meshes,) mesh periods of each mesh in a cell
     bodies : (n_bodies,) freedoms of the gear bodies; sides : (n_meshes, 2) place of pinion and wheel among them
     approach : (n_meshes, n_bodies) approach per angle [m/rad]
@@ -51,6 +51,8 @@ class MeshPeriodic:
     ) -> None:
         """Linearise about ``base``, found for the laws ``ideal`` with all teeth alike."""
         self.system, self.ideal, self.twist_held = system, tuple(ideal), twist_held
+        self.base = base
+        self._classes: dict[tuple[float, int], HillSystem] = {}
         self.packed = tuple(pack_meshes([law]) for law in self.ideal)
         wave = base.wave
         self.speed = base.speed
@@ -129,6 +131,17 @@ class MeshPeriodic:
         """(3, n_meshes, 2, n, n) harmonics of the torques per harmonics of approach, rate and pinion angle."""
         number = np.arange(-reach, reach + 1)
         return np.asarray(self._tangent[..., np.subtract.outer(number, number)])
+
+    def classes(self, residues: Sequence[float], reach: int) -> "list[HillSystem]":
+        """Equations of some classes without further loads, each made once."""
+        left = [residue for residue in residues if (residue, reach) not in self._classes]
+        if left:
+            tangent, n = self.tangent(reach), 2 * reach + 1
+            omega = np.concatenate([self.omega(residue, reach) for residue in left])
+            receptance = self.receptance(omega).reshape(len(left), n, *2 * (self.bodies.size,))
+            for residue, own in zip(left, receptance):
+                self._classes[residue, reach] = HillSystem(self, residue, tangent, own)
+        return [self._classes[residue, reach] for residue in residues]
 
 
 class ClassSolution(NamedTuple):

@@ -8,7 +8,6 @@ out.
 """
 
 from collections.abc import Sequence
-from itertools import repeat
 from math import gcd
 from typing import NamedTuple, overload
 
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.tables import pack_meshes
-from dynamics.orders.hill_system import ClassSolution, HillSystem, MeshPeriodic
+from dynamics.orders.hill_system import ClassSolution, MeshPeriodic
 from dynamics.orders.tooth_excitation import Motion
 from dynamics.orders.tooth_forcing import ToothForcing
 
@@ -93,13 +92,10 @@ class _Cycle:
             reaction = evaluate_mesh(packed, *(values[: self.n] for values in self.base[m]))
             known[m] = reaction.torque_1, reaction.torque_2
         self.known = np.tile(known, cells)
-        tangent = loop.tangent(self.reach)
         number = np.arange(-self.reach, self.reach + 1)
         self.number = number
         classes = np.arange(cells // 2 + 1) / cells
-        omega = np.concatenate([loop.omega(residue, self.reach) for residue in classes])
-        receptance = loop.receptance(omega).reshape(classes.size, number.size, *2 * (loop.bodies.size,))
-        self.systems = [HillSystem(loop, *of_class) for of_class in zip(classes, repeat(tangent), receptance)]
+        self.systems = loop.classes(classes.tolist(), self.reach)
         self.first = np.zeros((classes.size, len(loop.ideal), 2, number.size), complex)
         for m, side in gears:
             self.first[:, m] += forcing.of_cycle(m, side, cells, number)

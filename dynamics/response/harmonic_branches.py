@@ -55,12 +55,19 @@ class BranchSearch:
     """Search for the stable states of a loop at asked speeds."""
 
     def __init__(
-        self, walk: HarmonicWalk, problem: Callable[[float], BalanceProblem], drags: Drags, speeds: Array
+        self,
+        walk: HarmonicWalk,
+        problem: Callable[[float], BalanceProblem],
+        drags: Drags,
+        speeds: Array,
+        start: HarmonicSolution | None = None,
     ) -> None:
         """Prepare a search.
 
         problem, drags : at a speed of the drive freedom [rad/s]; speeds : (n,) of it, in the order of the walk
+        start : state near that of the first speed, from which the walk begins
         """
+        self._start = start
         self._walk, self._problem, self._drags, self._speeds = walk, problem, drags, speeds
         self._over_speed = SpeedProblem(problem=problem, drags=drags)
         self._open: dict[int, bool] = {}
@@ -89,7 +96,7 @@ class BranchSearch:
 
     def _walk_over(self, order: range) -> None:
         """Each speed that has no state yet from the state before it."""
-        last: HarmonicSolution | None = None
+        last = self._start
         for i in order:
             if i not in self.states.found and i not in self.states.not_mesh_periodic:
                 try:

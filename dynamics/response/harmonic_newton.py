@@ -1,9 +1,11 @@
 """Newton steps of the harmonic balance: one small block of equations per residue class of harmonics."""
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
 from dynamics.drivetrain.static_loop import PortModel
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid
@@ -38,6 +40,8 @@ class HarmonicNewton:
     def __init__(self, problem: BalanceProblem, grid: HarmonicGrid, base: float, receptance: Complex) -> None:
         self.problem, self.grid, self.base = problem, grid, base
         self.receptance = receptance
+        self._factors: _Paired | None = None
+        self._known: Complex | None = None
         self.sides = mesh_sides(problem.model)
         approach = problem.model.approach[:, :-1]
         self.gain = np.einsum("mi,kij->kmj", approach, receptance)
@@ -47,6 +51,20 @@ class HarmonicNewton:
         self, reactions: MeshHarmonics, miss: Complex, balance: Array, asked: float
     ) -> tuple[Complex, Array, float, float]:
         """Changes of the harmonics (n_bodies, top), of the mean windup (n,), of drive torque and twist."""
+        self._factors = None
+        return self._stepped(reactions, miss, balance, asked)
+
+    def step_again(
+        self, reactions: MeshHarmonics, miss: Complex, balance: Array, asked: float
+    ) -> tuple[Complex, Array, float, float]:
+        """The same with the tangents of the last step where the period is one mesh: a chord, its matrix known."""
+        if self.grid.cells > 1:
+            self._factors = None
+        return self._stepped(reactions, miss, balance, asked)
+
+    def _stepped(
+        self, reactions: MeshHarmonics, miss: Complex, balance: Array, asked: float
+    ) -> tuple[Complex, Array, float, float]:
         approach_miss = self.problem.model.approach[:, :-1] @ miss
         change, rest, drive, twist = self._meshing(reactions, approach_miss, balance, asked)
         grid = self.grid
@@ -90,17 +108,35 @@ class HarmonicNewton:
         n_meshes, size = model.n_meshes, model.ratios.size
         order = np.arange(-grid.harmonics, grid.harmonics + 1)
         n, mean = order.size, grid.harmonics
+        rest = n_meshes * n
+        if self._factors is None or self._known is None:
+            self._known, matrix = self._linearised(reactions, order)
+            self._factors = _Paired(matrix, n_meshes, n)
+        tangent = self._known
+        right = np.zeros(rest + size + 2, complex)
+        at = order[mean + 1 :] * grid.cells - 1
+        for m in range(n_meshes):
+            right[m * n + mean + 1 : (m + 1) * n] = approach_miss[m, at]
+            right[m * n : m * n + mean] = approach_miss[m, at].conj()[::-1]
+        right[rest : rest + size] = -balance
+        if self.problem.load.torque is not None:
+            right[rest + size + 1] = asked
+        solution = self._factors.solve(right)
+        approach = solution[:rest].reshape(n_meshes, n)
+        torque = self._on_bodies(tangent, approach)
+        tail = solution[rest:].real
+        return torque[:, mean + 1 :], tail[:size], float(tail[size]), float(tail[size + 1])
+
+    def _linearised(self, reactions: MeshHarmonics, order: NDArray[np.int64]) -> tuple[Complex, Complex]:
+        """Tangents of the meshes and matrix of the equations of `_meshing`."""
+        model, grid = self.problem.model, self.grid
+        n_meshes, size, n, mean = model.n_meshes, model.ratios.size, order.size, grid.harmonics
         omega = self.base * grid.cells * order
         tangent = self._tangent(reactions, order, np.asarray(omega, float))
         flat = np.arange(n_meshes) * n + mean
         total = n_meshes * n + size + 2
         matrix = np.zeros((total, total), complex)
-        right = np.zeros(total, complex)
         matrix[: n_meshes * n, : n_meshes * n] = self._block(tangent, self._gain_at(order * grid.cells))
-        at = order[mean + 1 :] * grid.cells - 1
-        for m in range(n_meshes):
-            right[m * n + mean + 1 : (m + 1) * n] = approach_miss[m, at]
-            right[m * n : m * n + mean] = approach_miss[m, at].conj()[::-1]
         # the mean approach follows from the mean windup
         rest = n_meshes * n
         matrix[flat, :] = 0.0
@@ -113,7 +149,6 @@ class HarmonicNewton:
                 matrix[rest + body, m * n : (m + 1) * n] -= tangent[m, side, mean]
         matrix[rest + size - 1, rest + size] = -1.0
         matrix[rest : rest + size, rest + size + 1] = -model.twist
-        right[rest : rest + size] = -balance
         # reference angle stays, torque of the control mesh or twist is met
         matrix[rest + size, rest + size - 1] = 1.0
         if self.problem.load.torque is None:
@@ -121,12 +156,7 @@ class HarmonicNewton:
         else:
             c = self.problem.load.control_mesh
             matrix[rest + size + 1, c * n : (c + 1) * n] = -tangent[c, 0, mean]
-            right[rest + size + 1] = asked
-        solution = _solve_paired(matrix, right, n_meshes, n)
-        approach = solution[:rest].reshape(n_meshes, n)
-        torque = self._on_bodies(tangent, approach)
-        tail = solution[rest:].real
-        return torque[:, mean + 1 :], tail[:size], float(tail[size]), float(tail[size + 1])
+        return tangent, matrix
 
     def _sideband(self, reactions: MeshHarmonics, miss: Complex, residue: int, torque: Complex) -> None:
         """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_bodies, top)."""
@@ -145,29 +175,44 @@ class HarmonicNewton:
         torque[:, -index[~positive] - 1] = change[:, ~positive].conj()
 
 
-def _solve_paired(matrix: Complex, right: Complex, n_meshes: int, n: int) -> Complex:
-    """Solution of a system for real motions, in real numbers: a quarter of the work.
+class _Paired:
+    """A system for real motions in real numbers, a quarter of the work, factorised once.
 
     The first unknowns are ``n_meshes`` spectra of ``n`` signed harmonics, the rest are real. Harmonics of opposite
     sign are conjugate, a + ib and a - ib, and so are their equations: of each pair one is kept, as its real and
     imaginary part for a and b.
     """
-    mean = n // 2
-    start = np.arange(n_meshes)[:, None] * n + mean
-    positive, negative = ((start + sign * np.arange(1, mean + 1)).ravel() for sign in (1, -1))
-    single = np.append(start.ravel(), np.arange(n_meshes * n, len(right)))
 
-    def of_parts(rows: Complex) -> Complex:
-        after, before = rows[:, positive], rows[:, negative]
-        return np.hstack([after + before, 1j * (after - before), rows[:, single]])
+    def __init__(self, matrix: Complex, n_meshes: int, n: int) -> None:
+        """Raises LinAlgError for a singular matrix."""
+        mean = n // 2
+        start = np.arange(n_meshes)[:, None] * n + mean
+        positive, negative = ((start + sign * np.arange(1, mean + 1)).ravel() for sign in (1, -1))
+        single = np.append(start.ravel(), np.arange(n_meshes * n, len(matrix)))
 
-    pairs = of_parts(matrix[positive])
-    real = np.vstack([pairs.real, pairs.imag, of_parts(matrix[single]).real])
-    load = np.concatenate([right[positive].real, right[positive].imag, right[single].real])
-    scale = np.abs(real).max(axis=1)
-    cosine, sine, others = np.split(
-        np.linalg.solve(real / scale[:, None], load / scale), [positive.size, 2 * positive.size]
-    )
-    solution = np.empty(len(right), complex)
-    solution[positive], solution[negative], solution[single] = cosine + 1j * sine, cosine - 1j * sine, others
-    return solution
+        def of_parts(rows: Complex) -> Complex:
+            after, before = rows[:, positive], rows[:, negative]
+            return np.hstack([after + before, 1j * (after - before), rows[:, single]])
+
+        pairs = of_parts(matrix[positive])
+        real = np.vstack([pairs.real, pairs.imag, of_parts(matrix[single]).real])
+        self._positive, self._negative, self._single = positive, negative, single
+        self._scale = np.abs(real).max(axis=1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinAlgWarning)
+            self._factors = lu_factor(real / self._scale[:, None], check_finite=False)
+        if not np.all(np.diag(self._factors[0])):
+            raise np.linalg.LinAlgError("singular matrix")
+
+    def solve(self, right: Complex) -> Complex:
+        """Unknowns for a right-hand side."""
+        load = np.concatenate(
+            [right[self._positive].real, right[self._positive].imag, right[self._single].real]
+        )
+        found = lu_solve(self._factors, load / self._scale, check_finite=False)
+        size = self._positive.size
+        cosine, sine, others = np.split(found, [size, 2 * size])
+        solution = np.empty(len(right), complex)
+        solution[self._positive], solution[self._negative] = cosine + 1j * sine, cosine - 1j * sine
+        solution[self._single] = others
+        return solution

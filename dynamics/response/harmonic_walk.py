@@ -23,6 +23,8 @@ LEAST_SAMPLES = 256
 """Samples per mesh that are used at least."""
 
 
+SAME_PLACE = 5e-3
+"""Relative distance of speeds up to which a state is sought for its small difference from the last one."""
 SEEN = 1e-3
 """Approach of a mode at its resonance, per static approach of a mesh under the same force, from which it counts [-]."""
 
@@ -83,14 +85,26 @@ class HarmonicWalk:
     def solve(
         self, speed: float, drags: Mapping[str, float] | None, last: HarmonicSolution | None
     ) -> HarmonicSolution:
-        """State at a speed of the drive freedom [rad/s], by continuation from ``last``; else DynamicsNotConverged."""
+        """State at a speed of the drive freedom [rad/s], by continuation from ``last``; else DynamicsNotConverged.
+
+        Where Newton's method stalls next to a state of nearly the same speed, what is left would hide the small change
+        that is sought: the slowly rotating loop is tried as well, and the stalled state taken only where that leads
+        nowhere.
+        """
         grid = self.grid(speed)
-        reason = DynamicsNotConverged("")
+        reason, stalled = DynamicsNotConverged(""), None
+        near = last is not None and abs(last.speed - speed) <= SAME_PLACE * speed
         for start in self._starts(grid, speed, drags, last):
             try:
-                return self._solve(start, speed, drags)
+                found = self._solve(start, speed, drags)
             except DynamicsNotConverged as error:
                 reason = error
+            else:
+                if found.residual < self.tolerance or not near:
+                    return found
+                stalled = found if stalled is None or found.residual < stalled.residual else stalled
+        if stalled is not None:
+            return stalled
         raise reason
 
     def solve_near(
@@ -119,6 +133,7 @@ class HarmonicWalk:
         finer = replace(grid, samples=4 * grid.samples)
         if last is not None:
             yield resample(last, grid)
+        if last is not None and last.speed != speed:
             yield resample(last, finer)
             with suppress(DynamicsNotConverged):
                 yield self._approach(resample(last, grid), speed, drags)

@@ -33,6 +33,7 @@ class CurvePoint:
     twist : bracing twist [rad]; drive_torque : mean motor torque that balances all losses [N m]
     friction_power, damping_power : (n_meshes,) mean losses in the mesh [W]
     wave : the motion over one period, for root stress and plots
+    solution : the state of the harmonic balance, from which a neighbour may start; None of a time integration
     """
 
     speed: float
@@ -51,6 +52,7 @@ class CurvePoint:
     damping_power: Array
     wave: Waveform = field(repr=False)
     motion: Motion = PERIODIC
+    solution: HarmonicSolution | None = field(default=None, repr=False)
 
     @property
     def dynamic_factor(self) -> Array:
@@ -116,6 +118,7 @@ def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
         friction_power=wave.friction_power,
         damping_power=wave.damping_power,
         wave=wave,
+        solution=solution,
     )
 
 

@@ -8,7 +8,7 @@ or chaotic.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from dynamics.drivetrain.static_loop import port_model
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_branches import BranchSearch, HarmonicStates
-from dynamics.response.harmonic_problem import BalanceProblem
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk, mesh_cells
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.modal_model import DEFAULT_CUTOFF
@@ -45,6 +45,8 @@ class SweepSettings:
     branches : trace branches round their turning points and look for a second stable response; without it the harmonic
         balance walks from speed to speed, both ways, and keeps what is stable
     harmonics : of the common mesh period at least, whatever the highest mode asks for
+    start : state of a loop that differs little at the first speed, from which the walk begins; left out, it begins
+        with the loop that rotates slowly
     """
 
     period: Period = "mesh"
@@ -53,6 +55,7 @@ class SweepSettings:
     methods: Sequence[Method] = ("harmonic_balance", "time_integration")
     branches: bool = True
     harmonics: int = LEAST_HARMONICS
+    start: HarmonicSolution | None = None
 
 
 DEFAULT_SWEEP = SweepSettings()
@@ -224,8 +227,14 @@ def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) ->
         lambda speed: loops.problem(speed * ratio),
         lambda speed: drags(speed * ratio) if callable(drags) else drags,
         np.array(speeds) / ratio,
+        _held(settings.start, loops.load),
     )
     return search.run() if settings.branches else search.on_one_branch()
+
+
+def _held(start: HarmonicSolution | None, load: LoopLoad) -> HarmonicSolution | None:
+    """A start with the twist that is held: Newton steps leave it as it is."""
+    return start if start is None or load.twist is None else replace(start, twist=load.twist)
 
 
 def _in_time(loops: _Loops, speed: float, drags: Mapping[str, float] | None, longest: float) -> CurvePoint:

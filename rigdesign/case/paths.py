@@ -10,6 +10,7 @@ import types
 import typing
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any
 
 from pydantic import BaseModel
@@ -68,6 +69,13 @@ class Slot:
 def slot_of(annotation: Any, metadata: Sequence[Any] = ()) -> Slot:
     """Unfold unions, optionals and annotated types."""
     return Slot(tuple(_unfold(annotation, tuple(metadata))))
+
+
+@cache
+def _slot_of_field(model: type[BaseModel], key: str) -> Slot | None:
+    """What a key of a table may hold; None where there is no such key."""
+    field = model.model_fields.get(key)
+    return None if field is None else slot_of(field.annotation, field.metadata)
 
 
 def slot_at(model: type[BaseModel], tree: Mapping[str, Any], keys: Sequence[str]) -> Slot | None:
@@ -155,10 +163,9 @@ def _step(slot: Slot, node: Any, key: str) -> tuple[Slot, Any] | None:
         elif origin is Mapping and isinstance(node, Mapping) and key in node:
             return slot_of(arguments[1]), node[key]
     for model in _models_for(slot, node):
-        field = model.model_fields.get(key)
-        if field is not None:
-            inner = node.get(key) if isinstance(node, Mapping) else None
-            return slot_of(field.annotation, field.metadata), inner
+        found = _slot_of_field(model, key)
+        if found is not None:
+            return found, node.get(key) if isinstance(node, Mapping) else None
     return None
 
 

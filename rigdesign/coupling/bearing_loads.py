@@ -1,9 +1,11 @@
 """Forces on the bearings from teeth and weight: radial by the lever rule, axial to the locating bearing."""
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from weakref import ReferenceType, ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +36,21 @@ class BearingLoad:
     force: tuple[float, float] = (0.0, 0.0)
 
 
+_MET: deque[tuple[ReferenceType[Rig], ReferenceType[CouplingState], dict[str, BearingLoad]]] = deque(maxlen=8)
+"""Loads found last: bearings, their stiffness and the places of the gears ask for those of one state in turn."""
+
+
 def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, BearingLoad]:
+    """As `solved_bearing_loads`; those of a state that was asked for just before are not found again."""
+    for of_rig, of_state, known in _MET:
+        if of_rig() is rig and of_state() is coupling_state:
+            return dict(known)
+    found = solved_bearing_loads(rig, coupling_state)
+    _MET.append((ref(rig), ref(coupling_state), found))
+    return dict(found)
+
+
+def solved_bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, BearingLoad]:
     """Load of every bearing: tooth forces and weight by the lever rule on its shaft, axial forces to what locates it.
 
     Forces add as vectors where the axes stand (`rigdesign.rig.shaft_axes`): at an idler between two wheels the

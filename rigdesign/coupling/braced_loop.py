@@ -1,14 +1,16 @@
 """The braced power circuit at an operating point: torque or shift that is held, periodic response under it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
-from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
+from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, braced_state
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import StaticState
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_problem import HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
@@ -48,6 +50,8 @@ class BracingState:
     mode: Mode
     twist: float = 0.0
     shift: float = 0.0
+    static: StaticState | None = field(default=None, repr=False, compare=False)
+    """Of the loop as it was braced, from which a neighbour may start."""
 
 
 def shifted_gear(rig: Rig) -> ShiftedGear | None:
@@ -84,12 +88,14 @@ def brace_initial(
     initial: CouplingState,
     models: Sequence[MeshModel] | None = None,
     system: LinearSystem | None = None,
+    near: StaticState | None = None,
 ) -> BracingState:
     """Bracing that makes the demanded torque in the initial state; kept from then on in the held modes.
 
     The torque is the mean over all places where teeth that are not alike may come to rest.
 
     models : the meshes in that state, where they are known; system : of the drivetrain, the torsional one when left out
+    near : state of a loop that differs little, to start from
     """
     system = rig.system if system is None else system
     assert rig.case.drivetrain is not None and system is not None
@@ -98,8 +104,10 @@ def brace_initial(
         return BracingState(mode=mode)
     met = mesh_models(rig, point, initial) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
-    state = brace(system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
-    return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
+    bracing = LoopBracing(mode=mode, gear=shifted_gear(rig))
+    shift, state = braced_state(system, laws, signed_torque(rig, point), bracing, near)
+    twist = state.twist if mode == "twist_held" else 0.0
+    return BracingState(mode=mode, twist=twist, shift=shift, static=state)
 
 
 @dataclass(frozen=True)
@@ -115,8 +123,20 @@ class LoadedCircuit:
     """Of the drivetrain without its meshes."""
 
 
-def respond(rig: Rig, circuit: LoadedCircuit, harmonics: int = LEAST_HARMONICS) -> CurvePoint:
-    """Periodic response at one operating point; ``harmonics`` of the common mesh period at least.
+NEAR_TOLERANCE = 1e-7
+"""Tolerance of a harmonic balance that starts next to its solution: its small changes are what is asked for [-]."""
+
+
+def respond(
+    rig: Rig,
+    circuit: LoadedCircuit,
+    near: HarmonicSolution | None = None,
+    harmonics: int = LEAST_HARMONICS,
+) -> CurvePoint:
+    """Periodic response at one operating point.
+
+    harmonics : of the common mesh period at least
+    near : state of a circuit that differs little, to start from
 
     Raises
     ------
@@ -125,6 +145,11 @@ def respond(rig: Rig, circuit: LoadedCircuit, harmonics: int = LEAST_HARMONICS) 
     """
     point, setting = circuit.point, circuit.bracing
     controlled = setting.mode == "torque_controlled"
+    settings = SweepSettings(
+        period=rig.case.numerics.response_period, cutoff=rig.highest_mode, harmonics=harmonics
+    )
+    if near is not None:
+        settings = replace(settings, start=near, tolerance=NEAR_TOLERANCE)
     curve = periodic_response(
         circuit.system,
         periodic_laws(rig, shifted_laws(rig, circuit.models, setting)),
@@ -134,9 +159,7 @@ def respond(rig: Rig, circuit: LoadedCircuit, harmonics: int = LEAST_HARMONICS) 
             twist=None if controlled else setting.twist,
         ),
         drag_torques=circuit.drags,
-        settings=SweepSettings(
-            period=rig.case.numerics.response_period, cutoff=rig.highest_mode, harmonics=harmonics
-        ),
+        settings=settings,
     )
     if curve.failed:
         raise DynamicsNotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")

@@ -52,12 +52,9 @@ def mesh_placements(
         return {}
     coefficients = bearing_coefficients(rig, coupling_state, bearings)
     moved = _displacements(rig, running_at(rig, point, coefficients), coefficients, coupling_state)
-    model, found = rig.elastic.model, {}
+    found = {}
     for name, pair in rig.pairs.items():
-        rows = [
-            rig.elastic.reduced.rows(model.rows(full)[[1, 2, 5, 4]]) * [[1.0], [1.0], [1.0], [-1.0]]
-            for full in rig.mesh_gears(name)
-        ]
+        rows = [rig.elastic.lateral_rows[full] for full in rig.mesh_gears(name)]
         spring, rest = ((rows[1] - rows[0]) @ moved).T  # y, z and their slopes over x
         both = spring + rest
         line = rig.line_of_action(name)
@@ -108,11 +105,11 @@ def _displacements(
     reduced, drivetrain = rig.elastic.reduced, rig.elastic.rig.drivetrain
     teeth = np.zeros(reduced.size)
     for mesh in drivetrain.meshes:
-        pinion, wheel = reduced.rows(rig.elastic.port_rows[mesh.name])
+        pinion, wheel = rig.elastic.turn_rows[mesh.name]
         ratio = mesh.base_radii[1] / mesh.base_radii[0]
         teeth -= coupling_state.mesh_torque[mesh.name] * (pinion - ratio * wheel)
     stiffness = reduced.matrices(running).stiffness
-    standing = reduced.rows(rig.elastic.model.weight()) + standing_load(rig, coupling_state)
+    standing = rig.elastic.weight + standing_load(rig, coupling_state)
     springs = _elastic(reduced.n_rigid, stiffness, np.column_stack([teeth, standing]))
     rest = np.zeros(reduced.size)
     for bearing in drivetrain.bearings:

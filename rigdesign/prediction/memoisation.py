@@ -6,7 +6,7 @@ within a tenth of a picometre: the mean over teeth that deviate is zero only to 
 """
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -14,10 +14,12 @@ import numpy as np
 
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.static_loop import StaticState
 from dynamics.elastic_rig.mode_names import NamedMode
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_problem import HarmonicSolution
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
 from rigdesign.coupling.braced_loop import (
@@ -27,7 +29,7 @@ from rigdesign.coupling.braced_loop import (
     shifted_laws,
     signed_torque,
 )
-from rigdesign.coupling.iteration import IterationParts
+from rigdesign.coupling.iteration import IterationParts, IterationResult
 from rigdesign.coupling.loop_system import loop_system, running_state
 from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_damping import mesh_damping
@@ -59,6 +61,8 @@ class Memoisation:
 
     def __init__(self) -> None:
         self._known: dict[str, dict[Any, Any]] = {kind: {} for kind in MOST}
+        self._states: dict[str, HarmonicSolution] = {}
+        self._braced: dict[str, StaticState] = {}
 
     @property
     def parts(self) -> IterationParts:
@@ -130,6 +134,8 @@ class Memoisation:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
+        if rig.case.drivetrain.bracing.mode == "torque_controlled":
+            return BracingState(mode="torque_controlled")
         models = self.models(rig, point, initial)
         system = self.system(rig, point, initial, self.bearings(rig, point, initial))
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
@@ -141,7 +147,11 @@ class Memoisation:
         )
         known = self._room("bracings")
         if key not in known:
-            known[key] = brace_initial(rig, point, initial, models, system)
+            near = self._braced.get(point.stage)
+            made = brace_initial(rig, point, initial, models, system, near)
+            if made.static is not None:
+                self._braced.setdefault(point.stage, made.static)
+            known[key] = made
         found: BracingState = known[key]
         return found
 
@@ -175,9 +185,18 @@ class Memoisation:
         )
         known = self._room("responses" if rig.shaft_model == "torsional" else "elastic responses")
         if key not in known:
-            known[key] = circuit.system, respond_at_any_speed(rig, circuit)
+            made = respond_at_any_speed(rig, circuit, self._states.get(point.stage))
+            if made.solution is not None:
+                self._states.setdefault(point.stage, made.solution)
+            known[key] = circuit.system, made
         found: tuple[LinearSystem, CurvePoint] = known[key]
         return found[1]
+
+    def start_from(self, converged: Iterable[IterationResult]) -> None:
+        """Let responses at operating points start from those of their last iterations."""
+        for last in converged:
+            if last.response is not None and last.response.solution is not None:
+                self._states[last.point.stage] = last.response.solution
 
     def _room(self, kind: str) -> dict[Any, Any]:
         """What is known of a kind, with room for one more."""

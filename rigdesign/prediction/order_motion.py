@@ -116,8 +116,8 @@ class OrderMotion(Protocol):
 class DeviatingMotion:
     """About the motion with all teeth alike."""
 
-    def __init__(self, response: DeviationResponse, base: CurvePoint) -> None:
-        self.response = response
+    def __init__(self, response: DeviationResponse) -> None:
+        self.response, base = response, response.loop.base
         self.twist, self.drive, self.speed = base.twist, base.drive_torque, base.speed
 
     def loads(self, orders: Sequence[float], torques: Sequence[OscillatingTorque]) -> Sequence[OrderLoads]:

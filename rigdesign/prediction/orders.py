@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
 from dynamics.orders.deviation_response import CYCLE_STEPS, DeviationResponse, OrderLoads, mean_windup
+from dynamics.orders.hill_system import MeshPeriodic
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.errors import UsageError
@@ -46,7 +47,7 @@ def shaft_orders(
     loop: LoadedCircuit,
     channels: Sequence[Channel],
     *,
-    base: CurvePoint | None = None,
+    base: CurvePoint | MeshPeriodic | None = None,
     exact: bool | None = None,
     steps: int = CYCLE_STEPS,
 ) -> Orders:
@@ -70,7 +71,7 @@ class PointOrders:
         rig: Rig,
         loop: LoadedCircuit,
         *,
-        base: CurvePoint | None = None,
+        base: CurvePoint | MeshPeriodic | None = None,
         exact: bool | None = None,
         steps: int = CYCLE_STEPS,
     ) -> None:
@@ -80,7 +81,7 @@ class PointOrders:
         ----------
         loop : its warm meshes with the deviations of their teeth
         base : response of the same point with all teeth alike and no oscillating torque (`ideal_response`), where it
-            is known
+            is known, or what was linearised about it
         exact : follow all contacts over the hunting cycle instead (seconds to a minute, not milliseconds); left out,
             where the corrections do not suffice (a tooth that is all but missing); False: never
         steps : corrections at most for what the contacts do beyond first order; 0 is the linear response about the
@@ -111,7 +112,7 @@ class PointOrders:
             held = self.loop.bracing.mode != "torque_controlled"
             response = DeviationResponse(self.system, self.laws, base, twist_held=held, steps=self.steps)
             if self.steps < CYCLE_STEPS or response.change < MOST_CHANGE:
-                return DeviatingMotion(response, base)
+                return DeviatingMotion(response)
             if self.exact is False:
                 raise DynamicsNotConverged(
                     f"orders at {self.loop.point.stage!r}: the last correction still moved the contacts by "

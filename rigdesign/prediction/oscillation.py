@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.response.response_curve import CurvePoint
+from dynamics.orders.deviation_response import linearised
+from dynamics.orders.hill_system import MeshPeriodic
+from rigdesign.coupling.braced_loop import shifted_laws
 from rigdesign.prediction.converged_point import ConvergedPoint
 from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.prediction.model import Channel, Feature
@@ -33,7 +35,7 @@ class OscillatingPart:
     ) -> None:
         self._converged, self._memoisation = converged, memoisation
         self._channels, self._features = channels, features
-        self._ideal: CurvePoint | None = None
+        self._ideal: MeshPeriodic | None = None
         self._base: FloatArray | None = None
 
     def base(self) -> FloatArray:
@@ -55,10 +57,13 @@ class OscillatingPart:
             read.append(value.imag if feature.part == "imaginary" else value.real)
         return np.array(read)
 
-    def _ideal_motion(self) -> CurvePoint:
-        """The response of the point with all teeth alike and no oscillating torque."""
+    def _ideal_motion(self) -> MeshPeriodic:
+        """The loop about the motion of the point with all teeth alike and no oscillating torque: what only oscillates
+        leaves it as it is."""
         if self._ideal is None:
-            rig, last = self._converged.problem.rig, self._converged.last
-            own = last.response if is_ideal(rig, last.loop) else None
-            self._ideal = own or ideal_response(rig, last.loop)
+            rig, loop = self._converged.problem.rig, self._converged.last.loop
+            own = self._converged.last.response if is_ideal(rig, loop) else None
+            laws = shifted_laws(rig, loop.models, loop.bracing)
+            held = loop.bracing.mode != "torque_controlled"
+            self._ideal = linearised(loop.system, laws, own or ideal_response(rig, loop), held)
         return self._ideal

@@ -62,6 +62,7 @@ class ReducedRig:
             self.housings = ReducedHousings.of_numbers(self.stated, housings)
         self.memoisation = Memoisation()
         self._parts = self.housings.parts(self.memoisation.parts)
+        self._initial: dict[str, CouplingState] = {}
         self.rigs = [rig_at(self.stated, condition) for condition in conditions]
 
     def converged_base(self, starts: Sequence[CouplingState] = ()) -> list[ConvergedPoint]:
@@ -77,6 +78,8 @@ class ReducedRig:
                 continue
             near = min(range(index), key=lambda i: distance(self.conditions[i], condition), default=None)
             points.append(converge_point(problem, None if near is None else points[near]))
+        self.memoisation.start_from(point.last for point in points)
+        self._initial |= {point.last.point.stage: point.problem.initial for point in points}
         return points
 
     def problem(self, rig: Rig, condition: OperatingCondition) -> PointProblem:
@@ -84,9 +87,15 @@ class ReducedRig:
         return PointProblem.braced(rig, operating_point(condition), self._parts)
 
     def changed_problem(self, rig: Rig, condition: OperatingCondition) -> PointProblem:
-        """The coupled problem of a changed rig at an operating condition; its bracing is looked up where it was met."""
+        """The coupled problem of a changed rig at an operating condition; its bracing is looked up where it was met.
+
+        Its initial state is that of the stated rig where nothing is braced in it.
+        """
         here, point = rig_at(rig, condition), operating_point(condition)
-        initial = initial_state(here, point, self.memoisation.bearings)
+        power = rig.case.drivetrain
+        held = power is not None and power.bracing.mode != "torque_controlled"
+        known = None if held else self._initial.get(condition.name)
+        initial = known or initial_state(here, point, self.memoisation.bearings)
         return PointProblem(
             rig=here,
             point=point,

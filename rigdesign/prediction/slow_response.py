@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
+from dynamics.response.harmonic_problem import HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
 from dynamics.response.quasi_static import quasi_static_point
 from dynamics.response.response_curve import CurvePoint
@@ -28,7 +29,9 @@ FOLLOWED = 4.0
 followed in time, as in a check."""
 
 
-def respond_at_any_speed(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
+def respond_at_any_speed(
+    rig: Rig, circuit: LoadedCircuit, near: HarmonicSolution | None = None
+) -> CurvePoint:
     """As `rigdesign.coupling.braced_loop.respond`, slow points quasi-static.
 
     Raises
@@ -42,7 +45,7 @@ def respond_at_any_speed(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
     cells_a_second = rig.drive_speed(circuit.point.speed) / cell_angle
     highest = highest_mode(ports, circuit.system.form, rig.highest_mode)
     if REACH * highest <= FOLLOWED * MOST_HARMONICS * cells_a_second:
-        return respond(rig, circuit, GAUGE_HARMONICS if rig.strain_gauges else LEAST_HARMONICS)
+        return respond(rig, circuit, near, GAUGE_HARMONICS if rig.strain_gauges else LEAST_HARMONICS)
     setting = circuit.bracing
     controlled = setting.mode == "torque_controlled"
     return quasi_static_point(

@@ -95,6 +95,25 @@ class ElasticDrivetrain:
         return SeenRig(reduced=self.reduced, ports=self.port_rows)
 
     @cached_property
+    def weight(self) -> Array:
+        """(n,) gravity on the coordinates of the reduced rig [N, N m]."""
+        return self.reduced.rows(self.model.weight())
+
+    @cached_property
+    def lateral_rows(self) -> dict[str, Array]:
+        """(4, n) y, z and their slopes over x of every gear, by ``gearbox.gear``, on the same coordinates."""
+        signs = np.array([[1.0], [1.0], [1.0], [-1.0]])
+        return {
+            gear.name: self.reduced.rows(self.model.rows(gear.name)[[1, 2, 5, 4]]) * signs
+            for gear in self.rig.drivetrain.gears
+        }
+
+    @cached_property
+    def turn_rows(self) -> dict[str, Array]:
+        """(2, n) `port_rows` on the same coordinates."""
+        return {mesh: self.reduced.rows(rows) for mesh, rows in self.port_rows.items()}
+
+    @cached_property
     def port_rows(self) -> dict[str, Array]:
         """(2, n) turns of pinion and wheel as each mesh sees them on the flanks that carry, by mesh."""
         return {

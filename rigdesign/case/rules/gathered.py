@@ -9,7 +9,7 @@ from rigdesign.case.component_limits import PLACES, has_result
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import ROOM
 from rigdesign.case.housing import Housing
-from rigdesign.case.paths import known_paths, nearest_paths
+from rigdesign.case.paths import known_paths, nearest_paths, slot_at
 from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
@@ -114,12 +114,13 @@ def _media(at: str, housing: Housing, oils: Iterable[str]) -> Iterator[Fault]:
 
 
 def _limits(case: "Case") -> Iterator[Fault]:
+    if not case.limits.bought_parts:
+        return
     plain = case.model_dump(mode="python")
-    paths: list[str] = []
     for name, bought in case.limits.bought_parts.items():
-        paths = paths or known_paths(type(case), plain)
-        if bought.part not in paths or _missing(plain, bought.part):
-            present = [path for path in paths if not _missing(plain, path)]
+        known = slot_at(type(case), plain, bought.part.split(".")) is not None
+        if not known or _missing(plain, bought.part):
+            present = [path for path in known_paths(type(case), plain) if not _missing(plain, path)]
             meant = nearest_paths(bought.part, present, 2)
             yield Fault(
                 f"limits.bought_parts.{name}.part", written(bought.part), "no such part in this case",

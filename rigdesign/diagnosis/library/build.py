@@ -19,6 +19,7 @@ from rigdesign.prediction.model import (
     STANDING_QUANTITIES,
     Channel,
     OperatingCondition,
+    PredictionModel,
     measured_against,
 )
 from rigdesign.prediction.predictor import Predictor
@@ -44,8 +45,11 @@ def build_library(
     channels: Sequence[Channel],
     effects: Sequence[Effect],
     say: Progress = lambda message: None,
+    circuit: PredictionModel | None = None,
 ) -> Library:
     """Run the model at the plan for everything that may be off; on all cores.
+
+    circuit : shafts and teeth of the power circuit; left out, what data of these channels are held against
 
     Finished responses are kept until the library is whole, so that an interrupted run goes on there.
 
@@ -54,10 +58,11 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     metered = (POWER,) if case.drivetrain is not None else ()
-    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=measured_against(channels))
+    model = circuit or measured_against(channels)
+    predictor = Predictor(case, tuple(settings), (*channels, *metered), circuit=model)
     predictor.prepare()
     base = predictor.base
-    parts = Parts.of(case, settings, channels, effects)
+    parts = Parts.of(case, settings, channels, effects, model)
     moving = [effect for effect in effects if _reaches(effect, channels)]
     responses = _responses(predictor, case, moving, parts, say)
     say("local conductances, sources, settings")

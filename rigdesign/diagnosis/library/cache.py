@@ -22,7 +22,7 @@ from rigdesign.base.version import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.prediction.model import Channel, OperatingCondition
+from rigdesign.prediction.model import Channel, OperatingCondition, PredictionModel, measured_against
 
 SCHEMA = 4
 """Of the stored libraries; raise it with any change of what they hold."""
@@ -52,7 +52,7 @@ def library_of(
     if found is not None:
         return found
     made = build()
-    _store(_folder(case, effects), made)
+    _store(_folder(case, effects, measured_against(channels)), made)
     serving = made.serving(tuple(settings), tuple(channels))
     assert serving is not None
     return serving
@@ -67,7 +67,7 @@ def stored_library(
 ) -> Library | None:
     """Of the stored libraries that serve these points and channels the one nearest to them; None if there is none."""
     nearest, least = None, float("inf")
-    for found in _stored(_folder(case, effects), Library, say):
+    for found in _stored(_folder(case, effects, measured_against(channels)), Library, say):
         if (distance := found.distance(settings)) >= least:
             continue
         serving = found.serving(tuple(settings), tuple(channels))
@@ -89,10 +89,11 @@ class Parts:
         settings: Sequence[OperatingCondition],
         channels: Sequence[Channel],
         effects: Sequence[Effect],
+        circuit: PredictionModel,
     ) -> "Parts":
-        """Of one library: its rig, plan and sensors."""
-        plan = hashlib.sha256(repr((tuple(settings), tuple(channels))).encode()).hexdigest()[:16]
-        return cls(_folder(case, effects) / f"{plan}.parts")
+        """Of one library: its rig, plan, sensors and model."""
+        plan = hashlib.sha256(repr((tuple(settings), tuple(channels), circuit)).encode()).hexdigest()[:16]
+        return cls(_folder(case, effects, circuit) / f"{plan}.parts")
 
     def known(self, say: Progress = _silent) -> dict[str, Response | None]:
         """Effect -> its response, None where the model refused it; ``say`` is called for damaged files."""
@@ -110,15 +111,16 @@ class Parts:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def _folder(case: Case, effects: Sequence[Effect]) -> Path:
-    return cache_folder() / "diagnosis" / _key(case, effects)
+def _folder(case: Case, effects: Sequence[Effect], circuit: PredictionModel) -> Path:
+    return cache_folder() / "diagnosis" / _key(case, effects, circuit)
 
 
-def _key(case: Case, effects: Sequence[Effect]) -> str:
+def _key(case: Case, effects: Sequence[Effect], circuit: PredictionModel) -> str:
     content = {
         "schema": SCHEMA,
         "version": __version__,
         "case": case.hash,
+        "circuit": repr(circuit),
         "effects": [
             [effect.name, effect.linear, *(part.bounds for part in effect.parameters)] for effect in effects
         ],

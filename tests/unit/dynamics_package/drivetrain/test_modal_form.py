@@ -3,7 +3,7 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.modal_form import known_modal_form, modal_form
 from dynamics.drivetrain.modes import closed_matrices
 from tests.builders.rig import prototype, prototype_laws
 
@@ -90,3 +90,14 @@ def test_full_inertia_gyroscopic_and_skew_parts_give_the_direct_receptance() -> 
     )
     moving = np.sort_complex(poles[np.abs(poles) > 1e-6])
     assert np.sort_complex(form.poles) == pytest.approx(moving, rel=1e-8)
+
+
+def test_matrices_met_before_are_not_solved_again_and_others_are() -> None:
+    system = assemble(prototype())
+    matrices = system.inertia, system.damping, system.stiffness, system.rigid
+    first = known_modal_form(*matrices)
+    assert known_modal_form(*(one.copy() for one in matrices)) is first
+    softer = known_modal_form(system.inertia, system.damping, 0.9 * system.stiffness, system.rigid)
+    assert np.sort(np.abs(softer.poles)) != pytest.approx(np.sort(np.abs(first.poles)), rel=1e-3)
+    wanted = modal_form(system.inertia, system.damping, 0.9 * system.stiffness, system.rigid)
+    assert np.array_equal(softer.poles, wanted.poles)

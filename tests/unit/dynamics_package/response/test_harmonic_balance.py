@@ -227,3 +227,23 @@ def test_a_singular_newton_matrix_is_no_solution(monkeypatch: pytest.MonkeyPatch
     )
     assert curve.points == ()
     assert "harmonic balance at" in curve.failed[0][1]
+
+
+def test_a_start_next_to_the_solution_leads_to_it_at_the_twist_that_is_held() -> None:
+    """From the state of a twist that is two per cent less, with another damping."""
+    first = by_harmonics(prototype_laws(), [3000.0]).points[0]
+    load, laws = LoopLoad(twist=first.twist), prototype_laws(damping=0.03)
+    (less,) = by_harmonics(prototype_laws(), [3000.0], LoopLoad(twist=0.98 * first.twist)).points
+    (alone,) = by_harmonics(laws, [3000.0], load, tolerance=1e-8).points
+    (near,) = by_harmonics(laws, [3000.0], load, tolerance=1e-8, start=less.solution).points
+    assert near.twist == first.twist
+    assert near.mean == pytest.approx(alone.mean, rel=1e-8)
+    assert near.harmonics[:, 1:5] == pytest.approx(alone.harmonics[:, 1:5], rel=1e-6)
+    assert abs(less.mean[0] / alone.mean[0] - 1.0) > 5e-3
+
+
+def test_steps_with_the_tangents_of_the_step_before_end_in_the_same_state(monkeypatch) -> None:
+    (chords,) = by_harmonics(prototype_laws(), [4500.0], tolerance=1e-9).points
+    monkeypatch.setattr(HarmonicNewton, "step_again", HarmonicNewton.step)
+    (newton,) = by_harmonics(prototype_laws(), [4500.0], tolerance=1e-9).points
+    assert chords.harmonics == pytest.approx(newton.harmonics, rel=1e-7, abs=1e-9)

@@ -133,3 +133,13 @@ def test_a_gearbox_that_stands_the_other_way_round_moves_its_shafts_as_turned_ab
     record = coupled_ends(replace(place, offset=(0.0, 0.0)), {"test": axes})
     assert record.offset == (found.offset["wheel_side.lateral"], found.offset["wheel_side.vertical"])
     assert record.angle == (found.angle["wheel_side.lateral"], found.angle["wheel_side.vertical"])
+
+
+def test_loads_of_another_state_are_found_anew() -> None:
+    of = rig()
+    state = cold(of)
+    twisted = replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 100.0))
+    still, first = bearing_loads(of, state), bearing_loads(of, twisted)
+    assert bearing_loads(of, state) == still
+    assert bearing_loads(of, twisted) == first
+    assert all(first[name].radial > still[name].radial for name in still)

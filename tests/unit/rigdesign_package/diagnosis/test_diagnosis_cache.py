@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.diagnosis.library import cache
 from rigdesign.diagnosis.library.cache import Parts, library_of, stored_library
 from rigdesign.diagnosis.library.library import Library
+from rigdesign.prediction import OWN_MODEL, TORSIONAL
 from tests.builders.corruption import damages
 from tests.builders.diagnosis import story, the_case
 
@@ -127,3 +129,15 @@ def test_nothing_is_left_where_a_library_cannot_be_stored(folder: Path, monkeypa
     rig = Rig()
     assert rig().channels and rig.built == 1
     assert not [left for left in folder.rglob("*") if left.is_file()]
+
+
+def test_what_another_model_of_the_circuit_made_is_another_library(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = Rig()
+    rig()
+    monkeypatch.setattr(cache, "MEASURED_AGAINST", OWN_MODEL)
+    rig()
+    assert rig.built == 2
+    plan = the_case(), rig.library.settings, rig.library.channels, ()
+    assert Parts.of(*plan, TORSIONAL).folder != Parts.of(*plan, OWN_MODEL).folder
