@@ -80,8 +80,9 @@ class HarmonicWalk:
     ) -> HarmonicSolution:
         """State at a speed of the drive freedom [rad/s], by continuation from ``last``; else DynamicsNotConverged.
 
-        Where Newton's method stalls next to a state of nearly the same speed, what is left would hide the small change that
-        is sought: the slowly rotating loop is tried as well, and the stalled state taken only where that leads nowhere.
+        Where Newton's method stalls next to a state of nearly the same speed, what is left would hide the small change
+        that is sought: the slowly rotating loop is tried as well, and the stalled state taken only where that leads
+        nowhere.
         """
         grid = self.grid(speed)
         reason, stalled = DynamicsNotConverged(""), None
