@@ -175,7 +175,8 @@ def draw_input_error(
     ]
     kind = kinds[rng.integers(len(kinds))]
     big = float(rng.choice([-1.0, 1.0]) * math.exp(rng.uniform(math.log(3.0), math.log(10.0))))
-    stream = list(points[0].inlet)[rng.integers(2)]
+    tested = [stream for stream in points[0].inlet if stream.startswith("test.")]
+    stream = tested[rng.integers(len(tested))]
 
     def one(group: Sequence[Sensor]) -> Sensor:
         return group[rng.integers(len(group))]
