@@ -31,10 +31,11 @@ from tests.builders.root_gauges import (
     write_recordings,
 )
 
-POINTS = ((100.0, 140.0), (100.0, 189.0), (100.0, 336.0), (100.0, 483.0))
-"""The torques of P1's contact patterns and of its stresses, quasi-static."""
+POINTS = tuple((100.0, torque) for torque in (100.0, 140.0, 189.0, 240.0, 336.0, 483.0))
+"""The torques of P1's contact patterns and of its stresses and some between, quasi-static."""
 PLACE = "gearboxes.test.gears.pinion.strain_gauges"
-TRUE = -10e-6
+TRUE = 10e-6
+"""Of the pinion as the case counts it, positive where the rear end is relieved; P1 writes -10 um [m]."""
 NAME = "misalignment:test.main"
 
 pytestmark = pytest.mark.slow
