@@ -12,7 +12,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid
-from dynamics.response.harmonic_walk import mesh_cells, quasi_static_start
+from dynamics.response.harmonic_walk import LEAST_SAMPLES, mesh_cells, quasi_static_start
 from dynamics.response.periodic_response import Period
 from dynamics.response.response_curve import CurvePoint, point_of
 
@@ -47,7 +47,7 @@ def quasi_static_point(
         law.teeth_1 * abs(float(model.ratios[pinion])) for law, pinion in zip(laws, model.pinions)
     ) * turned / (2.0 * pi)  # fmt: skip
     harmonics = round(HARMONICS * meshes)
-    samples = 1 << (4 * harmonics - 1).bit_length()
+    samples = 1 << (round(LEAST_SAMPLES * meshes) - 1).bit_length()
     grid = HarmonicGrid(cells=1, harmonics=harmonics, samples=samples, cell_angle=turned)
     solution = quasi_static_start(problem, grid, speed / float(model.ratios[0]), drag_torques)
     return replace(point_of(model, replace(solution, residual=0.0)), method="quasi_static")

@@ -2,13 +2,15 @@
 below the highest mode, and for the number of harmonics of rigs with root gauges.
 
 An excitation that slow hardly moves the modes: the loop follows quasi-statically, as P1 takes its 100 rpm. Following it
-in time instead takes minutes and as a rule does not settle. Loads that alternate with a shaft are left out there.
+in time instead takes minutes and as a rule does not settle; it is what remains where friction leaves no
+quasi-static state. Loads that alternate with a shaft are left out there.
 """
 
 from dataclasses import replace
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
+from dynamics.errors import DynamicsNotConverged
 from dynamics.response.harmonic_problem import HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
 from dynamics.response.quasi_static import quasi_static_point
@@ -46,6 +48,14 @@ def respond_at_any_speed(
     highest = highest_mode(ports, circuit.system.form, rig.highest_mode)
     if REACH * highest <= FOLLOWED * MOST_HARMONICS * cells_a_second:
         return respond(rig, circuit, near, GAUGE_HARMONICS if rig.strain_gauges else LEAST_HARMONICS)
+    try:
+        return _quasi_static(rig, circuit)
+    except DynamicsNotConverged:
+        return respond(rig, circuit, near)
+
+
+def _quasi_static(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
+    """Raises DynamicsNotConverged where an angle has no state, as when friction reverses at the pitch point."""
     setting = circuit.bracing
     controlled = setting.mode == "torque_controlled"
     return quasi_static_point(
@@ -57,7 +67,7 @@ def respond_at_any_speed(
             twist=None if controlled else setting.twist,
         ),
         circuit.drags,
-        period,
+        rig.case.numerics.response_period,
     )
 
 

@@ -43,6 +43,7 @@ place = "test.pinion.{name}"
 unit = "um/m"
 uncertainty = "2 um/m"
 scale_uncertainty = 0.01
+offset_uncertainty = "50 um/m"
 """
 
 

@@ -9,7 +9,7 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
-from rigdesign.diagnosis.decision.required import required_causes
+from rigdesign.diagnosis.decision.required import RequiredCause, required_causes
 from rigdesign.diagnosis.decision.simulation import Simulation
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Extra, extra_points
@@ -19,7 +19,7 @@ from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import ALIAS
-from rigdesign.diagnosis.statistics.evidence import Curve, Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.next_measurement import (
     Foreseen,
     Proposal,
@@ -30,6 +30,7 @@ from rigdesign.diagnosis.statistics.next_measurement import (
     smallest_set,
 )
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
+from rigdesign.diagnosis.statistics.required_size import straight
 from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
@@ -199,27 +200,32 @@ def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
 def _needed(whole: ResidualProblem, measured: int) -> list[Rival]:
     """With too few data: causes at the sizes at which each explains the residual, the least out of bounds first.
 
-    Of causes that leave the same trace in everything that could be read the first one stands for all.
+    The first one of a kind stands for all of it, and for others that leave the same trace in all that could be read.
     """
-    causes = required_causes(whole.rows(range(measured)))
-    usable = [
-        one for one in causes
-        if one.explains and one.size is not None and one.size.reach <= MOST_BEYOND
-        and isinstance(one.entry, Effect) and not one.size.extrapolated
-    ]  # fmt: skip
-    found: list[Rival] = []
-    for cause in sorted(usable, key=lambda one: (not one.within, one.size.reach if one.size else 0.0)):
+    causes = [one for one in required_causes(whole.rows(range(measured))) if _in_question(one)]
+    found: dict[str, Rival] = {}
+    for cause in sorted(causes, key=lambda one: (not one.within, one.size.reach if one.size else 0.0)):
         assert cause.size is not None and isinstance(cause.entry, Effect)
+        if cause.entry.kind in found:
+            continue
         response = whole.library.responses[cause.entry.name]
         sizes = np.array(cause.size.coordinates)
         if response.nonlinear:
-            answer = Curve.of(response.coordinates[:, 0], response.answers).at(sizes)[0]
+            answer = straight(response.coordinates[:, 0], response.answers, float(sizes[0]))
         else:
             answer = response.sensitivity() @ sizes
-        if all(_cosine(answer, one.answer) < ALIAS for one in found):
+        if all(_cosine(answer, one.answer) < ALIAS for one in found.values()):
             nothing = np.zeros((len(answer), 0))
-            found.append(Rival(name=cause.explanation, answer=answer, slopes=nothing, deviations=np.zeros(0)))
-    return found[:RIVALS]
+            rival = Rival(name=cause.explanation, answer=answer, slopes=nothing, deviations=np.zeros(0))
+            found[cause.entry.kind] = rival
+    return list(found.values())[:RIVALS]
+
+
+def _in_question(cause: RequiredCause) -> bool:
+    """Whether an effect could be what is looked for: near its bounds, and not the other way round than it can be."""
+    if not cause.explains or cause.size is None or not isinstance(cause.entry, Effect):
+        return False
+    return cause.size.reach <= MOST_BEYOND and not cause.reversed
 
 
 def _cosine(first: Array, second: Array) -> float:

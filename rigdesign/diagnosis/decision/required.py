@@ -35,6 +35,16 @@ class RequiredCause:
         """Whether the residual is met by it."""
         return self.size is not None and self.size.share >= EXPLAINS
 
+    @property
+    def reversed(self) -> bool:
+        """Whether it would have to go the other way round than it can."""
+        if self.size is None or not isinstance(self.entry, Effect) or len(self.size.coordinates) > 1:
+            return False
+        low, high = self.entry.parameters[0].bounds
+        return (self.size.coordinates[0] < 0.0 and low == 0.0) or (
+            self.size.coordinates[0] > 0.0 and high == 0.0
+        )
+
 
 def required_causes(residuals: ResidualProblem) -> tuple[RequiredCause, ...]:
     """All effects, then all errors.

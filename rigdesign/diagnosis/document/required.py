@@ -15,8 +15,12 @@ FAR = 20.0
 """Size over its bound beyond which no number is given: the answer was continued too far."""
 MOST_FACTOR = 100.0
 """Factor up or down beyond which no number is given."""
-WITHIN, BEYOND, NOT_IT = "within the bound", "beyond the bound", "does not explain it"
-UNMOVED, NOT_COMPUTED, NOT_MODELLED = "does not move these numbers", "not computed", "not modelled"
+WITHIN = "within the bound"
+BEYOND = "beyond the bound"
+NOT_IT = "does not explain it"
+UNMOVED = "does not move these numbers"
+NOT_COMPUTED = "not computed"
+NOT_MODELLED = "not modelled"
 ORDER = (WITHIN, BEYOND, NOT_IT, UNMOVED, NOT_COMPUTED, NOT_MODELLED)
 """Verdicts of the rows, in their order."""
 
@@ -93,12 +97,8 @@ def _why(cause: RequiredCause, far: bool) -> str:
     assert cause.size is not None
     if far:
         return f"a factor beyond {MOST_FACTOR:g}"
-    if isinstance(cause.entry, Effect) and len(cause.size.coordinates) == 1 and not cause.within:
-        low, high = cause.entry.parameters[0].bounds
-        if (cause.size.coordinates[0] < 0.0 and low == 0.0) or (
-            cause.size.coordinates[0] > 0.0 and high == 0.0
-        ):
-            return "the other way round than it can be"
+    if cause.reversed:
+        return "the other way round than it can be"
     return "continued beyond the runs of the model" if cause.size.extrapolated else ""
 
 

@@ -84,3 +84,12 @@ class ResidualMetric:
             reach=float(np.linalg.norm(sizes)) / bound,
             extrapolated=extrapolated,
         )
+
+
+def straight(coordinates: Array, answers: Array, size: float) -> Array:
+    """(n,) answer of runs at coordinates (m,), answers (m, n), at a size: straight between them and beyond."""
+    order = np.argsort(coordinates)
+    places, runs = coordinates[order], answers[order]
+    at = int(np.clip(np.searchsorted(places, size) - 1, 0, len(places) - 2))
+    share = (size - places[at]) / (places[at + 1] - places[at])
+    return np.asarray((1.0 - share) * runs[at] + share * runs[at + 1])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.statistics.required_size import ResidualMetric
+from rigdesign.diagnosis.statistics.required_size import ResidualMetric, straight
 
 NOISE = np.diag([0.1, 0.1]) ** 2
 GAP = np.array([0.0, -2.0])
@@ -39,3 +39,10 @@ def test_runs_are_followed_straight_and_continued_beyond_the_last() -> None:
     beyond = ResidualMetric(GAP, NOISE).of_runs(places, answers, bound=1.0)
     assert beyond is not None and beyond.extrapolated
     assert abs(beyond.coordinates[0]) in (pytest.approx(2.0), pytest.approx(4.0))
+
+
+def test_answers_are_straight_between_runs_and_beyond() -> None:
+    places, answers = np.array([0.0, 2.0, -1.0]), np.array([[0.0], [4.0], [-1.0]])
+    assert straight(places, answers, 1.0) == pytest.approx([2.0])
+    assert straight(places, answers, 3.0) == pytest.approx([6.0])
+    assert straight(places, answers, -2.0) == pytest.approx([-2.0])

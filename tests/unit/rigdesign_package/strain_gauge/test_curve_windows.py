@@ -8,10 +8,10 @@ from rigdesign.strain_gauge.curve_windows import curve_windows
 PITCH = 2.0 * np.pi / 18
 
 
-def bell(angle, centre=0.1, lean=0.0):
-    """Strain of a tooth with its maximum at ``centre``; ``lean`` makes entry and exit differ."""
+def bell(angle, centre=0.1):
+    """Strain of a tooth with its maximum at ``centre``."""
     place = (angle - centre) / (0.35 * PITCH)
-    return 5e-4 * np.exp(-(place**2)) * (1.0 + lean * np.tanh(place))
+    return 5e-4 * np.exp(-(place**2))
 
 
 ANGLE = np.linspace(-np.pi, np.pi, 1440, endpoint=False)
@@ -31,10 +31,12 @@ def test_the_maximum_lies_a_little_below_the_highest_strain() -> None:
     assert 0.98 * 5e-4 < found < 5e-4
 
 
-def test_a_curve_that_leans_has_more_on_one_side() -> None:
-    """Not much more: the angles count from the centroid, which leans along."""
-    found = curve_windows(ANGLE, bell(ANGLE, lean=0.3), PITCH)
-    assert found["exit"] > 1.01 * found["entry"]
+def test_the_mirrored_curve_exchanges_entry_and_exit() -> None:
+    late = bell(ANGLE, centre=0.0) + 0.5 * bell(ANGLE, centre=0.4 * PITCH)
+    found = curve_windows(ANGLE, late, PITCH)
+    mirrored = curve_windows(-ANGLE[::-1], late[::-1], PITCH)
+    assert abs(found["exit"] - found["entry"]) > 0.05 * found["maximum"]
+    assert (mirrored["entry"], mirrored["exit"]) == pytest.approx((found["exit"], found["entry"]), rel=2e-3)
 
 
 def test_a_curve_of_one_tooth_alone_has_no_strain_of_the_unloaded_tooth() -> None:
