@@ -171,8 +171,12 @@ class Predictor:
 
         Such a change has no mean over a turn, so that losses, temperatures and means stay; orders alone are solved.
 
+        Root gauges follow their own tooth through the turn: with them the response is that of any change.
+
         changes : as `values`, for all operating points
         """
+        if any(channel.quantity == "root_strain" for channel in self.channels):
+            return self.response(changes)
         made = self._changed_rigs(changes)
         found = self.base.copy()
         start = 0

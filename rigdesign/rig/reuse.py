@@ -19,9 +19,12 @@ LOADS = ("rotating", "misalignments")
 def take_over(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
     """Let ``rig`` use what ``source`` computes; computed now, so that no two rigs compute it twice.
 
-    ``models`` bring the expansion set-up with them where every housing has one.
+    ``models`` bring the expansion set-up with them where every housing has one. Of a power circuit nothing is taken
+    over where there is none.
     """
     for name in parts:
+        if name in TWISTING and source.drivetrain is None:
+            continue
         rig.__dict__[name] = getattr(source, name)
     if "models" in parts and not any(model.no_expansion for model in source.models.values()):
         rig.__dict__["expansion"] = source.expansion

@@ -170,7 +170,7 @@ class _Runs:
                 continue
             changes = effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                run = self._predictor.oscillating if self._in_orders(effect) else self._predictor.response
+                run = self._predictor.oscillating if effect.oscillates else self._predictor.response
                 answers.append(run(changes) - base)
                 coordinates.append(place)
             except RigdesignError:
@@ -178,11 +178,6 @@ class _Runs:
         if len(coordinates) < 1 + len(effect.parameters):
             return None
         return Response(coordinates=np.array(coordinates), answers=np.array(answers))
-
-    def _in_orders(self, effect: Effect) -> bool:
-        """Whether orders are all that an effect moves: root gauges follow their own tooth through the turn."""
-        gauges = any(channel.quantity == "root_strain" for channel in self._predictor.channels)
-        return effect.oscillates and not gauges
 
 
 def run_places(effect: Effect) -> list[Array]:

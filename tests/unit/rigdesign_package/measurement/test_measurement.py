@@ -292,7 +292,7 @@ def test_points_run_alike_that_differ_are_suspects_unless_put_together_anew(fold
 
 def test_order_lines_follow_from_tooth_numbers() -> None:
     places = Places(load_case(CASES / "loop_hunting"))
-    teeth = [gear.teeth for gear in places._case.gearboxes["test"].gears.values()]
+    teeth = [gear.teeth for gear in places.case.gearboxes["test"].gears.values()]
     assert places.cycle == teeth[1] // np.gcd(*teeth)
     assert {0.0, 1.0, float(teeth[0]), teeth[0] / teeth[1]} <= set(places.orders)
 
