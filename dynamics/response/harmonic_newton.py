@@ -198,6 +198,8 @@ class _Paired:
         real = np.vstack([pairs.real, pairs.imag, of_parts(matrix[single]).real])
         self._positive, self._negative, self._single = positive, negative, single
         self._scale = np.abs(real).max(axis=1)
+        if not self._scale.all():  # a mesh that carries the torque does not touch
+            raise np.linalg.LinAlgError("singular matrix")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LinAlgWarning)
             self._factors = lu_factor(real / self._scale[:, None], check_finite=False)
