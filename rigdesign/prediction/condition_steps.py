@@ -29,6 +29,11 @@ def moved_conditions(
             flow = setting.flow.get(stream, feed.flow)
             flows = {**setting.flow, stream: flow * (1.0 + STEP_SHARE)}
             moved["flow", stream] = replace(setting, flow=flows), flow * STEP_SHARE
+        if box.sump is not None and box.sump.sump_temperature is not None:
+            stream = f"{name}.gear_oil"
+            held = setting.inlet_temperature.get(stream, box.sump.sump_temperature)
+            inlets = {**setting.inlet_temperature, stream: held + STEP_KELVIN}
+            moved["inlet_temperature", stream] = replace(setting, inlet_temperature=inlets), STEP_KELVIN
     room = case.ambient.temperature if setting.ambient_temperature is None else setting.ambient_temperature
     warmer = replace(setting, ambient_temperature=room + STEP_KELVIN)
     moved["ambient_temperature", ""] = warmer, STEP_KELVIN

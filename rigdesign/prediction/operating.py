@@ -9,6 +9,7 @@ from dataclasses import replace
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.lubrication import DipOil
 from rigdesign.case.model import Case
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import OperatingCondition, PredictionModel
@@ -119,13 +120,19 @@ def like(stated: Rig, case: Case) -> Rig:
 
 
 def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> None:
-    """Put a number into the oil feed of a stream."""
+    """Put a number into the oil feed of a stream; the inlet temperature of a sump is that of its oil."""
     name, _, kind = stream.partition(".")
     if name not in boxes or kind not in STREAMS:
         known = ", ".join(f"{box}.{kind}" for box in boxes for kind in STREAMS)
         raise UsageError(f"setting names oil stream {stream!r}, which the case does not have; it has {known}")
     entry = getattr(boxes[name], STREAMS[kind])
-    boxes[name] = boxes[name].model_copy(update={STREAMS[kind]: entry.model_copy(update={key: value})})
+    field = "sump_temperature" if isinstance(entry, DipOil) and key == "inlet_temperature" else key
+    if entry is None or field not in type(entry).model_fields:
+        said = "no oil" if entry is None else f"{entry.lubrication} lubrication"
+        raise UsageError(
+            f"setting names {key.replace('_', ' ')} of {stream}, which has {said} and none in the case; remove it"
+        )
+    boxes[name] = boxes[name].model_copy(update={STREAMS[kind]: entry.model_copy(update={field: value})})
 
 
 def _turn(boxes: dict[str, Gearbox], mesh: str, teeth: int) -> None:
