@@ -69,10 +69,12 @@ def test_the_contradictions_of_the_paper_are_told(document) -> None:
         assert number in text
 
 
-def test_shell_sensors_are_what_to_measure_next(document) -> None:
+def test_other_points_are_what_to_measure_next(document) -> None:
+    """A model that was never held against this rig is too uncertain for one more thermometer to tell."""
     steps = document["next_measurements"]
-    computed = [step["measurement"] for step in steps if step["separation"] is not None]
-    assert sum("bearing_bore" in text for text in computed[:4]) >= 2
+    computed = [step["measurement"] for step in steps if step["expected_odds"] is not None]
+    assert computed and all("a point " in text for text in computed)
+    assert "baseline" in steps[0]["measurement"]
     assert any("operating points" in step["measurement"] for step in steps)
 
 

@@ -200,8 +200,9 @@ def _decides(outcome: Outcome) -> str:
     named = [name for name, right in outcome.ahead.verified if right]
     count = len(outcome.ahead.verified)
     if count == 1:
-        shown = f"{'names' if named else 'does not name'} the suspect"
-    elif len(named) == count:
+        shown = "names it" if named else "does not name it yet"
+        return f"tells the suspect from a healthy rig; in a simulation with it true the diagnosis {shown}"
+    if len(named) == count:
         shown = "names it every time"
     else:
         shown = f"names {' and '.join(named) or 'none'} of {count}"

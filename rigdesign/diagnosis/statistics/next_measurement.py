@@ -110,7 +110,7 @@ class Foreseen:
 def ranked(foreseen: Foreseen, proposals: Sequence[Proposal]) -> tuple[Ranked, ...]:
     """Proposals by expected evidence per cost, best first; none with fewer than two rivals.
 
-    Evidence beyond what decides is worth nothing more.
+    Evidence beyond what decides counts among those alone that are worth the same without it.
     """
     if len(foreseen.values) < 2:
         return ()
@@ -120,7 +120,10 @@ def ranked(foreseen: Foreseen, proposals: Sequence[Proposal]) -> tuple[Ranked, .
         found.append(
             Ranked(title=proposal.title, expected_evidence=least, cost=proposal.cost, decides=least >= TELLS)
         )
-    return tuple(sorted(found, key=lambda one: (-min(one.expected_evidence, TELLS) / one.cost, one.cost)))
+    worth = {
+        one: (min(one.expected_evidence, TELLS) / one.cost, one.expected_evidence / one.cost) for one in found
+    }
+    return tuple(sorted(found, key=lambda one: worth[one], reverse=True))
 
 
 MOST_TOGETHER = 4
