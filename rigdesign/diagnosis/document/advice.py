@@ -202,10 +202,9 @@ def _decides(outcome: Outcome) -> str:
     if count == 1:
         shown = "names it" if named else "does not name it yet"
         return f"tells the suspect from a healthy rig; in a simulation with it true the diagnosis {shown}"
-    if len(named) == count:
-        shown = "names it every time"
-    else:
-        shown = f"names {' and '.join(named) or 'none'} of {count}"
+    shown = (
+        "names it every time" if len(named) == count else f"names {' and '.join(named) or 'none'} of {count}"
+    )
     return f"decides; in a simulation with each of them true the diagnosis {shown}"
 
 
