@@ -234,7 +234,7 @@ def _smallest_group(
         part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
     ]
     for count in range(2, min(thresholds.group, len(parts)) + 1):
-        if _mass_of_any(evidence, weights, parts[:count]) >= thresholds.named:
+        if mass_of_any(evidence, weights, parts[:count]) >= thresholds.named:
             return tuple(parts[:count])
     return ()
 
@@ -249,15 +249,12 @@ def _group_of_one_trace(
         return ()
     leader = max(known, key=lambda part: known[part])
     group = {leader, *candidates.alike.get(leader, frozenset())}
-    if (
-        not 1 < len(group) <= thresholds.one_trace
-        or _mass_of_any(evidence, weights, group) < thresholds.named
-    ):
+    if not 1 < len(group) <= thresholds.one_trace or mass_of_any(evidence, weights, group) < thresholds.named:
         return ()
     return tuple(sorted(group, key=lambda part: (-known.get(part, 0.0), part)))
 
 
-def _mass_of_any(evidence: Sequence[Evidence], weights: Posterior, parts: Collection[str]) -> float:
+def mass_of_any(evidence: Sequence[Evidence], weights: Posterior, parts: Collection[str]) -> float:
     """Posterior mass of all explanations that hold at least one of some parts."""
     wanted = frozenset(parts)
     return sum(

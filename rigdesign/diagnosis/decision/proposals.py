@@ -64,7 +64,7 @@ class NextMeasurements:
 
     ranked : single measurements, best first; together : the cheapest set that decides, None where none was found
     verified : explanations for which a simulation of that set ended in their name, of those simulated
-    causes : with too few data, those that are told apart at the sizes that each would need
+    causes : with too few data, those that are distinguished at the sizes that each would need
     """
 
     ranked: tuple[Ranked, ...] = ()

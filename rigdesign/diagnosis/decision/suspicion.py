@@ -18,7 +18,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from rigdesign.diagnosis.decision.claims import Traces, too_little
-from rigdesign.diagnosis.decision.decision import UNNAMED, Decision
+from rigdesign.diagnosis.decision.decision import UNNAMED, Decision, mass_of_any
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.proof import Proof
 from rigdesign.diagnosis.decision.search import Look, bounds_of, fitted
@@ -99,12 +99,7 @@ class Suspicion:
     def mass(self, *, unmodelled: bool) -> float:
         """Posterior mass of all explanations that hold one of the group, or an unmodelled cause of its trace."""
         members = {*self.group, *(self.unmodelled if unmodelled else ())}
-        weights, evidence = self.look.first.weights, self.look.first.evidence
-        return sum(
-            weights.masses[one.hypothesis.name]
-            for one in evidence
-            if not members.isdisjoint(one.hypothesis.parts)
-        )
+        return mass_of_any(self.look.first.evidence, self.look.first.weights, members)
 
     @property
     def decision(self) -> Decision:

@@ -43,7 +43,7 @@ MOST_PROPOSED = 8
 class NextStep:
     """Something to measure or do next.
 
-    expected_evidence : logarithm of the Bayes factor of the true rival, of those told apart worst; cost : as the set
+    expected_evidence : logarithm of the Bayes factor of the true rival, of those distinguished least; cost : as the set
     states costs, else relative to one thermocouple; None where it follows from a rule and not from a computation
     """
 
@@ -235,7 +235,7 @@ def _why(outcome: Outcome, proposal: Ranked) -> str:
 
 
 def _causes(outcome: Outcome) -> str:
-    """The causes that are told apart where the data are too few."""
+    """The causes that are distinguished where the data are too few."""
     titles = [outcome.names.title(name) for name in outcome.ahead.causes]
     return f"{' and '.join(titles)}, each at the size that it would need"
 

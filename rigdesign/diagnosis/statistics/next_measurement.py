@@ -50,7 +50,7 @@ class Rival:
 class Ranked:
     """A proposal with what it would bring.
 
-    expected_evidence : logarithm of the Bayes factor of the true rival, of the two that are told apart worst
+    expected_evidence : logarithm of the Bayes factor of the true rival, of the two distinguished least
     """
 
     title: str
@@ -63,7 +63,7 @@ class Ranked:
 class SmallestSet:
     """Measurements that decide together, the cheapest set that was found.
 
-    expected_evidence : logarithm of the Bayes factor of the true rival, of the two that are told apart worst
+    expected_evidence : logarithm of the Bayes factor of the true rival, of the two distinguished least
     cost : of all; rows : of their readings
     """
 
@@ -97,7 +97,7 @@ class Foreseen:
         )
 
     def expected_evidence(self, rows: Sequence[int]) -> float:
-        """Expected logarithm of the Bayes factor by some readings, of the true and the false rival told apart worst."""
+        """Expected logarithm of the Bayes factor by some readings, of the two rivals distinguished least."""
         at = np.array(rows, dtype=np.intp)
         left = self.left[np.ix_(at, at)]
         means = [values[at] for values in self.values]

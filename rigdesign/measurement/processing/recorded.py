@@ -82,7 +82,7 @@ def read_recordings(
                     if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
         roots = {name: one for name, one in recorded.items() if one.channel.quantity == "root_strain"}
         here = {name: one for name, one in recorded.items() if name not in roots}
-        faults += _unit_faults(entry, here, signals)
+        faults += unit_faults(entry.file, here, signals)
         if faults:
             continue
         place = rows.place(entry.point, entry.repeat)
@@ -271,14 +271,13 @@ def _faults(document: MeasurementFile, rows: Rows) -> Iterator[Fault]:
         seen.add((entry.point, entry.repeat))
 
 
-def _unit_faults(
-    entry: Recording, channels: Mapping[str, MeasuredChannel], signals: Signals
-) -> Iterator[Fault]:
+def unit_faults(file: str, channels: Mapping[str, MeasuredChannel], signals: Signals) -> Iterator[Fault]:
+    """Signals of a file in another unit than their channels state."""
     for name, channel in channels.items():
         unit = signals[channel.signal].unit
         kind = CHANNELS[channel.channel.quantity].kind
         if unit and not same_worth(unit, channel.unit, kind):
             yield Fault(
-                f"{entry.file}, {channel.signal}", written(unit), f'channels.{name}.unit says "{channel.unit}"',
+                f"{file}, {channel.signal}", written(unit), f'channels.{name}.unit says "{channel.unit}"',
                 "correct what is wrong; nothing is converted",
             )  # fmt: skip

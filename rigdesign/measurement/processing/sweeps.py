@@ -19,10 +19,10 @@ from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import written
 from rigdesign.measurement.processing.averaging import FRACTION
 from rigdesign.measurement.processing.order_tracking import OrderCurves, order_curves
-from rigdesign.measurement.processing.recorded import SetPlan
+from rigdesign.measurement.processing.recorded import SetPlan, unit_faults
 from rigdesign.measurement.processing.resonance_peak import Peak, resonance_peak
 from rigdesign.measurement.quality.signal_checks import signal_findings, usable_signal
-from rigdesign.measurement.quantities import CHANNELS, accepted_unit, same_worth, to_si
+from rigdesign.measurement.quantities import CHANNELS, accepted_unit, to_si
 from rigdesign.measurement.reading.document import Sweep
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
 from rigdesign.measurement.reading.signals import Signals, read_signals
@@ -126,7 +126,7 @@ class _Sweep:
         read = {n: c for n, c in self._channels.items() if c.channel.quantity in ORDER_QUANTITIES}
         if not self._sweep.speeds or not read:
             return
-        faults = list(self._unit_faults(read))
+        faults = list(unit_faults(self._sweep.file, read, self._signals))
         if faults:
             raise MeasurementError(faults)
         curves = {
@@ -235,15 +235,6 @@ class _Sweep:
     def _same_torque(self, torque: float | None) -> bool:
         own = self._sweep.torque
         return torque is not None and abs(torque - own) <= SAME_TORQUE * max(abs(own), abs(torque))
-
-    def _unit_faults(self, channels: Mapping[str, MeasuredChannel]) -> Iterator[Fault]:
-        for name, channel in channels.items():
-            unit, kind = self._signals[channel.signal].unit, CHANNELS[channel.channel.quantity].kind
-            if unit and not same_worth(unit, channel.unit, kind):
-                yield Fault(
-                    f"{self._sweep.file}, {channel.signal}", written(unit),
-                    f'channels.{name}.unit says "{channel.unit}"', "correct what is wrong; nothing is converted",
-                )  # fmt: skip
 
     def _span(self, curves: OrderCurves) -> tuple[float, float]:
         return float(curves.speed.min()), float(curves.speed.max())

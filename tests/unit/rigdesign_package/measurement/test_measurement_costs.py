@@ -7,31 +7,12 @@ import pytest
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
 from rigdesign.measurement import load_measurement
+from tests.builders.motor_power_set import motor_power_set
 from tests.builders.paths import CASES
-
-SET = """
-schema_version = 1
-title = "motor power"
-costs = {costs}
-[settings.n]
-quantity = "speed"
-unit = "rpm"
-uncertainty = "1 rpm"
-[settings.M]
-quantity = "torque"
-unit = "N m"
-uncertainty = "1 N m"
-[channels.P]
-quantity = "motor_power"
-unit = "W"
-uncertainty = "5 W"
-"""
 
 
 def written(folder: Path, costs: str) -> Path:
-    (folder / "measurement.toml").write_text(SET.format(costs=costs), encoding="utf-8")
-    (folder / "data.csv").write_text("point,n,M,P\n,rpm,N m,W\nP01,1500,100,470\n", encoding="utf-8")
-    return folder
+    return motor_power_set(folder, first=f"costs = {costs}")
 
 
 def test_costs_are_read(tmp_path: Path) -> None:

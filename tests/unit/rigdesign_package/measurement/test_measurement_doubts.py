@@ -7,23 +7,10 @@ import pytest
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
 from rigdesign.measurement import features, load_measurement
+from tests.builders.motor_power_set import motor_power_set
 from tests.builders.paths import CASES
 
-SET = """
-schema_version = 1
-title = "two numbers of a paper"
-[settings.n]
-quantity = "speed"
-unit = "rpm"
-uncertainty = "1 rpm"
-[settings.M]
-quantity = "torque"
-unit = "N m"
-uncertainty = "1 N m"
-[channels.P]
-quantity = "motor_power"
-unit = "W"
-uncertainty = "5 W"
+DOUBT = """
 [[doubts]]
 what = "power of the motor"
 size = "470 W printed, 390 W from its current"
@@ -33,9 +20,7 @@ channels = ["{channel}"]
 
 
 def written(folder: Path, channel: str) -> Path:
-    (folder / "measurement.toml").write_text(SET.format(channel=channel), encoding="utf-8")
-    (folder / "data.csv").write_text("point,n,M,P\n,rpm,N m,W\nP01,1500,100,470\n", encoding="utf-8")
-    return folder
+    return motor_power_set(folder, last=DOUBT.format(channel=channel))
 
 
 def test_a_doubt_is_told_and_its_channel_is_used(tmp_path: Path) -> None:
