@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -84,9 +85,9 @@ def diagnose_measurement(
         channels = tuple(entry.channel for entry in data.channels.values())
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)
-        offer = _offer(case, measurement, data.settings, effects)
-        say("looking for the next measurement")
-        ahead = NOTHING_NEXT if offer is None else next_measurements(problem, found, offer, calibration)
+        ahead = next_measurements(
+            problem, found, lambda: _offer(case, measurement, data.settings, effects, say), calibration
+        )
     return Result(
         case=case,
         measurement=measurement,
@@ -156,14 +157,23 @@ def _offer(
     measurement: MeasurementSet,
     settings: tuple[OperatingCondition, ...],
     effects: tuple[Effect, ...],
+    say: Progress,
 ) -> Offer | None:
-    """The points and sensors that could be added; None if the stored library of the rig has none."""
-    channels, spare = _channels(case, measurement)
+    """The points and sensors that could be added; None if the stored library of the rig has no such sensors.
+
+    The model is run at the points when they are first asked for.
+    """
+    say("looking for the next measurement")
+    channels = tuple(chain(*_channels(case, measurement)))
+    library = stored_library(case, settings, channels, effects)
+    if library is None:
+        return None
     extras = extras_of(case, settings)
-    points = (*settings, *(extra.setting for extra in extras))
-    library = stored_library(case, points, (*channels, *spare), effects)
-    costs = Costs(stated=measurement.costs)
-    return None if library is None else Offer(library=library, extras=extras, costs=costs)
+    points = tuple(extra.setting for extra in extras)
+    more = library_of(
+        case, points, channels, effects, lambda: build_library(case, points, channels, effects, say), say
+    )
+    return Offer(library=library.joined(more), extras=extras, costs=Costs(stated=measurement.costs))
 
 
 def _channels(case: Case, measurement: MeasurementSet) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
@@ -182,10 +192,9 @@ def read_residuals(
     """Readings of a set held against the library of its rig, which is made where none is kept."""
     data = features(measurement)
     channels, spare = _channels(case, measurement)
-    extras = tuple(extra.setting for extra in extras_of(case, data.settings))
 
     def build() -> Library:
-        return build_library(case, (*data.settings, *extras), (*channels, *spare), effects, say)
+        return build_library(case, data.settings, (*channels, *spare), effects, say)
 
     library = library_of(case, data.settings, channels, effects, build, say)
     known = inspected(effects, measurement.inspections, str(measurement.folder))

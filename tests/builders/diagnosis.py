@@ -208,7 +208,7 @@ def library(runs: Sequence[OperatingCondition], channels, *, without: Sequence[s
     }
     return Library(
         channels=tuple(channels), settings=tuple(runs), features=names, base=column(base), inputs=inputs,
-        responses=responses, exponents={}, links={}, sources=heat, dry_sources=dry,
+        responses=responses, links={}, sources=heat, dry_sources=dry,
         powers={run.name: 60.0 + mesh_loss(run) + 0.006 * run.speed**2 for run in runs}, modes=MODES, error=0.0,
     )  # fmt: skip
 

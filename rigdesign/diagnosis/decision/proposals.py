@@ -1,6 +1,6 @@
 """What to measure next: the rivals of a diagnosis against every further measurement of the rig."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -80,7 +80,7 @@ UNDECIDED = ("suspected", "alias_group", "too_small", "unknown_located", "data_i
 
 
 def next_measurements(
-    problem: Problem, found: Diagnosis, offer: Offer, calibration: Calibration
+    problem: Problem, found: Diagnosis, offered: Callable[[], Offer | None], calibration: Calibration
 ) -> NextMeasurements:
     """Measurements that tell the leading rivals apart; none where something is named.
 
@@ -88,13 +88,20 @@ def next_measurements(
     causes apart at the sizes that each would need, or the leading one from a healthy rig where no two come into
     question. The set is verified by simulating it with each rival as the truth and diagnosing what it would read, not
     with too few data.
+
+    offered : makes the offer, where there is something to distinguish; None if there is none
     """
     if found.decision.verdict not in UNDECIDED:
         return NOTHING_NEXT
     rivals = _rivals(found)
-    whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
     insufficient = found.decision.verdict == "data_insufficient"
     alone = insufficient or (found.decision.verdict == "suspected" and len(found.decision.named) == 1)
+    if len(rivals) < (1 if alone else 2) and not insufficient:
+        return NOTHING_NEXT
+    offer = offered()
+    if offer is None:
+        return NOTHING_NEXT
+    whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
     needed = _needed(whole, measured) if insufficient else []
     if len(rivals) < (1 if alone else 2) and len(needed) < 2:
         return NOTHING_NEXT

@@ -1,7 +1,7 @@
 """Makes the library of a rig: runs of the model for every effect, derivatives for everything else."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,6 @@ def build_library(
             name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
             for name, one in responses.items()
         },
-        exponents={name: values[own] for name, values in _exponents(predictor, effects, responses)},
         links={name: values[own] for name, values in predictor.links().items()},
         sources={name: (values + watt)[own] for name, values in unpaid.items()},
         dry_sources={name: values[own] for name, values in unpaid.items()},
@@ -196,27 +195,3 @@ def run_places(effect: Effect) -> list[Array]:
 def _run_order(effect: Effect) -> tuple[int, int]:
     """Order in which the works are dealt to the cores: what runs longest first, so that none ends alone."""
     return effect.family.run_rank, -len(run_places(effect))
-
-
-def _exponents(
-    predictor: Predictor, effects: Sequence[Effect], responses: Mapping[str, Response]
-) -> Iterator[tuple[str, Array]]:
-    """Derivatives by the exponents of the loss laws, about the mean point.
-
-    An exponent scales the loss of each point by itself, and a number follows its own point only: the derivative is
-    that by the logarithm of the loss times the logarithm of the point's ratio.
-    """
-    for effect in effects:
-        response = responses.get(effect.name)
-        if response is None:
-            continue
-        slope = response.sensitivity()[:, 0]
-        for law in effect.exponents:
-            logs = dict(zip((s.name for s in predictor.settings), np.log(_ratios(predictor.settings, law))))
-            share = np.array([logs.get(feature.setting, 0.0) for feature in predictor.features])
-            yield f"{effect.kind.replace('_', ' ')} of {effect.place} over {law}", slope * share
-
-
-def _ratios(settings: Sequence[OperatingCondition], law: str) -> Array:
-    values = np.array([max(abs(getattr(setting, law)), 1e-3) for setting in settings])
-    return np.asarray(values / np.exp(np.log(values).mean()))

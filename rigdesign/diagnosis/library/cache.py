@@ -24,7 +24,7 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.prediction.model import Channel, OperatingCondition, PredictionModel, measured_against
 
-SCHEMA = 4
+SCHEMA = 5
 """Of the stored libraries; raise it with any change of what they hold."""
 DAMAGED = ".damaged"
 """How the name of a file ends that was set aside."""

@@ -64,8 +64,8 @@ class Library:
     channels, settings : of the plan; features : their numbers; base : (n,) prediction there
     inputs : (kind, place, setting) -> (n,) derivative by one setting value [SI]
     responses : effect -> its runs
-    exponents, links, sources, dry_sources : name -> (n,): by the exponent of a loss over speed or torque; by the
-        logarithm of a local conductance; per watt at a place, paid by the motor; the same unpaid
+    links, sources, dry_sources : name -> (n,): by the logarithm of a local conductance; per watt at a place, paid by
+        the motor; the same unpaid
     powers : setting -> losses [W]
     modes : natural frequencies near which orders of torque are steep [rad/s]; none without a drivetrain
     error : stated error of the temperatures [K]
@@ -77,7 +77,6 @@ class Library:
     base: Array
     inputs: Mapping[tuple[str, str, str], Array]
     responses: Mapping[str, Response]
-    exponents: Mapping[str, Array]
     links: Mapping[str, Array]
     sources: Mapping[str, Array]
     dry_sources: Mapping[str, Array]
@@ -129,6 +128,38 @@ class Library:
             powers={run_of[point].name: power for point, power in self.powers.items() if point in run_of},
         )
 
+    def joined(self, other: "Library") -> "Library":
+        """With the points of another library of the same rig, effects and channels.
+
+        Standing quantities and modes stay those of this one.
+        """
+        settings = (*self.settings, *other.settings)
+        features = features_of(settings, self.channels)
+        place = {feature: number for number, feature in enumerate(other.features)}
+        place = {feature: number + len(self.features) for feature, number in place.items()}
+        place |= {feature: number for number, feature in enumerate(self.features)}
+        both = _Both(
+            counts=(len(self.features), len(other.features)),
+            rows=np.array([place[feature] for feature in features], dtype=np.intp),
+        )
+        return replace(
+            self,
+            settings=settings,
+            features=features,
+            base=both.values(self.base, other.base),
+            inputs=both.columns(self.inputs, other.inputs),
+            responses={
+                name: both.response(one, other.responses[name])
+                for name, one in self.responses.items()
+                if name in other.responses
+            },
+            links=both.columns(self.links, other.links),
+            sources=both.columns(self.sources, other.sources),
+            dry_sources=both.columns(self.dry_sources, other.dry_sources),
+            powers={**self.powers, **other.powers},
+            error=max(self.error, other.error),
+        )
+
     def distance(self, settings: Sequence[OperatingCondition]) -> float:
         """How far points lie from those of the plan that serve them: one at the limit, infinite where none does."""
         points = _matches(settings, self.settings, apart)
@@ -151,7 +182,6 @@ class Library:
                 name: Response(coordinates=one.coordinates, answers=one.answers[:, rows])
                 for name, one in self.responses.items()
             },
-            exponents=_of_rows(self.exponents, rows),
             links=_of_rows(self.links, rows),
             sources=_of_rows(self.sources, rows),
             dry_sources=_of_rows(self.dry_sources, rows),
@@ -159,6 +189,39 @@ class Library:
 
 
 K = TypeVar("K")
+
+
+@dataclass(frozen=True)
+class _Both:
+    """Numbers of two libraries behind each other, then in the order of their features together.
+
+    counts : features of each; rows : (n,) places in those behind each other
+    """
+
+    counts: tuple[int, int]
+    rows: NDArray[np.intp]
+
+    def values(self, first: Array, second: Array) -> Array:
+        """(..., n) of all features."""
+        return np.asarray(np.concatenate([first, second], axis=-1)[..., self.rows])
+
+    def columns(self, first: Mapping[K, Array], second: Mapping[K, Array]) -> dict[K, Array]:
+        """Zero where one of both has no such column."""
+        none, nothing = (np.zeros(count) for count in self.counts)
+        return {
+            name: self.values(first.get(name, none), second.get(name, nothing))
+            for name in dict.fromkeys((*first, *second))
+        }
+
+    def response(self, first: Response, second: Response) -> Response:
+        """At the coordinates that the model could compute for both."""
+        place = {tuple(one): number for number, one in enumerate(second.coordinates)}
+        shared = [number for number, one in enumerate(first.coordinates) if tuple(one) in place]
+        same = [place[tuple(first.coordinates[number])] for number in shared]
+        return Response(
+            coordinates=first.coordinates[shared],
+            answers=self.values(first.answers[shared], second.answers[same]),
+        )
 
 
 def _of_rows(columns: Mapping[K, Array], rows: NDArray[np.intp]) -> dict[K, Array]:

@@ -37,7 +37,7 @@ def healthy_columns(
     speed = relative_speed(library.features, library.settings)
     return (
         *_constants(library, effects),
-        *_exponents(library),
+        *_exponents(library, effects),
         *_links(library, effects, speed),
         *_sources(library),
         *_channels(library.features, level, speed, channels),
@@ -78,10 +78,26 @@ def _constants(library: Library, effects: Sequence[Effect]) -> list[Column]:
     ]
 
 
-def _exponents(library: Library) -> list[Column]:
+def _exponents(library: Library, effects: Sequence[Effect]) -> list[Column]:
+    """By the exponents of the loss laws, about the mean point.
+
+    An exponent scales the loss of each point by itself, and a number follows its own point only: the derivative is
+    that by the logarithm of the loss times the logarithm of the point's ratio.
+    """
+    ratio = {
+        "speed": relative_speed(library.features, library.settings),
+        "torque": relative_torque(library.features, library.settings),
+    }
     return [
-        Column(name=name, kind="exponent", values=values, spread=1.0)
-        for name, values in library.exponents.items()
+        Column(
+            name=f"{effect.kind.replace('_', ' ')} of {effect.place} over {law}",
+            kind="exponent",
+            values=library.responses[effect.name].sensitivity()[:, 0] * ratio[law],
+            spread=1.0,
+        )
+        for effect in effects
+        if effect.name in library.responses
+        for law in effect.exponents
     ]
 
 

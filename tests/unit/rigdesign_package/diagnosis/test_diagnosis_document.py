@@ -337,7 +337,7 @@ def proposed(name: str, *, rivals: int = 3, costs: Costs = USUAL) -> NextMeasure
     few = replace(first, evidence=tuple(alone[:rivals]))
     found = replace(result.diagnosis, evaluations=(few, *others))
     offer = Offer(library=offered, extras=extras, costs=costs)
-    return next_measurements(result.problem, found, offer, result.calibration)
+    return next_measurements(result.problem, found, lambda: offer, result.calibration)
 
 
 def test_the_point_that_tells_members_of_a_group_apart_is_proposed_first() -> None:

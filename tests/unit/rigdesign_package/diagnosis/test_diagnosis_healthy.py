@@ -50,7 +50,7 @@ def library():
     return Library(
         channels=CHANNELS, settings=SETTINGS, features=features_of(SETTINGS, CHANNELS), base=np.full(6, 380.0),
         responses={"film:test.wall_oil": Response(coordinates=np.array([[0.0], [0.1]]), answers=answers)},
-        inputs={}, exponents={}, links=BY_LINK, sources={}, dry_sources={}, powers={}, modes=np.zeros(0), error=0.0,
+        inputs={}, links=BY_LINK, sources={}, dry_sources={}, powers={}, modes=np.zeros(0), error=0.0,
     )  # fmt: skip
 
 

@@ -227,7 +227,6 @@ def library():
         base=np.arange(float(n)),
         inputs={("inlet_temperature", "test.gear_oil", name): slope[name] for name in at},
         responses={"e": Response(coordinates=np.array([[0.0], [1.0]]), answers=np.array([np.zeros(n), np.ones(n)]))},
-        exponents={},
         links={},
         sources={},
         dry_sources={},

@@ -63,10 +63,10 @@ def _answers(case, settings):
 
 def _from_the_beginning(patch):
     """No start, no linearised motion, no form of before; as exact."""
-    respond, brace = braced_loop.respond, braced_loop.brace_initial
+    respond, brace = memoisation.respond_at_any_speed, braced_loop.brace_initial
     exact = partial(braced_loop.SweepSettings, tolerance=braced_loop.NEAR_TOLERANCE)
     patch.setattr(braced_loop, "SweepSettings", exact)
-    patch.setattr(memoisation, "respond", lambda rig, circuit, near: respond(rig, circuit))
+    patch.setattr(memoisation, "respond_at_any_speed", lambda rig, circuit, near: respond(rig, circuit))
     patch.setattr(memoisation, "brace_initial", lambda *given: brace(*given[:5]))
     patch.setattr(linear_system, "known_modal_form", modal_form)
     patch.setattr(OscillatingPart, "_ideal_motion", _found_again)

@@ -24,8 +24,8 @@ CHANNELS = (
     Channel(name="oil", quantity="oil_outlet_temperature", place="test.gear_oil"),
     Channel(name="power", quantity="motor_power", place="motor"),
 )
-ROUNDING = {"rtol": 1e-11, "atol": 1e-12}
-"""Of other processors and linear algebra; on the one that froze them they were the same to the last bit."""
+REMAINDER = {"rtol": 1e-8, "atol": 1e-10}
+"""What an iterated response leaves: chords next to the solution end 7e-10 from the Newton steps that froze them."""
 FULL = (
     349.61427944544977,
     0.48862306563585656,
@@ -120,7 +120,7 @@ STIFFER = (
 
 def test_the_full_model_gives_the_frozen_numbers():
     found = predict(CASE.with_value(RUN_OUT, "10 um"), SETTINGS, CHANNELS, circuit=TORSIONAL)
-    np.testing.assert_allclose(found.values, FULL, **ROUNDING)
+    np.testing.assert_allclose(found.values, FULL, **REMAINDER)
 
 
 def test_the_first_order_model_gives_the_frozen_numbers():
