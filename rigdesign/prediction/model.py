@@ -48,9 +48,9 @@ OWN_MODEL = PredictionModel()
 """What the case asks for."""
 TORSIONAL = PredictionModel(shafts="torsional")
 """The quick variant: shafts that only twist."""
-MEASURED_AGAINST = TORSIONAL
+MEASURED_AGAINST = OWN_MODEL
 """Model that measured data are held against, and that the constants of the diagnosis were fitted with; of sets with
-lateral channels it is `OWN_MODEL` (`measured_against`)."""
+root gauges it is `GAUGES_AGAINST`, in the shafts that lateral channels need (`measured_against`)."""
 GAUGES_AGAINST = PredictionModel(shafts="torsional", teeth="influence_numbers")
 """The same of sets with root gauges, whose stress needs the influence numbers of the teeth anyway."""
 

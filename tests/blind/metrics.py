@@ -12,7 +12,7 @@ Row = dict[str, Any]
 EASY = frozenset({
     "run_out", "cumulative_pitch", "single_pitch", "motor_ripple", "coupling_order_2",
     "mesh_loss", "bearing_loss", "windage_loss", "seal_loss", "jet_loss", "squeeze_loss",
-    "leak_warm_cold", "bypass", "short_circuit", "blocked_jet",
+    "leak_warm_cold", "bypass", "short_circuit", "blocked_jet", "one_bearing_loss", "leak_one_side",
 })  # fmt: skip
 """Kinds that are excitations, losses, flows or leaks; the rest are parameters."""
 

@@ -41,6 +41,7 @@ LOOP: Mapping[str, Kind] = {
     "tip_relief": Kind("m", 0.0, 25e-6, "flank", "relief beyond that of the case"),
     "profile_slope": Kind("m", -25e-6, 25e-6, "flank", "f_Halpha of all teeth"),
     "bracing_drift": Kind("1/K", -4e-3, 4e-3, "bracing", "locked twist per kelvin of gear oil above the reference"),
+    "x_cell_lag": Kind("s", 0.0, 3e-4, "torque cell", "low-pass of a torque cell that nobody stated"),
     # ---------------------------------------------------------------- outside the catalogue
     "x_torque_squared": Kind("N m", 0.0, 20.0, "order 3", "torque at order 3, with the bracing torque squared", False),
     "x_mains": Kind("N m", 0.0, 20.0, "order near 100 Hz", "inverter's 100 Hz, leaking into the nearest order", False),
@@ -49,7 +50,6 @@ LOOP: Mapping[str, Kind] = {
     "x_rub": Kind("N m", 0.0, 5.0, "orders 1 to 6", "a touch once a turn, growing with speed", False),
     "x_absorber": Kind("kg m2", 0.0, 4e-3, "shaft", "loose ring that swings at 150 Hz on a coupling flange", False),
     "x_stiffening": Kind("1", -0.3, 0.4, "mesh", "mesh stiffness that follows the torque", False),
-    "x_cell_lag": Kind("s", 0.0, 3e-4, "torque cell", "low-pass of a torque cell that nobody stated", False),
     "x_encoder_wobble": Kind("rad", 0.0, 5e-4, "encoder", "encoder off centre", False),
     "x_rattle": Kind("1", 0.0, 20.0, "noise", "broadband noise of torque and angle at low torque", False),
 }  # fmt: skip
@@ -90,21 +90,21 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
     # a catalogue changes reliefs that a gear has; on another gear a relief is news to the case
     relieved = [gear for gear in gears if _flank(tree, gear).get("tip_relief_length", 0.0) > 0.0]
     splined = [gear for gear in gears if "spline" in _gear(tree, gear)]
+    cells = [s.name for s in own if s.quantity == "torque"]
     if catalogue:
         places = {
             "coupling_order_2": couplings, "coupling_stiffness": couplings, "coupling_damping": couplings,
             "spline_stiffness": splined,
             "mesh_stiffness": meshes, "mesh_damping": meshes, "inertia": [*gears, "motor"], "motor_ripple": [""],
-            "bracing_drift": [""],
+            "bracing_drift": [""], "x_cell_lag": cells,
         }  # fmt: skip
         kinds = [kind for kind, entry in LOOP.items() if entry.catalogue]
         places["tip_relief"] = relieved
     else:
-        cells = [s.name for s in own if s.quantity == "torque"]
         encoders = [s.name for s in own if s.quantity == "angle"]
         places = {
             "x_torque_squared": couplings, "x_mains": [""], "x_speed_ripple": [""],
-            "x_rub": gears, "x_absorber": couplings, "x_stiffening": [""], "x_cell_lag": cells, "x_rattle": [""],
+            "x_rub": gears, "x_absorber": couplings, "x_stiffening": [""], "x_rattle": [""],
             "x_encoder_wobble": encoders, "x_alternate_teeth": gears if rig == "loop_1to1" else
             [g for g in gears if g.endswith("pinion")],
         }  # fmt: skip

@@ -122,6 +122,14 @@ CATALOGUE: Mapping[str, Effect] = {
         "K", -8.0, 8.0, "state",
         "true room temperature less the one read", field=True,
     ),
+    "leak_one_side": Effect(
+        "1", 0.0, 0.25, "cold section, front",
+        "gear oil into the front cold section, lost before the outlet", field=True,
+    ),
+    "one_bearing": Effect(
+        "W", 0.0, 800.0, "bearing, wheel rear",
+        "one tight bearing: power at the speed of the case, as its square",
+    ),
 }
 """What a catalogue of effects of a gearbox has."""
 OUTSIDE: Mapping[str, Effect] = {
@@ -149,10 +157,6 @@ OUTSIDE: Mapping[str, Effect] = {
         "W", 0.0, 800.0, "sump",
         "heat of a pump in the sump that the motor does not pay", catalogue=False,
     ),
-    "leak_one_side": Effect(
-        "1", 0.0, 0.25, "cold section, front",
-        "gear oil into the front cold section, lost before the outlet", catalogue=False, field=True,
-    ),
     "insulating_deposit": Effect(
         "m2 K/W", 0.0, 0.2, "outer wall, top",
         "paint or dust on top of the housing", catalogue=False, field=True,
@@ -168,10 +172,6 @@ OUTSIDE: Mapping[str, Effect] = {
     "barrier_air": Effect(
         "W/K", 0.0, 15.0, "seals",
         "barrier air blown into the partition seals, at room temperature", catalogue=False, field=True,
-    ),
-    "one_bearing": Effect(
-        "W", 0.0, 800.0, "bearing, wheel rear",
-        "one tight bearing: power at the speed of the case, as its square", catalogue=False,
     ),
     "spline_fretting": Effect(
         "W", 0.0, 400.0, "gear seat, pinion",

@@ -9,23 +9,19 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import circuit, gauges, heat, lateral, local_heat  # noqa: F401 - register effects
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.registry import registered_effects
-from rigdesign.prediction.model import Channel, measured_against
+from rigdesign.prediction.model import LATERAL_QUANTITIES, Channel
 
 
-def effects_of(
-    case: Case, *, local: bool = False, channels: Iterable[Channel] | None = ()
-) -> tuple[Effect, ...]:
+def effects_of(case: Case, *, channels: Iterable[Channel] | None = ()) -> tuple[Effect, ...]:
     """Entries for this case, in a fixed order; names are unique.
 
     Each has a healthy spread or a smallest size that matters.
 
-    local : with those at one place of a gearbox (`local_heat`), which a diagnosis does not evaluate yet: its constants
-        were fitted without them, and they leave the traces of the same effects of the whole gearbox
     channels : of the measurement; effects of shafts that bend are there where one of them shows such (`lateral`), and
         for None, which stands for any
     """
-    bending = channels is None or measured_against(channels).shafts != "torsional"
-    found = tuple(registered_effects(case, local=local, lateral=bending))
+    lateral = channels is None or any(channel.quantity in LATERAL_QUANTITIES for channel in channels)
+    found = tuple(registered_effects(case, lateral=lateral))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)
     assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)

@@ -50,7 +50,7 @@ class _Starved:
         return {self._path: self._now * (1.0 - values[0])}
 
 
-@of_gearbox(housing=True, local=True)
+@of_gearbox(housing=True)
 def single_bearings(part: GearboxPart) -> Iterator[Effect]:
     """Friction, oil and shell joint of every bearing by itself."""
     for name, bearing in part.box.bearings.items():
@@ -103,7 +103,7 @@ class _OneSide:
         return {f"{self._path}.leak_warm_cold": now + more, f"{self._path}.leak_front_share": front}
 
 
-@of_gearbox(housing=True, local=True)
+@of_gearbox(housing=True)
 def leaks_by_side(part: GearboxPart) -> Iterator[Effect]:
     """Gear oil that leaks into the cold chamber of one side only."""
     box, housing = part.box, part.housing
@@ -133,7 +133,7 @@ class _OneWall:
         return {self._path: {**self._now, self._wall: factor}}
 
 
-@of_gearbox(housing=True, local=True)
+@of_gearbox(housing=True)
 def draughts(part: GearboxPart) -> Iterator[Effect]:
     """Room air that moves along one wall of the housing only."""
     housing = part.housing

@@ -40,7 +40,6 @@ class _Entry:
     of_gearbox: OfGearbox | None = None
     drivetrain: bool = False
     housing: bool = False
-    local: bool = False
     lateral: bool = False
 
     def of_case(self, case: Case) -> Iterator[Effect]:
@@ -68,9 +67,9 @@ def of_rig(*, drivetrain: bool = False, lateral: bool = False) -> Callable[[OfRi
 
 
 def of_gearbox(
-    *, drivetrain: bool = False, housing: bool = False, local: bool = False, lateral: bool = False
+    *, drivetrain: bool = False, housing: bool = False, lateral: bool = False
 ) -> Callable[[OfGearbox], OfGearbox]:
-    """Register effects of every gearbox; ``drivetrain``, ``housing``: they need one; ``local``: at one place of it;
+    """Register effects of every gearbox; ``drivetrain``, ``housing``: they need one;
     ``lateral``: they need a drivetrain whose shafts bend."""
 
     def register(make: OfGearbox) -> OfGearbox:
@@ -79,7 +78,6 @@ def of_gearbox(
                 of_gearbox=make,
                 drivetrain=drivetrain or lateral,
                 housing=housing,
-                local=local,
                 lateral=lateral,
             )
         )
@@ -88,15 +86,10 @@ def of_gearbox(
     return register
 
 
-def registered_effects(case: Case, *, local: bool, lateral: bool) -> Iterator[Effect]:
-    """Effects of a case as registered, those of one gearbox together; ``local``: with those at one place of it;
-    ``lateral``: with those of shafts that bend."""
+def registered_effects(case: Case, *, lateral: bool) -> Iterator[Effect]:
+    """Effects of a case as registered, those of one gearbox together; ``lateral``: with those of shafts that bend."""
     bends = case.drivetrain is not None and case.drivetrain.shaft_model == "elastic"
-    wanted = [
-        entry
-        for entry in _ENTRIES
-        if (local or not entry.local) and ((lateral and bends) or not entry.lateral)
-    ]
+    wanted = [entry for entry in _ENTRIES if (lateral and bends) or not entry.lateral]
     for by_gearbox, group in groupby(wanted, lambda entry: entry.of_gearbox is not None):
         entries = list(group)
         if not by_gearbox:

@@ -13,7 +13,7 @@ from tests.builders import diagnosis as builder
 from tests.builders.paths import CASES
 
 CASE = load_case(CASES / "uhcf_prototype")
-EFFECTS = {effect.name: effect for effect in effects_of(CASE, local=True)}
+EFFECTS = {effect.name: effect for effect in effects_of(CASE)}
 LOCAL = ("one_bearing_loss", "one_bearing_oil", "one_bearing_joint", "leak_one_side", "draught")
 
 
@@ -30,7 +30,7 @@ def test_every_bearing_wall_and_side_has_its_own() -> None:
 
 
 def test_a_rig_without_a_housing_has_no_places() -> None:
-    kinds = {effect.kind for effect in effects_of(load_case(CASES / "loop_1to1"), local=True)}
+    kinds = {effect.kind for effect in effects_of(load_case(CASES / "loop_1to1"))}
     assert not kinds & set(LOCAL)
 
 
