@@ -203,7 +203,7 @@ def test_effects_of_one_trace_end_as_a_group():
 
 def test_effects_present_apart_from_a_group_are_reported():
     problem = thin_oil(healthy())
-    both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (60e-6,)}
+    both = {"bearing_loss:test": (log(1.2),), "single_pitch:test.pinion/5": (60e-6,)}
     found = diagnosed(with_added(problem, stored(problem, both)))
     assert (found.decision.verdict, found.decision.apart) == ("alias_group", ("single_pitch:test.pinion",))
     reported = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
