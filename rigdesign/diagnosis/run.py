@@ -58,9 +58,12 @@ def diagnose_measurement(
     folder: Path,
     *,
     calibration: Calibration = DEFAULT,
+    propose: bool = True,
     say: Progress = lambda message: None,
 ) -> Result:
     """Diagnose a measurement set of a rig.
+
+    propose : look for the next measurement where nothing is named, for which the model is run at points in addition
 
     Raises
     ------
@@ -85,9 +88,11 @@ def diagnose_measurement(
         channels = tuple(entry.channel for entry in data.channels.values())
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)
-        ahead = next_measurements(
-            problem, found, lambda: _offer(case, measurement, data.settings, effects, say), calibration
-        )
+        ahead = NOTHING_NEXT
+        if propose:
+            ahead = next_measurements(
+                problem, found, lambda: _offer(case, measurement, data.settings, effects, say), calibration
+            )
     return Result(
         case=case,
         measurement=measurement,

@@ -32,7 +32,7 @@ SHARE = 0.12
 
 MODELS = tuple(
     PredictionModel(shafts=shafts, teeth=teeth)
-    for shafts, teeth in product(("elastic", "torsional"), ("analytic", "fe"))
+    for shafts, teeth in product(("elastic", "torsional"), ("analytic", "influence_numbers"))
 )
 
 

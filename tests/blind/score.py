@@ -224,7 +224,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
     folder = set_of(folder_of(out, split, mode, spec))
     if method.placebo:
         folder = shuffled(folder, spec.seed)
-    result = diagnose_measurement(case_of(spec.rig), folder, calibration=method.calibration)
+    result = diagnose_measurement(case_of(spec.rig), folder, calibration=method.calibration, propose=False)
     found = result.diagnosis
     row: Row = {
         **entry,
