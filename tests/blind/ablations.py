@@ -79,6 +79,11 @@ def no_groups(calibration: Calibration) -> Calibration:
     return replace(calibration, plain=plain, given_baseline=given)
 
 
+def virtual_model(calibration: Calibration) -> Calibration:
+    """A model alone that is as good as it is on virtual rigs, in place of the wide errors of real ones."""
+    return replace(calibration, least_alone={})
+
+
 def _only(calibration: Calibration, kept: tuple[str, ...]) -> Calibration:
     values = calibration.amplitudes.as_dict()
     gone = {name: 0.0 for name in values if name not in kept}
@@ -94,5 +99,6 @@ ABLATIONS: dict[str, Callable[[Calibration], Calibration]] = {
     "no_anonymous": no_anonymous,
     "no_tiers": no_tiers,
     "no_groups": no_groups,
+    "virtual_model": virtual_model,
 }
 """By the name they have on the command line."""
