@@ -22,9 +22,9 @@ from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_r
 MICROMETRE = 1e-6
 """In metres."""
 
-LEAST_TORQUE = 0.1
-"""Amplitude of a harmonic torque that matters [N m]: the motor of a power circuit gives tens of newton metres, of which
-one to two per cent ripple anyway."""
+LEAST_TORQUE = 0.01
+"""Amplitude of a harmonic torque that is named [N m]: a tenth of the one to two per cent that the torque of a motor of
+tens of newton metres ripples anyway; a torque cell that is averaged over revolutions resolves it."""
 
 LEAST_SOFTENING = 0.02
 """Share of its stiffness that a tooth must have lost to matter: less than a crack through a tenth of the root takes."""

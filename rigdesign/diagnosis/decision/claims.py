@@ -14,13 +14,13 @@ from scipy.linalg import solve_triangular
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.decision import Decision, Verdict
+from rigdesign.diagnosis.decision.decision import Decision, Thresholds, Verdict, WhitenedSquare
 from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.decision.proof import Proof, Sizes
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, release_of
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
 from rigdesign.diagnosis.statistics.intervals import JointFit
 
@@ -66,6 +66,11 @@ class Claim:
     refused: tuple[Refusal, ...]
 
     @property
+    def insignificant(self) -> bool:
+        """Whether all names that the search gave are too small to matter."""
+        return bool(self.refused) and all(one.gap is None and one.verdict == "too_small" for one in self.refused)
+
+    @property
     def contradicted(self) -> bool:
         """Whether the data or the full model speak against a name that the search gave."""
         return any(one.verdict == "unknown_located" for one in self.refused)
@@ -77,6 +82,7 @@ def claim(
     traces: "Traces",
     proof: Proof,
     fitted: Callable[[Sequence[Evidence]], JointFit],
+    thresholds: Thresholds,
 ) -> Claim:
     """Hold the names of a decision against their sizes, the points held out and all other effects.
 
@@ -94,6 +100,9 @@ def claim(
         refused.append(doubt)
         left = [one for one in left if one.hypothesis.name != doubt.explanation]
     if not left:
+        return _without(_unclaimed(decision, refused), proof, refused)
+    if refused and (misfit := _misfit(traces.space, left, fit, thresholds)):
+        refused += [_misfitting(one, _sizes(left, fit), misfit) for one in left]
         return _without(_unclaimed(decision, refused), proof, refused)
     sizes = _sizes(left, fit)
     group = _group(left, sizes, traces)
@@ -159,6 +168,20 @@ def _unproven(one: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
     """Of a name that does not shrink the gap by more than its scatter, or with others does not."""
     reason = f"with {one.hypothesis.name} in the model the gap {gap_in_words(whole)}"
     return _refusal(one, sizes, "unknown_located" if whole.grown else "too_small", reason, whole)
+
+
+def _misfit(space: Whitened, left: Sequence[Evidence], fit: JointFit, thresholds: Thresholds) -> str:
+    """What the names that are left do not explain, once others were refused; empty where that is little."""
+    owns = [own for one in left for own in one.hypothesis.own]
+    release, rest = release_of(space, owns), space.freed(owns) - fit.answer
+    square = WhitenedSquare(value=space.chi_square, count=len(rest))
+    return square.misfit(space.chi_square - float(release.product(rest, rest)), thresholds)
+
+
+def _misfitting(one: Evidence, sizes: Sizes, misfit: str) -> Refusal:
+    """Of a name that leaves too much without those that were refused."""
+    reason = f"after {one.hypothesis.name} alone the residual is {misfit}"
+    return _refusal(one, sizes, "unknown_located", reason)
 
 
 def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal | None:

@@ -131,6 +131,13 @@ class WhitenedSquare:
         """Of the whitened square of a healthy rig."""
         return float((2.0 * self.count) ** 0.5)
 
+    def misfit(self, gain: float, thresholds: Thresholds) -> str:
+        """What an explanation leaves that takes ``gain`` away, in words; empty where nothing known leaves less."""
+        left = self.value - gain - self.count
+        if left <= max(thresholds.misfit * self.deviation, thresholds.share * gain):
+            return ""
+        return f"{left / self.deviation:.1f} standard deviations above that of a healthy rig"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Candidates:
@@ -176,16 +183,11 @@ def decide(
     if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
         reason = "an effect may be present; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
-    left = square.value - best.gain - square.count
-    if left > max(thresholds.misfit * square.deviation, thresholds.share * best.gain):
-        excess = left / square.deviation
+    if misfit := square.misfit(best.gain, thresholds):
         return Decision(
-            verdict="unknown_located",
-            named=(),
-            reason=f"after the best explanation the residual is {excess:.1f} standard deviations above that of a "
-            "healthy rig",
+            verdict="unknown_located", named=(), reason=f"after the best explanation the residual is {misfit}"
         )
-    known = [one for one in evidence if _credible(one, candidates)]
+    known = [one for one in evidence if _credible(one, evidence, candidates, thresholds)]
     leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         return Decision(
@@ -220,10 +222,19 @@ def decide(
     return _silent(weights, square, candidates, thresholds)
 
 
-def _credible(one: Evidence, candidates: Candidates) -> bool:
-    """Of the catalogue alone; an error of a sensor by itself, not to mend what something else leaves."""
+def _credible(
+    one: Evidence, evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
+) -> bool:
+    """Of the catalogue alone; an error of a sensor by itself or as a small rest, not to mend what something else
+    leaves."""
     parts = frozenset(one.hypothesis.parts)
-    return parts <= candidates.effects and (len(parts) == 1 or parts.isdisjoint(candidates.sensors))
+    if not parts <= candidates.effects:
+        return False
+    others = parts - candidates.sensors
+    if len(parts) == 1 or others == parts:
+        return True
+    alone = max((other.gain for other in evidence if set(other.hypothesis.parts) == others), default=0.0)
+    return one.gain - alone < thresholds.share * one.gain
 
 
 def _smallest_group(

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from rigdesign.diagnosis.decision.claims import Traces, too_little
-from rigdesign.diagnosis.decision.decision import UNNAMED, Decision, mass_of_any
+from rigdesign.diagnosis.decision.decision import UNNAMED, Decision, Thresholds, mass_of_any
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.proof import Proof
 from rigdesign.diagnosis.decision.search import Look, bounds_of, fitted
@@ -109,6 +109,16 @@ class Suspicion:
         rest = f"{self.excess:.0%} of what it accounts for" if self.excess > 0.0 else "nothing"
         reason = f"{first} is the most probable effect; it leaves {rest} beyond a healthy rig"
         return Decision(verdict="suspected", named=self.group, reason=reason + also)
+
+    def accounts_for_all(self, thresholds: Thresholds) -> bool:
+        """Whether it leaves a healthy rig, to the share that no answer of the model is more exact than."""
+        return self.excess <= thresholds.share and self.mass(unmodelled=False) >= thresholds.named
+
+    @property
+    def as_named(self) -> Decision:
+        """The name it is if it holds."""
+        name = self.group[0]
+        return Decision(verdict="named", named=(name,), reason=f"{name} is part of every probable explanation")
 
     @property
     def excess(self) -> float:

@@ -4,8 +4,8 @@ readings -> single outliers out -> points held out -> evidence -> verdict, again
          -> joint fit with intervals -> what may be claimed -> alternatives
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
 
@@ -173,10 +173,21 @@ class _Data:
             )
         return self._proofs[tier]
 
-    def claim(self, look: Look, decision: Decision) -> Claim:
-        """What of a decision may be claimed."""
+    def claim(self, look: Look, decision: Decision, found: Sequence[Evidence]) -> Claim:
+        """What of a decision with the explanations it found may be claimed.
+
+        Where all that is named is too small to matter, it is a nuisance: a group that the evaluation with it in the
+        model found holds.
+        """
         fit = partial(fitted, look.space, calibration=self.calibration)
-        return claim(decision, look.found, self.traces(look), self.proof(look.tier), fit)
+        thresholds = self.calibration.thresholds(self.problem.baseline is not None)
+        traces, proof = self.traces(look), self.proof(look.tier)
+        claimed = claim(decision, found, traces, proof, fit, thresholds)
+        last = look.evaluations[-1].decision
+        if last.verdict == "alias_group" and not claimed.found and claimed.insignificant:
+            group = claim(last, (), traces, proof, fit, thresholds)
+            return replace(group, refused=claimed.refused)
+        return claimed
 
     def traces(self, look: Look) -> Traces:
         """What single effects leave in the numbers of a look."""
@@ -196,23 +207,30 @@ def _verdict(data: _Data, given: Decision | None) -> tuple[Look, Claim, Suspicio
     """The look that decides with what it claims, or suspects where nothing is claimed.
 
     The numbers of a model known well decide; orders of the meshes are asked where those name nothing, and cannot veto.
+    A suspect that leaves no more than the model may answer wrongly is held against the points held out like a name.
 
     given : a verdict that no search changes
     """
     looks = []
     for tier in data.tiers if given is None else ("all",):
         look = data.look(tier)
-        claimed = data.claim(look, given or look.first.decision)
+        claimed = data.claim(look, given or look.first.decision, look.found)
         if claimed.decision.verdict in ("named", "alias_group"):
             return look, claimed, None
         looks.append((look, claimed))
     contradicted = any(claimed.contradicted for _, claimed in looks)
+    thresholds = data.calibration.thresholds(data.problem.baseline is not None)
     for look, claimed in looks if given is None and not contradicted else ():
         if claimed.decision.verdict not in OPEN:
             continue
         suspicion = suspected(look, data.proof(look.tier), data.traces(look), data.calibration)
-        if suspicion is not None:
-            return look, claimed, suspicion
+        if suspicion is None:
+            continue
+        if suspicion.accounts_for_all(thresholds):
+            sure = data.claim(look, suspicion.as_named, [suspicion.evidence])
+            if sure.decision.verdict in ("named", "alias_group"):
+                return look, sure, None
+        return look, claimed, suspicion
     return *looks[-1], None
 
 
