@@ -47,6 +47,11 @@ class Refusal:
     reason: str
     gap: Gap | None
 
+    @property
+    def slight(self) -> bool:
+        """Whether it is refused for its size alone."""
+        return self.verdict == "too_small" and self.gap is None
+
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
@@ -68,7 +73,7 @@ class Claim:
     @property
     def insignificant(self) -> bool:
         """Whether all names that the search gave are too small to matter."""
-        return bool(self.refused) and all(one.gap is None and one.verdict == "too_small" for one in self.refused)
+        return bool(self.refused) and all(one.slight for one in self.refused)
 
     @property
     def contradicted(self) -> bool:
@@ -101,7 +106,8 @@ def claim(
         left = [one for one in left if one.hypothesis.name != doubt.explanation]
     if not left:
         return _without(_unclaimed(decision, refused), proof, refused)
-    if refused and (misfit := _misfit(traces.space, left, fit, thresholds)):
+    slight = any(one.slight for one in refused)
+    if slight and (misfit := _misfit(traces.space, left, fit, thresholds)):
         refused += [_misfitting(one, _sizes(left, fit), misfit) for one in left]
         return _without(_unclaimed(decision, refused), proof, refused)
     sizes = _sizes(left, fit)
@@ -171,7 +177,8 @@ def _unproven(one: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
 
 
 def _misfit(space: Whitened, left: Sequence[Evidence], fit: JointFit, thresholds: Thresholds) -> str:
-    """What the names that are left do not explain, once others were refused; empty where that is little."""
+    """What the names that are left do not explain without those of a slight size, in words; empty where that is
+    little."""
     owns = [own for one in left for own in one.hypothesis.own]
     release, rest = release_of(space, owns), space.freed(owns) - fit.answer
     square = WhitenedSquare(value=space.chi_square, count=len(rest))

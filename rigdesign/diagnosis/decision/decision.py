@@ -155,6 +155,13 @@ class Candidates:
     sensors: frozenset[str] = frozenset()
     alike: Mapping[str, frozenset[str]] = field(default_factory=dict)
     """Effect -> those that leave its trace in these numbers, itself left out."""
+    passed_over: frozenset[str] = frozenset()
+    """Effects that were refused: part of an explanation they may be, a name they are not."""
+
+    @property
+    def open(self) -> frozenset[str]:
+        """Effects that may be named."""
+        return self.effects - self.passed_over
 
 
 def decide(
@@ -198,14 +205,14 @@ def decide(
     named = tuple(
         part
         for part, mass in sorted(weights.inclusion.items(), key=lambda item: -item[1])
-        if part in candidates.effects and mass >= thresholds.named
+        if part in candidates.open and mass >= thresholds.named
     )
     if named:
         return Decision(
             verdict="named", named=named, reason=f"{named[0]} is part of every probable explanation"
         )
     if weights.masses["none"] < 1.0 - thresholds.named:
-        group = _smallest_group(evidence, weights, candidates.effects, thresholds) or _group_of_one_trace(
+        group = _smallest_group(evidence, weights, candidates.open, thresholds) or _group_of_one_trace(
             evidence, weights, candidates, thresholds
         )
         if group:
@@ -255,11 +262,11 @@ def _group_of_one_trace(
 ) -> tuple[str, ...]:
     """The most probable effect with all that leave its trace, if at least one of them is present at the required
     probability; the most probable first, empty if they are not few."""
-    known = {part: mass for part, mass in weights.inclusion.items() if part in candidates.effects}
+    known = {part: mass for part, mass in weights.inclusion.items() if part in candidates.open}
     if not known:
         return ()
     leader = max(known, key=lambda part: known[part])
-    group = {leader, *candidates.alike.get(leader, frozenset())}
+    group = {leader, *(candidates.alike.get(leader, frozenset()) - candidates.passed_over)}
     if not 1 < len(group) <= thresholds.one_trace or mass_of_any(evidence, weights, group) < thresholds.named:
         return ()
     return tuple(sorted(group, key=lambda part: (-known.get(part, 0.0), part)))

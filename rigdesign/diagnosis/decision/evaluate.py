@@ -120,7 +120,14 @@ def evaluate(
     )
     square = WhitenedSquare(value=space.chi_square, count=len(space.residual))
     decision = decide(evidence, weights, square, candidates, criteria.thresholds)
-    decision = _supported(space, decision, evidence, weights, criteria, explained)
+    refused = _unsupported(space, decision, evidence, weights, criteria, explained)
+    if refused and not set(decision.named) - set(refused):
+        others = replace(candidates, passed_over=frozenset(refused))
+        group = decide(evidence, weights, square, others, criteria.thresholds)
+        if group.verdict == "alias_group":
+            decision = group
+            refused = _unsupported(space, decision, evidence, weights, criteria, explained)
+    decision = _without(decision, refused)
     return Evaluation(
         evidence=tuple(evidence),
         weights=weights,
@@ -165,20 +172,20 @@ def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Threshol
     return Decision(verdict="too_small", named=(), reason=reason)
 
 
-def _supported(
+def _unsupported(
     space: Whitened,
     decision: Decision,
     evidence: Sequence[Evidence],
     weights: Posterior,
     criteria: Criteria,
     explained: float,
-) -> Decision:
-    """The decision without the names that depend on one operating point or add too little to the others.
+) -> dict[str, str]:
+    """Names that depend on one operating point or add too little to the others, with the reason.
 
     Of an alias group its leader is checked.
     """
     if not criteria.points or decision.verdict not in ("named", "alias_group"):
-        return decision
+        return {}
     thresholds = criteria.thresholds
     ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
     refused: dict[str, str] = {}
@@ -193,6 +200,11 @@ def _supported(
             part in criteria.orders and _added(best, part, evidence) < thresholds.share_loop * whole
         ):
             refused[part] = f"{part} explains too little in addition to the effects named before"
+    return refused
+
+
+def _without(decision: Decision, refused: Mapping[str, str]) -> Decision:
+    """The decision without some of its names; of an alias group with a refused leader nothing is left."""
     kept = tuple(part for part in decision.named if part not in refused)
     if not refused or (decision.verdict == "named" and kept):
         return replace(decision, named=kept)

@@ -118,7 +118,9 @@ class Suspicion:
     def as_named(self) -> Decision:
         """The name it is if it holds."""
         name = self.group[0]
-        return Decision(verdict="named", named=(name,), reason=f"{name} is part of every probable explanation")
+        return Decision(
+            verdict="named", named=(name,), reason=f"{name} is part of every probable explanation"
+        )
 
     @property
     def excess(self) -> float:

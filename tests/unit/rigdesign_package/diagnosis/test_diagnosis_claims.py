@@ -177,13 +177,13 @@ def test_what_a_healthy_rig_does_not_have_has_a_smallest_size(rig):
             assert effect.matters == 0.0, effect.name
 
 
-def thin_oil(problem: Problem) -> Problem:
+def thin_oil(problem: Problem, teeth: float = 0.02) -> Problem:
     """With a viscosity that answers as friction of the bearings does, but for a little of the friction of the teeth."""
 
     def more(residuals):
         known = residuals.library.responses
         bearing, mesh = known["bearing_loss:test"], known["mesh_loss:test"]
-        answers = bearing.answers + 0.02 * bearing.coordinates * mesh.sensitivity()[:, 0]
+        answers = bearing.answers + teeth * bearing.coordinates * mesh.sensitivity()[:, 0]
         viscosity = Response(coordinates=0.45 * bearing.coordinates, answers=answers)
         library = replace(residuals.library, responses={**known, "oil_viscosity:test": viscosity})
         return replace(residuals, library=library)
@@ -225,6 +225,28 @@ def test_effects_present_apart_from_a_group_are_reported():
     again = outcome(reported.result, pick="single_pitch:test.pinion")
     assert [one.name for one in again.applied] == ["single_pitch:test.pinion"]
     assert again.case_patch is not None and again.case_patch.title.count("single pitch deviation") == 1
+
+
+def test_a_group_stands_beside_a_name_that_is_too_little_for_one():
+    """A pitch error that explains 5 % of what friction or viscosity does, either of which is present."""
+    problem = thin_oil(healthy(), teeth=0.0)
+    both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (6.2e-6,)}
+    found = diagnosed(with_added(problem, stored(problem, both)))
+    assert found.evaluations[0].weights.inclusion["single_pitch:test.pinion"] > 0.95
+    assert found.decision.verdict == "alias_group", found.decision.reason
+    assert set(found.named) == {"bearing_loss:test", "oil_viscosity:test"}
+
+
+def test_a_name_is_not_left_alone_where_most_belongs_to_a_slight_one():
+    """A draught was named where a bolted frame took the heat, as a rig not yet steady was too slight to be named."""
+    problem = healthy()
+    both = {"mesh_loss:test": (log(1.02),), "single_pitch:test.pinion/5": (6e-6,)}
+    found = diagnosed(with_added(problem, stored(problem, both)))
+    assert [(one.name, one.slight) for one in found.refused] == [
+        ("single_pitch:test.pinion", True), ("mesh_loss:test", False),
+    ]  # fmt: skip
+    assert (found.decision.verdict, found.named) == ("unknown_located", ())
+    assert "after mesh_loss:test alone the residual is" in found.decision.reason
 
 
 def traces(columns, *, noise=None, assembly=None):

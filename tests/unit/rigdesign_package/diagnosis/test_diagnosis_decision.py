@@ -10,6 +10,7 @@ COUNTS = {"physical": 50, "unmodelled": 100, "pair": 1000, "sensor": 20}
 
 
 def evidence(name, log_bayes, family="physical"):
+    """With a fall of the whitened square of twice the evidence and 5."""
     parts = tuple(name.split(" + "))
     return Evidence(
         hypothesis=Hypothesis(name=name, family=family, parts=parts),
@@ -78,6 +79,18 @@ def test_errors_of_sensors_do_not_mend_what_an_effect_leaves():
             sensors=(offset, other),
         )  # fmt: skip
         assert (found.verdict, found.named) == ("unknown_located", ())
+
+
+@pytest.mark.parametrize(("alone", "named"), [(990.0, ("leak",)), (940.0, ())])
+def test_the_small_rest_of_a_sensor_is_no_cause_outside_the_catalogue(alone, named):
+    """As the zeros of two torque cells, either of which mended 2 % of what the friction of bearings had explained."""
+    zeros = ("torque_zero:M_1", "torque_zero:M_2")
+    found = verdict(
+        evidence("leak", alone),
+        *(evidence(f"leak + {zero}", 1000.0, "pair") for zero in zeros),
+        sensors=zeros,
+    )
+    assert found.named == named
 
 
 @pytest.mark.parametrize(("log_bayes", "named"), [(100.0, ()), (2000.0, ("leak",))])

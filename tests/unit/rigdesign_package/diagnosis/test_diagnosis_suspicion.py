@@ -60,6 +60,15 @@ def test_an_effect_with_an_unmodelled_remainder_is_suspected():
     assert found.suspicion.gap.shrunk
 
 
+def test_a_suspect_that_leaves_next_to_nothing_is_named():
+    """Where an unmodelled cause mends a few per cent of what the effect explains, and the points held out agree."""
+    problem = healthy()
+    found = diagnosed(with_added(problem, stored(problem, SIZE) + unmodelled(problem, 1.3)))
+    assert found.evaluations[0].decision.verdict == "unknown_located"
+    assert (found.decision.verdict, found.named) == ("named", ("mesh_loss:test",))
+    assert found.suspicion is None and found.gap.shrunk and found.strength == "proven"
+
+
 def test_nothing_is_suspected_of_a_healthy_rig_or_of_the_remainder_alone():
     assert diagnosed(healthy()).suspicion is None
     problem = healthy()
