@@ -20,8 +20,8 @@ def effects_of(case: Case, *, channels: Iterable[Channel] | None = ()) -> tuple[
     channels : of the measurement; effects of shafts that bend are there where one of them shows such (`lateral`), and
         for None, which stands for any
     """
-    lateral = channels is None or any(channel.quantity in LATERAL_QUANTITIES for channel in channels)
-    found = tuple(registered_effects(case, lateral=lateral))
+    bending = channels is None or any(channel.quantity in LATERAL_QUANTITIES for channel in channels)
+    found = tuple(registered_effects(case, lateral=bending))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)
     assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)
