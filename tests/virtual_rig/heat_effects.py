@@ -128,7 +128,7 @@ CATALOGUE: Mapping[str, Effect] = {
     ),
     "one_bearing": Effect(
         "W", 0.0, 800.0, "bearing, wheel rear",
-        "one tight bearing: power at the speed of the case, as its square",
+        "one tight bearing: power at the speed of the case, as its square", field=True,
     ),
 }
 """What a catalogue of effects of a gearbox has."""
