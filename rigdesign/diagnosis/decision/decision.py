@@ -55,7 +55,7 @@ class Thresholds:
     catalogue: float = 5.0
     misfit: float = 5.0
     group: int = 3
-    one_trace: int = 6
+    one_trace: int = 8
     evidence: float = 0.0
     evidence_loop: float = 0.0
     support: float = 12.0
