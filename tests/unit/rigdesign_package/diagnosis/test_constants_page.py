@@ -96,4 +96,4 @@ def test_what_a_rig_replaces_is_what_its_file_may_hold() -> None:
     for name in marked:
         group, _, key = name.lower().partition(".")
         group = "amplitudes" if group == "amplitudes" else "drift"
-        assert with_values(DEFAULT, {f"{group}.{key}": 0.123}) != with_values(DEFAULT, {})
+        assert with_values(DEFAULT, {f"{group}.{key}": 0.7654}) != with_values(DEFAULT, {})

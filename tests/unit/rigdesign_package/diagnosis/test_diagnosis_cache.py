@@ -136,7 +136,7 @@ def test_what_another_model_of_the_circuit_made_is_another_library(
 ) -> None:
     rig = Rig()
     rig()
-    monkeypatch.setattr(cache, "measured_against", lambda channels: OWN_MODEL)
+    monkeypatch.setattr(cache, "measured_against", lambda channels: TORSIONAL)
     rig()
     assert rig.built == 2
     plan = the_case(), rig.library.settings, rig.library.channels, ()

@@ -213,7 +213,7 @@ def test_constants_of_one_set_become_a_variant_of_the_case(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(run, "read_residuals", by_formulas)
-    folder = write_set(tmp_path / "set", Rig({"mesh_loss:test": (0.1,)}, seed=3))
+    folder = write_set(tmp_path / "set", Rig({"bearing_loss:test": (0.1,)}, seed=3))
     out = tmp_path / "out"
     assert command("calibrate", str(CASE), str(folder), "--constants", "--out", str(out)) == 0
     assert "calibrated case" in capsys.readouterr().out
@@ -221,7 +221,7 @@ def test_constants_of_one_set_become_a_variant_of_the_case(
     assert names == ["calibrated/case.toml", "constants.json"]
     assert load_case(out / "calibrated").name == the_case().name
     fitted = json.loads((out / "constants.json").read_text(encoding="utf-8"))["constants"]
-    [loss] = [one for one in fitted if one["effect"] == "mesh_loss:test"]
+    [loss] = [one for one in fitted if one["effect"] == "bearing_loss:test"]
     assert loss["value"] == pytest.approx(1.105, rel=0.05)
 
 
