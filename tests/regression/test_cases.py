@@ -176,6 +176,7 @@ def test_full_addendum_raises_the_contact_ratio_of_the_reference_gear() -> None:
     assert rig.pairs["reference.main"].total_contact_ratio > 5.85
 
 
+@pytest.mark.slow
 def test_run_up_of_the_paper_breaks_its_own_ramp_rules() -> None:
     """180 N m at standstill: P2 does so for a more stable calculation, no rig could."""
     result = run_case(load_case(PROTOTYPE / "run_up_simulation.toml"), fidelity="quick")
@@ -186,6 +187,7 @@ def test_run_up_of_the_paper_breaks_its_own_ramp_rules() -> None:
     assert max(abs(torque) for torque in result.dynamics.ramp.drive_torque_Nm) == pytest.approx(9.0, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_events_of_the_prototype_reach_every_check_that_depends_on_them() -> None:
     """Two teeth lost load the loop more than one, both more than the stages; a torque flange at 220 N m misses one lost
     tooth. At the held stage the time run has the torques of the periodic response: within 3 % of the loop's torque."""

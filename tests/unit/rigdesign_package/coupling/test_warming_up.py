@@ -85,6 +85,7 @@ def test_stored_heat_refuses_what_cannot_be(setup: ConductionSetup, key: str, va
         StoredHeat(**{"capacity": {}, "start": START, "time": 1.0, key: value})
 
 
+@pytest.mark.slow
 def test_a_point_taken_too_early_lies_between_room_and_steady() -> None:
     _, steady = settled()
     (early, young), (later, old) = (settled((TIME, time)) for time in ("30 min", "8 h"))

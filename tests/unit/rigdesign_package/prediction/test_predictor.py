@@ -66,7 +66,13 @@ BEYOND = {
 }
 
 
-@pytest.mark.parametrize("circuit", [OWN_MODEL, TORSIONAL], ids=["elastic", "torsional"])
+@pytest.mark.parametrize(
+    "circuit",
+    [
+        pytest.param(OWN_MODEL, id="elastic"),
+        pytest.param(TORSIONAL, id="torsional", marks=pytest.mark.slow),
+    ],
+)
 @pytest.mark.parametrize(
     "changes",
     [

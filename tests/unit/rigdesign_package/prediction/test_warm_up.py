@@ -86,6 +86,7 @@ def test_points_may_have_run_for_different_times(predictor: Predictor) -> None:
     np.testing.assert_allclose(found[1], 0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_case_that_is_not_steady_has_no_first_order(predictor: Predictor) -> None:
     case = changed_case(predictor.case, {WARMING: HOUR})
     early = Predictor(case, SETTINGS[:1], CHANNELS)

@@ -190,6 +190,7 @@ def test_a_scheduler_lost_amid_a_study_ends_it_and_the_points_stay(tmp_path, mon
     assert 1 <= stored < 11 and outcome.reused == stored
 
 
+@pytest.mark.slow
 def test_a_real_case_on_a_cluster_equals_worker_processes_to_the_byte(dask, write, tmp_path):
     case = load_case(write(SMALL))
     vary = [

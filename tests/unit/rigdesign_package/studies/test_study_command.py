@@ -13,6 +13,7 @@ INLET = "gearboxes.test.oil.inlet_temperature"
 
 
 @pytest.mark.whole_run
+@pytest.mark.slow
 def test_two_shards_of_a_sampled_study_equal_one_run_to_the_byte(
     rigdesign: Rigdesign, write: Write, tmp_path: Path
 ) -> None:
