@@ -83,6 +83,11 @@ SIGNATURE_ERROR = {
     "windage_loss": 0.25,
     "loss_split": 0.25,
     "not_steady": 0.35,
+    "one_bearing_loss": 0.5,
+    "one_bearing_oil": 0.5,
+    "one_bearing_joint": 0.5,
+    "draught": 0.5,
+    "leak_one_side": 0.35,
     "run_out": 0.04,
     "cumulative_pitch": 0.04,
     "motor_ripple": 0.04,
@@ -90,7 +95,8 @@ SIGNATURE_ERROR = {
 }
 """Kind of effect -> relative error of the model's answer to it: how far the traces of 22 effects of the heat, and of
 run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants; of a rig not yet steady
-by how far its rate was off in the second score, as its parts warm at their own pace."""
+by how far its rate was off in the second score, as its parts warm at their own pace; of heat at one place by the rise of
+a single shell, which is half of that of the virtual rig, and by walls that the catalogue divides otherwise."""
 
 
 PLAIN = Thresholds(evidence=10.0, evidence_loop=100.0)
