@@ -6,6 +6,7 @@ The order of the questions is that of the workflow's step 8. Thresholds are froz
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -247,14 +248,21 @@ def _credible(
 def _smallest_group(
     evidence: Sequence[Evidence], weights: Posterior, effects: frozenset[str], thresholds: Thresholds
 ) -> tuple[str, ...]:
-    """Smallest set of effects of which at least one is present at the required probability; empty if none is small."""
+    """Smallest set of effects of which at least one is present at the required probability, the most probable of its
+    size; empty if none is small."""
     parts = [
         part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
-    ]
-    for count in range(2, min(thresholds.group, len(parts)) + 1):
-        if mass_of_any(evidence, weights, parts[:count]) >= thresholds.named:
-            return tuple(parts[:count])
+    ][:PROBABLE]
+    for count in range(2, thresholds.group + 1):
+        masses = {group: mass_of_any(evidence, weights, group) for group in combinations(parts, count)}
+        best = max(masses, key=lambda group: masses[group], default=())
+        if best and masses[best] >= thresholds.named:
+            return best
     return ()
+
+
+PROBABLE = 8
+"""Effects of the largest inclusion probability among which a group is looked for."""
 
 
 def _group_of_one_trace(

@@ -121,7 +121,7 @@ def evaluate(
     square = WhitenedSquare(value=space.chi_square, count=len(space.residual))
     decision = decide(evidence, weights, square, candidates, criteria.thresholds)
     refused = _unsupported(space, decision, evidence, weights, criteria, explained)
-    if refused and not set(decision.named) - set(refused):
+    if refused and (decision.verdict == "alias_group" or not set(decision.named) - set(refused)):
         others = replace(candidates, passed_over=frozenset(refused))
         group = decide(evidence, weights, square, others, criteria.thresholds)
         if group.verdict == "alias_group":

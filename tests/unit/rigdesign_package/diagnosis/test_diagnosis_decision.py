@@ -81,6 +81,16 @@ def test_errors_of_sensors_do_not_mend_what_an_effect_leaves():
         assert (found.verdict, found.named) == ("unknown_located", ())
 
 
+def test_a_group_is_the_smallest_one_not_the_likeliest_effects():
+    """A ripple that goes with either of two gears is a more probable part than each of them, and not of the group."""
+    gears = ("pinion", "wheel")
+    each = [evidence(f"{gear} + ripple", 41.0, "pair") for gear in gears] + [
+        evidence(gear, 36.0) for gear in gears
+    ]
+    found = verdict(*each, alike=gears)
+    assert (found.verdict, set(found.named)) == ("alias_group", set(gears))
+
+
 @pytest.mark.parametrize(("alone", "named"), [(990.0, ("leak",)), (940.0, ())])
 def test_the_small_rest_of_a_sensor_is_no_cause_outside_the_catalogue(alone, named):
     """As the zeros of two torque cells, either of which mended 2 % of what the friction of bearings had explained."""
