@@ -30,18 +30,22 @@ def _cache():
 WANTED = {
     ("uhcf_prototype", "set_0"): ("within_noise", set()),
     ("uhcf_prototype", "set_1"): ("named", {"shell_contact:test"}),
-    ("uhcf_prototype", "set_2"): ("named", {"leak_warm_cold:test"}),
+    ("uhcf_prototype", "set_2"): ("too_small", set()),
     ("uhcf_prototype", "set_3"): ("within_noise", set()),
     ("uhcf_prototype", "set_4"): ("unknown_located", set()),
     ("uhcf_prototype", "set_5"): ("input_error_suspected", {"swapped_points:P05,P08"}),
-    ("uhcf_prototype", "set_6"): ("alias_group", {"bearing_loss:test", "oil_viscosity:test"}),
-    ("loop_1to1", "set_0"): ("too_small", set()),
+    ("uhcf_prototype", "set_6"): (
+        "alias_group",
+        {"bearing_loss:test", "oil_viscosity:test", "one_bearing_loss:test.wheel_front"},
+    ),
+    ("loop_1to1", "set_0"): ("within_noise", set()),
     ("loop_1to1", "set_1"): ("alias_group", {"run_out:test.pinion", "run_out:test.wheel"}),
     ("loop_1to1", "set_2"): ("named", {"run_out:test.pinion"}),
 }
 """Rig and set -> verdict and names it must end with.
 
-Friction of the bearings and viscosity leave one trace on the prototype (correlation 0.997): a group.
+Friction of all bearings, of one of them and viscosity leave one trace on the prototype: a group. Without a baseline the
+leak of set_2 is less than a real model may be off.
 """
 
 APART = {("uhcf_prototype", "set_6"): {"film:test.chamber_oil"}}
