@@ -61,7 +61,7 @@ def spare_channels(case: Case, used: Sequence[Channel], orders: tuple[float, ...
         wanted += [("temperature", place) for place in _thermocouples(places)]
     return tuple(
         Channel(
-            name=f"{SPARE}{quantity.replace('_', ' ')} {place}",
+            name=SPARE + _label(quantity, place),
             quantity=quantity,
             place=place,
             orders=orders if quantity == "torque" else (),
@@ -70,6 +70,12 @@ def spare_channels(case: Case, used: Sequence[Channel], orders: tuple[float, ...
         for quantity, place in wanted
         if (quantity, place) not in have
     )
+
+
+def _label(quantity: Quantity, place: str) -> str:
+    """Of a sensor, its place said once."""
+    words = quantity.replace("_", " ")
+    return words if place in words.split() else f"{words} {place}"
 
 
 def _thermocouples(places: Places) -> list[str]:
