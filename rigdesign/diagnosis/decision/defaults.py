@@ -95,8 +95,8 @@ SIGNATURE_ERROR = {
 }
 """Kind of effect -> relative error of the model's answer to it: how far the traces of 22 effects of the heat, and of
 run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants; of a rig not yet steady
-by how far its rate was off in the second score, as its parts warm at their own pace; of heat at one place by the rise of a
-single shell, which is half of that of the virtual rig, and by walls that the catalogue divides otherwise."""
+by how far its rate was off in the second score, as its parts warm at their own pace; of heat at one place by the
+rise of a single shell, which is half of that of the virtual rig, and by walls that the catalogue divides otherwise."""
 
 
 PLAIN = Thresholds(evidence=10.0, evidence_loop=100.0)
