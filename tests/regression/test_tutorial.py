@@ -20,8 +20,9 @@ FAILING = ["check", "my_rig", "--fidelity", "quick"]
 
 
 def takes_minutes(arguments: list[str]) -> bool:
-    """The diagnosis, and studies of more than three points: run with the slow tests."""
-    return arguments[0] == "diagnose" or "--boundary" in arguments or arguments.count("--vary") > 1
+    """Diagnosis and calibration with what follows from them, studies of more than three points: with the slow tests."""
+    diagnosed = arguments[0] in ("diagnose", "calibrate") or "diagnosis/patched" in arguments
+    return diagnosed or "--boundary" in arguments or arguments.count("--vary") > 1
 
 
 @pytest.fixture(scope="module")
@@ -51,14 +52,14 @@ def run(page: Path, folder: Path, capsys: pytest.CaptureFixture[str], *, slow: b
 
 def test_the_pages_lead_to_each_other() -> None:
     texts = [page.read_text(encoding="utf-8") for page in PAGES]
-    assert [page.name[0] for page in PAGES] == ["1", "2", "3"]
+    assert [page.name[0] for page in PAGES] == ["1", "2", "3", "4"]
     assert all(after.name in before for before, after in zip(texts, PAGES[1:], strict=False))
     readme = (CASES / "loop_1to1" / "README.md").read_text(encoding="utf-8")
     assert all(f"tutorial/{page.name}" in readme for page in PAGES)
 
 
 @pytest.mark.whole_run
-@pytest.mark.parametrize("page", PAGES, ids=[page.stem for page in PAGES])
+@pytest.mark.parametrize("page", PAGES[:3], ids=[page.stem for page in PAGES[:3]])
 def test_the_commands_of_a_page_print_what_it_shows(
     page: Path, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -93,3 +94,14 @@ def test_the_diagnosis_ends_as_the_page_tells(folder: Path, capsys: pytest.Captu
     assert found["verdict"] == "alias_group" and found["named"] == []
     pairs = [set(entry["effects"]) for entry in found["aliases"]]
     assert {"run_out:test.pinion", "run_out:test.wheel"} in pairs
+
+
+@pytest.mark.slow
+def test_a_rig_of_ones_own_is_calibrated_diagnosed_and_checked(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.rmtree(folder / "diagnosis", ignore_errors=True)
+    assert run(PAGES[3], folder, capsys, slow=True) == 3
+    found = json.loads((folder / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [row["effect"] for row in found["named"]] == ["leak_warm_cold:test"]
+    assert found["strength"] == "proven" and found["gap"]["shrunk"]
