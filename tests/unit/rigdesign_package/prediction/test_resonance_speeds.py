@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import MEASURED_AGAINST, OWN_MODEL, Channel, OperatingCondition
+from rigdesign.prediction.model import TORSIONAL, OWN_MODEL, Channel, OperatingCondition
 from rigdesign.prediction.operating import modelled_rig
 from rigdesign.prediction.predictor import Predictor
 from rigdesign.prediction.resonance_speeds import resonance_speed
@@ -21,7 +21,7 @@ MESH = Channel(name="n", quantity="resonance_speed", place="2", orders=(28.0,), 
 
 @cache
 def rig(bends: bool) -> Rig:
-    return modelled_rig(shipped("loop_1to1"), "quick", OWN_MODEL if bends else MEASURED_AGAINST)
+    return modelled_rig(shipped("loop_1to1"), "quick", OWN_MODEL if bends else TORSIONAL)
 
 
 def test_speed_is_frequency_over_order_at_the_torque_of_the_sweep() -> None:
@@ -52,7 +52,7 @@ def test_lateral_modes_in_films_have_no_resonance_speed() -> None:
 
 def test_predictor_holds_resonance_speeds_with_the_numbers_at_rest() -> None:
     point = OperatingCondition(name="P", speed=150.0, torque=300.0)
-    predictor = Predictor(shipped("loop_1to1"), [point], [MESH], circuit=MEASURED_AGAINST)
+    predictor = Predictor(shipped("loop_1to1"), [point], [MESH], circuit=TORSIONAL)
     assert [one.setting for one in predictor.features] == [""]
     assert predictor.base[0] == pytest.approx(resonance_speed(rig(False), MESH), rel=1e-9)
     stiffer = predictor.response({"gearboxes.test.meshes.main.stiffness_factor": 1.2})
