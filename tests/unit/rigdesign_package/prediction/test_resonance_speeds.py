@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import TORSIONAL, OWN_MODEL, Channel, OperatingCondition
+from rigdesign.prediction.model import OWN_MODEL, TORSIONAL, Channel, OperatingCondition
 from rigdesign.prediction.operating import modelled_rig
 from rigdesign.prediction.predictor import Predictor
 from rigdesign.prediction.resonance_speeds import resonance_speed
