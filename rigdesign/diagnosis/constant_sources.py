@@ -57,6 +57,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.defaults.GIVEN_BASELINE": Source(
         "-", "fit", "development split of the blind score; evidence: largest of healthy pairs"
     ),
+    "decision.decision.RARE": Source("-", "choice", "the usual level of significance"),
     "decision.decision.PROBABLE": Source("-", "choice", "more never were in a group of three"),
     "decision.decision.PRIOR": Source("-", "choice", _TRIALS),
     "catalogue.lateral.GENERAL_GRADE": Source("mm/s", "literature", "ISO 21940-11, table 1"),

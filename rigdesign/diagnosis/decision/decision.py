@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 from scipy.special import logsumexp
+from scipy.stats import chi2
 
 from rigdesign.diagnosis.statistics.evidence import Evidence
 
@@ -120,6 +121,10 @@ def posterior(
     return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
 
 
+RARE = 0.01
+"""Share of healthy rigs that leave more than what is still called within their residual."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class WhitenedSquare:
     """Whitened square of a residual and the number of readings in it."""
@@ -131,6 +136,11 @@ class WhitenedSquare:
     def deviation(self) -> float:
         """Of the whitened square of a healthy rig."""
         return float((2.0 * self.count) ** 0.5)
+
+    @property
+    def rare(self) -> bool:
+        """Whether fewer than one in a hundred healthy rigs leave as much."""
+        return bool(chi2.sf(self.value, self.count) < RARE)
 
     def misfit(self, gain: float, thresholds: Thresholds) -> str:
         """What an explanation leaves that takes ``gain`` away, in words; empty where nothing known leaves less."""
@@ -304,7 +314,7 @@ def _silent(
             named=(),
             reason="the residual exceeds that of a healthy rig; no explanation fits",
         )
-    if weights.masses["none"] >= 0.5:
+    if weights.masses["none"] >= 0.5 and not square.rare:
         return Decision(
             verdict="within_noise", named=(), reason="the residual is within that of a healthy rig"
         )

@@ -81,6 +81,13 @@ def test_errors_of_sensors_do_not_mend_what_an_effect_leaves():
         assert (found.verdict, found.named) == ("unknown_located", ())
 
 
+@pytest.mark.parametrize(("left", "said"), [(25.0, "within_noise"), (30.0, "too_small")])
+def test_what_one_healthy_rig_in_a_hundred_leaves_is_not_within_noise(left, said):
+    """60 numbers leave 88.4 in one rig of a hundred (chi-squared), whatever explanation is too weak to be one."""
+    weak = evidence("leak", 0.1)
+    assert verdict(weak, left=left - weak.gain).verdict == said
+
+
 def test_a_group_is_the_smallest_one_not_the_likeliest_effects():
     """A ripple that goes with either of two gears is a more probable part than each of them, and not of the group."""
     gears = ("pinion", "wheel")
