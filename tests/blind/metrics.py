@@ -74,29 +74,38 @@ def canonical(name: str, rig: str) -> str:
         place = place.split(".")[0]
     if kind in WHOLE_RIG:
         place = ""
-    if kind.startswith("swapped"):
-        place = ",".join(sorted(place.split(",")))
-    return f"{kind}:{place}" if place else kind
+    return _sorted(f"{kind}:{place}" if place else kind)
+
+
+def _sorted(name: str) -> str:
+    """An exchange of two with both in the order of their names."""
+    kind, _, place = name.partition(":")
+    return f"{kind}:{','.join(sorted(place.split(',')))}" if kind.startswith("swapped") else name
+
+
+def told(row: Row) -> list[str]:
+    """What was named, suspected or grouped."""
+    return [_sorted(name) for name in row["named"]]
 
 
 def named(row: Row) -> list[str]:
     """What was named outright."""
-    return list(row["named"]) if row["verdict"] in ("named", "input_error_suspected") else []
+    return told(row) if row["verdict"] in ("named", "input_error_suspected") else []
 
 
 def right(row: Row) -> bool:
     """The hidden effect alone was named, or is in the alias group."""
     hidden = set(truths(row))
-    told = set(row["named"])
+    given = set(told(row))
     if row["verdict"] == "alias_group":
-        return bool(hidden & told)
-    return bool(named(row)) and told == hidden
+        return bool(hidden & given)
+    return bool(named(row)) and given == hidden
 
 
 def wrong(row: Row) -> bool:
     """A name that is not hidden was given."""
     return bool(set(named(row)) - set(truths(row))) or (
-        row["verdict"] == "alias_group" and not set(row["named"]) & set(truths(row))
+        row["verdict"] == "alias_group" and not set(told(row)) & set(truths(row))
     )
 
 
@@ -194,7 +203,7 @@ def _singles(rows: Sequence[Row], floor: str) -> list[Line]:
 def _pairs(rows: Sequence[Row]) -> list[Line]:
     return [
         Line("pairs: at least one named or suspected", ">= 85 %", "-", str(rate(rows, one_is_in))),
-        Line("pairs: both", ">= 40 %", "-", str(rate(rows, lambda r: set(truths(r)) <= set(r["named"])))),
+        Line("pairs: both", ">= 40 %", "-", str(rate(rows, lambda r: set(truths(r)) <= set(told(r))))),
         Line("pairs: invented", "0", "-", str(rate(rows, wrong))),
     ]
 
@@ -282,13 +291,13 @@ def suspects_data(row: Row) -> bool:
 
 def exchanged_falsely(row: Row) -> bool:
     """Channels or points are said to be exchanged that are not."""
-    told = {name for name in named(row) if name.startswith("swapped")}
-    return bool(told - set(truths(row)))
+    exchanged = {name for name in named(row) if name.startswith("swapped")}
+    return bool(exchanged - set(truths(row)))
 
 
 def one_is_in(row: Row) -> bool:
     """Something hidden is among what was named; a wrong unit by its channel."""
-    return bool(set(truths(row)) & {name.split(" ")[0] for name in row["named"]})
+    return bool(set(truths(row)) & {name.split(" ")[0] for name in told(row)})
 
 
 def silent(row: Row) -> bool:

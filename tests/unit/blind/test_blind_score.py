@@ -36,7 +36,7 @@ def test_false_alarms_are_counted_beside_names():
             row("none", "input_error_suspected", [swapped]),
             row("single", "input_error_suspected", ["swapped_points:P01,P02"], [loss(3.0, 3.0)]),
             row("single", "unknown_located", (), [loss(3.0, 3.0)]),
-            row("input", "input_error_suspected", [swapped], [{"effect": swapped}]),
+            row("input", "input_error_suspected", ["swapped_channels:TC02,TC01"], [{"effect": swapped}]),
         ]
     )  # fmt: skip
     assert found["false alarm of any kind"] == "2/4"
