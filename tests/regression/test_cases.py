@@ -41,7 +41,16 @@ def prototype() -> RunResult:
     return shipped("uhcf_prototype")
 
 
-@pytest.mark.parametrize("name", NAMES)
+BY_HAND = ("strain_gauge_rig",)
+"""Minutes of a run whose parts other tests run."""
+
+
+def marked(name: str, *more: str) -> object:
+    """A shipped case with what else a test takes."""
+    return pytest.param(name, *more, marks=[pytest.mark.slow] if name in BY_HAND else [])
+
+
+@pytest.mark.parametrize("name", [marked(name) for name in NAMES])
 def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
     assert [check.id for check in shipped(name).checks] == list(EXPECTED[name]["checks"])
     assert shipped(name).verdict == EXPECTED[name]["verdict"]
@@ -49,7 +58,7 @@ def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "check_id"), [(name, key) for name in NAMES for key in EXPECTED[name]["checks"]]
+    ("name", "check_id"), [marked(name, key) for name in NAMES for key in EXPECTED[name]["checks"]]
 )
 def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
     check = next(check for check in shipped(name).checks if check.id == check_id)

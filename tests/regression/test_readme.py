@@ -35,6 +35,7 @@ def test_there_are_exactly_two_commands_for_a_fresh_machine() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(ROOT / "cases" / "loop_1to1" / "notebook.py"))

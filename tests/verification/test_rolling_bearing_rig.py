@@ -22,7 +22,7 @@ from tests.builders.rolling_rig import FED, SPLASH, rolling_case
 OTHERS = {"test.pinion_front": "NU 206", "test.wheel_rear": "6306"}
 """Ends of the shafts of the test gearbox that differ from the other end."""
 
-pytestmark = pytest.mark.whole_run
+pytestmark = [pytest.mark.whole_run, pytest.mark.slow]  # a minute; the FZG rig runs its bearings in every run
 
 
 @cache

@@ -78,6 +78,7 @@ def test_stiffness_and_mass_of_a_direct_solution(model: GearboxModel, stated: Co
     assert found.mass == pytest.approx(own_mass, rel=1e-3, abs=1e-3 * float(np.abs(own_mass).max()))
 
 
+@pytest.mark.slow
 def test_twice_the_modulus_is_twice_the_stiffness_and_the_same_mass(
     model: GearboxModel, stated: CondensedSeats
 ) -> None:

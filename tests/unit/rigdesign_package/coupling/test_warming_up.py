@@ -103,6 +103,7 @@ def test_a_point_taken_too_early_lies_between_room_and_steady() -> None:
     assert heat_by_kind(young)[STORED] < 3.0 * heat_by_kind(old)[STORED] < 0.0
 
 
+@pytest.mark.slow
 def test_outer_walls_warm_up_as_the_thermal_history_says() -> None:
     """The history holds the losses of the warm rig; the colder one loses more and is a little warmer: 10 %."""
     rig, steady = base()

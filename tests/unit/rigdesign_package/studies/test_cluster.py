@@ -94,6 +94,7 @@ def test_a_worker_killed_amid_its_point_costs_nothing(dask, undisturbed, tmp_pat
     assert same_files(tmp_path / "out", undisturbed)
 
 
+@pytest.mark.slow
 def test_a_point_that_kills_every_worker_is_a_failed_point(dask, tmp_path):
     dask.add_worker()
     outcome = run_study(CURVES, "oil.inlet=90:110:10 degC", tmp_path, run=deadly, workers=dask.address)
