@@ -105,13 +105,12 @@ def _table(rig):
     return table
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "rig",
     [
         "loop_1to1",
-        "loop_hunting",
-        "uhcf_prototype",
+        pytest.param("loop_hunting", marks=pytest.mark.slow),
+        pytest.param("uhcf_prototype", marks=pytest.mark.slow),
     ],
 )
 def test_short_cuts_answer_as_a_response_found_from_the_beginning(rig):
