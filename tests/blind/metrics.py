@@ -83,20 +83,20 @@ def _sorted(name: str) -> str:
     return f"{kind}:{','.join(sorted(place.split(',')))}" if kind.startswith("swapped") else name
 
 
-def told(row: Row) -> list[str]:
+def reported(row: Row) -> list[str]:
     """What was named, suspected or grouped."""
     return [_sorted(name) for name in row["named"]]
 
 
 def named(row: Row) -> list[str]:
     """What was named outright."""
-    return told(row) if row["verdict"] in ("named", "input_error_suspected") else []
+    return reported(row) if row["verdict"] in ("named", "input_error_suspected") else []
 
 
 def right(row: Row) -> bool:
     """The hidden effect alone was named, or is in the alias group."""
     hidden = set(truths(row))
-    given = set(told(row))
+    given = set(reported(row))
     if row["verdict"] == "alias_group":
         return bool(hidden & given)
     return bool(named(row)) and given == hidden
@@ -105,7 +105,7 @@ def right(row: Row) -> bool:
 def wrong(row: Row) -> bool:
     """A name that is not hidden was given."""
     return bool(set(named(row)) - set(truths(row))) or (
-        row["verdict"] == "alias_group" and not set(told(row)) & set(truths(row))
+        row["verdict"] == "alias_group" and not set(reported(row)) & set(truths(row))
     )
 
 
@@ -203,7 +203,7 @@ def _singles(rows: Sequence[Row], floor: str) -> list[Line]:
 def _pairs(rows: Sequence[Row]) -> list[Line]:
     return [
         Line("pairs: at least one named or suspected", ">= 85 %", "-", str(rate(rows, one_is_in))),
-        Line("pairs: both", ">= 40 %", "-", str(rate(rows, lambda r: set(truths(r)) <= set(told(r))))),
+        Line("pairs: both", ">= 40 %", "-", str(rate(rows, lambda r: set(truths(r)) <= set(reported(r))))),
         Line("pairs: invented", "0", "-", str(rate(rows, wrong))),
     ]
 
@@ -297,7 +297,7 @@ def exchanged_falsely(row: Row) -> bool:
 
 def one_is_in(row: Row) -> bool:
     """Something hidden is among what was named; a wrong unit by its channel."""
-    return bool(set(truths(row)) & {name.split(" ")[0] for name in told(row)})
+    return bool(set(truths(row)) & {name.split(" ")[0] for name in reported(row)})
 
 
 def silent(row: Row) -> bool:
