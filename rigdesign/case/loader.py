@@ -1,6 +1,6 @@
 """Loads a case: file -> tree -> equal parts -> defaults -> marks off -> validated -> rules; every fault at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -88,8 +88,24 @@ def _with_default(stated: Mapping[str, Any], keys: Sequence[str]) -> Mapping[str
         if not _stands(stated, above) and filled_as_a_whole(".".join(above)):
             tree = with_defaults(stated)
             if _stands(tree, above):
-                return dict(_replaced(stated, above, _node(tree, above)))
+                filled = dict(_replaced(stated, above, _node(tree, above)))
+                for lost in _lost(tree, with_defaults(filled)):
+                    filled = dict(_replaced(filled, lost, _node(tree, lost)))
+                return filled
     return stated
+
+
+def _lost(before: Any, after: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """Paths of what stands in one tree and not in another: defaults of a table that was not stated, and is now."""
+    before = before["value"] if is_marked(before) else before
+    after = after["value"] if is_marked(after) else after
+    if not isinstance(before, Mapping) or not isinstance(after, Mapping):
+        return
+    for key, node in before.items():
+        if key not in after:
+            yield (*keys, key)
+        else:
+            yield from _lost(node, after[key], (*keys, key))
 
 
 def _node(tree: Any, keys: Sequence[str]) -> Any:

@@ -17,6 +17,7 @@ from rigdesign.case.defaults.runs import _response_period
 from rigdesign.case.loader import changed_together
 from rigdesign.case.shipped import shipped_cases
 from tests.builders.minimal_case import MINIMAL, MOST_LINES, minimal_case
+from tests.builders.paths import ROOT
 
 STRUCTURE = ("surfaces", "name", "kind", "held", "speed", "title", "part", "quantity", "source")
 """Keys inside of a default table that say what it is about."""
@@ -306,3 +307,12 @@ def test_a_loop_of_18_and_28_teeth_is_sought_over_a_revolution(tmp_path: Path) -
     case = load_case(file)
     assert case.numerics.response_period == "revolution"
     assert "pass 18, 28 teeth in a turn" in case.origin.mark_of["numerics.response_period"].basis
+
+
+def test_changing_a_default_coupling_leaves_the_halves_on_the_shafts() -> None:
+    case = load_case(ROOT / "cases" / "fzg")
+    changed = changed_together(case, {"drivetrain.couplings.pinion_side.torsional_stiffness": "5e5 N m/rad"})
+    assert case.drivetrain is not None and changed.drivetrain is not None
+    assert {name: shaft.discs for name, shaft in changed.drivetrain.shafts.items()} == {
+        name: shaft.discs for name, shaft in case.drivetrain.shafts.items()
+    }
