@@ -14,6 +14,7 @@ from scipy.linalg import solve_triangular
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.agreement import Agreement
 from rigdesign.diagnosis.decision.decision import Decision, Thresholds, Verdict, WhitenedSquare
 from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.decision.proof import Proof, Sizes
@@ -88,18 +89,25 @@ def claim(
     proof: Proof,
     fitted: Callable[[Sequence[Evidence]], JointFit],
     thresholds: Thresholds,
+    agreement: Agreement,
 ) -> Claim:
     """Hold the names of a decision against their sizes, the points held out and all other effects.
 
     found : the explanation of every name; traces : of all in the first look; fitted : the joint fit of some
+    agreement : of channels and operating points on sizes
     """
     refused: list[Refusal] = []
+    if decision.verdict == "alias_group":
+        leader = traces.of(decision.named[0])
+        if text := _disagreement(leader, [], agreement):
+            reason = f"{leader.hypothesis.name} fits best, but {text}"
+            decision = Decision(verdict="unknown_located", named=(), reason=reason)
     if decision.verdict != "named":
         return _without(decision, proof, refused)
     left = list(found)
     while left:
         fit = fitted(left)
-        doubt = _weakest(left, fit, proof)
+        doubt = _weakest(left, fit, proof) or _disputed(left, fit, agreement)
         if doubt is None:
             break
         refused.append(doubt)
@@ -214,6 +222,26 @@ def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal 
     if gaps[least].shrunk:
         return None
     return _unproven(found[least], sizes, gaps[least])
+
+
+DISAGREEMENT = 1e-6
+"""Probability of sizes that differ as much between channels, or between points, below which no name is given."""
+
+
+def _disputed(found: Sequence[Evidence], fit: JointFit, agreement: Agreement) -> Refusal | None:
+    """The first name that channels or operating points want in different sizes; None if they agree on all."""
+    for one in found:
+        if text := _disagreement(one, [other for other in found if other is not one], agreement):
+            return _refusal(
+                one, _sizes(found, fit), "unknown_located", f"{one.hypothesis.name} fits best, but {text}"
+            )
+    return None
+
+
+def _disagreement(one: Evidence, others: Sequence[Evidence], agreement: Agreement) -> str:
+    companion = agreement.companion(one)
+    beside = [*others, *([] if companion is None or companion in others else [companion])]
+    return agreement.objection(one, beside, DISAGREEMENT)
 
 
 def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequence[float]) -> str:

@@ -64,6 +64,12 @@ class Thresholds:
     share: float = 0.05
     share_loop: float = 0.25
 
+    def exceeds_healthy(self, one: Evidence, orders: frozenset[str]) -> bool:
+        """Whether an explanation has more evidence than healthy rigs have given; ``orders``: causes of orders."""
+        parts = frozenset(one.hypothesis.parts)
+        floor = self.evidence if orders.isdisjoint(parts) else self.evidence_loop
+        return one.log_bayes >= floor * len(parts)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Posterior:
@@ -156,7 +162,7 @@ class Candidates:
 
     effects : of catalogue and sensors, not the unmodelled causes
     detectable : effect -> whether these sensors could see it within its bounds at all
-    orders : those of the effects that show in orders and natural frequencies
+    orders : causes that show in orders and natural frequencies, unmodelled ones among them
     sensors : those that are errors of sensors and settings
     """
 
@@ -193,12 +199,7 @@ def decide(
     best = weights.best
     if best is None:
         return _silent(weights, square, candidates, thresholds)
-    floor = (
-        thresholds.evidence
-        if candidates.orders.isdisjoint(best.hypothesis.parts)
-        else thresholds.evidence_loop
-    )
-    if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
+    if weights.masses["none"] < 0.5 and not thresholds.exceeds_healthy(best, candidates.orders):
         reason = "an effect may be present; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
     if misfit := square.misfit(best.gain, thresholds):

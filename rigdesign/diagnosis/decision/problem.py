@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.residual.baseline import Change, differenced
@@ -12,8 +13,22 @@ from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 
-Tier = Literal["deciding", "all"]
-"""Numbers of a search: all but the orders of the meshes, whose amplitudes no model knows well; or all."""
+Tier = Literal["heat", "rotation", "rotation_and_meshes", "all"]
+"""Numbers of a search: temperatures, powers and mean torques; what oscillates and the rig at rest, without the orders
+of the meshes, whose amplitudes no model knows well, or with them; all."""
+
+
+def of_tier(residuals: ResidualProblem, tier: Tier) -> NDArray[np.bool_]:
+    """(n,) whether a number belongs to a tier."""
+    match tier:
+        case "heat":
+            return residuals.of_heat
+        case "rotation":
+            return ~residuals.of_heat & ~residuals.of_mesh
+        case "rotation_and_meshes":
+            return ~residuals.of_heat
+        case "all":
+            return np.ones(len(residuals.features), dtype=bool)
 
 
 @dataclass(frozen=True, kw_only=True)

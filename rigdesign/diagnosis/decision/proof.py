@@ -18,7 +18,7 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names
 from rigdesign.diagnosis.decision.patch import Fitted, patched_case
-from rigdesign.diagnosis.decision.problem import Tier
+from rigdesign.diagnosis.decision.problem import Tier, of_tier
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array
@@ -160,9 +160,7 @@ class Proof:
 
     @cached_property
     def _deciding(self) -> NDArray[np.intp]:
-        if self.tier == "all":
-            return self.rows
-        return self.rows[~self.residuals.of_mesh[self.rows]]
+        return self.rows[of_tier(self.residuals, self.tier)[self.rows]]
 
     def _covariance(self, rows: tuple[int, ...]) -> Covariance:
         if rows not in self._covariances:

@@ -54,7 +54,7 @@ def search(
     criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in residuals.features],
-        orders=frozenset(effect.claim for effect in residuals.effects if effect.family.dynamic),
+        orders=causes_of_orders(residuals, explanations),
         signature=signature,
     )
     evaluations = [evaluate(space, explanations, criteria)]
@@ -84,6 +84,17 @@ def search(
         evaluations=tuple(evaluations),
         found=tuple(found),
     )
+
+
+def causes_of_orders(residuals: ResidualProblem, explanations: Explanations) -> frozenset[str]:
+    """Parts of explanations that show in orders and natural frequencies: effects, and orders without a cause."""
+    effects = {effect.claim for effect in residuals.effects if effect.family.dynamic}
+    orders = {part for one in explanations.unmodelled for part in one.parts if part.startswith(ORDER_CAUSE)}
+    return frozenset(effects | orders)
+
+
+ORDER_CAUSE = "unknown: order "
+"""How the name of an unmodelled cause of an order begins."""
 
 
 def explanations_of(

@@ -4,26 +4,25 @@ Between a name and silence: one effect of the catalogue, or one of a few that le
 probable explanation, but more is left than a healthy rig leaves, an unmodelled cause goes with it or leaves that trace
 as well, or the points held out do not prove it. It is suspected if
 
-- it explains most of what is explained: what it leaves by itself is a small share of what it takes away;
+- it explains most of what is explained: what it leaves is a small share of what it takes away. Another cause that goes
+  with it in the best explanation, named or not, is in the model meanwhile, if that one takes little of it away;
 - every channel and every operating point asks for the same size of it. What is one-sided, local or grows otherwise over
   the speed is something else that the effect is fitted to: a leak on one side is no leak on both;
 - it shrinks the gap on the points held out, where these show it at all;
 - it is large enough to matter, and within its bounds.
 """
 
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import chi2
 
+from rigdesign.diagnosis.decision.agreement import Agreement
 from rigdesign.diagnosis.decision.claims import Traces, too_little
 from rigdesign.diagnosis.decision.decision import UNNAMED, Decision, Thresholds, mass_of_any
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.proof import Proof
-from rigdesign.diagnosis.decision.search import Look, bounds_of, fitted
-from rigdesign.diagnosis.statistics.columns import Array, numbered
-from rigdesign.diagnosis.statistics.covariance import Whitened
+from rigdesign.diagnosis.decision.search import Look, bounds_of, causes_of_orders, fitted
+from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import SEEN
 from rigdesign.diagnosis.statistics.evidence import Evidence, release_of
 from rigdesign.diagnosis.statistics.heldout import Gap
@@ -50,14 +49,19 @@ LARGEST_GROUP = 4
 class Suspicion:
     """The most probable effect of the catalogue with those that leave its trace.
 
-    evidence, fit : of the effect alone; answer : (n,) what it adds to all kept numbers
+    evidence : of the effect alone; companion : of the cause that goes with it, if there is one
+    fit : of the effect, with the companion in the model; answer : (n,) what the effect adds to all kept numbers
+    gain : fall of the whitened square by the effect, with the companion in the model; left : the square with both
     gap : with it on the points held out
     alike : effects and sensor errors that leave its trace, most alike first; unmodelled : causes that do
     """
 
     look: Look = field(repr=False)
     evidence: Evidence
+    companion: Evidence | None
     fit: JointFit
+    gain: float
+    left: float
     answer: Array = field(repr=False)
     gap: Gap | None
     alike: tuple[str, ...]
@@ -74,15 +78,28 @@ class Suspicion:
         if not names:
             return None
         evidence = single[max(names, key=lambda name: inclusion[name])]
-        fit = fitted(look.space, [evidence], calibration)
-        explanation, size = evidence.hypothesis.name, fit.coordinates[0]
+        companion = agreement_in(look, calibration).companion(evidence)
+        together = [evidence] if companion is None else [evidence, companion]
+        both = fitted(look.space, together, calibration)
+        explanation, size = evidence.hypothesis.name, both.coordinates[0]
         if not np.any(size):
             return None
+        owns = [own for one in together for own in one.hypothesis.own]
+        rest = look.space.freed(owns) - both.answer
+        left = float(release_of(look.space, owns).product(rest, rest))
+        before = look.space.chi_square - (0.0 if companion is None else companion.gain)
         answer = proof.stored({explanation: size})
         return cls(
             look=look,
             evidence=evidence,
-            fit=fit,
+            companion=companion,
+            fit=replace(
+                both,
+                sizes=tuple(one for one in both.sizes if one.effect == explanation),
+                coordinates=both.coordinates[:1],
+            ),
+            gain=before - left,
+            left=left,
             answer=answer,
             gap=proof.gap(answer) if proof.points else None,
             alike=tuple(name for name, _ in traces.like(explanation, size)),
@@ -125,9 +142,7 @@ class Suspicion:
     @property
     def excess(self) -> float:
         """What it leaves of the whitened square beyond a healthy rig, over what it explains."""
-        space = self.look.space
-        left = space.chi_square - self.evidence.gain - len(space.residual)
-        return max(left, 0.0) / max(self.evidence.gain, 1e-300)
+        return max(self.left - len(self.look.space.residual), 0.0) / max(self.gain, 1e-300)
 
     @property
     def at_bound(self) -> bool:
@@ -140,18 +155,33 @@ class Suspicion:
         )
 
 
-def suspected(look: Look, proof: Proof, traces: Traces, calibration: Calibration) -> Suspicion | None:
+def agreement_in(look: Look, calibration: Calibration) -> Agreement:
+    """What channels and operating points of a look agree on."""
+    return Agreement(
+        space=look.space,
+        evidence=look.first.evidence,
+        features=look.residuals.features,
+        errors=calibration.signature_error,
+    )
+
+
+def suspected(
+    look: Look, proof: Proof, traces: Traces, calibration: Calibration, baseline: bool
+) -> Suspicion | None:
     """The effect that every probable explanation of a look holds, if nothing speaks against it."""
     candidate = Suspicion.of(look, proof, traces, calibration)
-    return None if candidate is None or objection(candidate, proof, calibration) else candidate
+    return None if candidate is None or objection(candidate, proof, calibration, baseline) else candidate
 
 
-def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> str:
+def objection(candidate: Suspicion, proof: Proof, calibration: Calibration, baseline: bool) -> str:
     """What speaks against suspecting an effect; empty where nothing does."""
     one, look = candidate.evidence, candidate.look
     name, size = one.hypothesis.name, candidate.fit.coordinates[0]
-    if one.gain <= SEEN**2:
+    if candidate.gain <= SEEN**2:
         return "it is not seen"
+    best, orders = look.first.weights.best, causes_of_orders(look.residuals, look.explanations)
+    if best is None or not calibration.thresholds(baseline).exceeds_healthy(best, orders):
+        return "healthy rigs have given as much evidence"
     if len(candidate.group) > LARGEST_GROUP:
         return "too many effects leave its trace"
     if candidate.mass(unmodelled=True) < INCLUSION or candidate.mass(unmodelled=False) < CATALOGUE:
@@ -162,48 +192,9 @@ def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> s
         return text
     if candidate.at_bound:
         return "its best size is the largest one that is physical"
-    kind = one.hypothesis.parts[0].split(":")[0]
-    share = calibration.signature_error.get(kind, calibration.signature_error.get("", 0.0))
-    features = look.residuals.features
-    for what, groups in (
-        ("channels", [feature.channel for feature in features]),
-        ("operating points", [feature.setting for feature in features]),
-    ):
-        if agreement(look.space, one, groups, share) < AGREEMENT:
-            return f"its size is not the same for all {what}"
+    beside = [] if candidate.companion is None else [candidate.companion]
+    if text := agreement_in(look, calibration).objection(one, beside, AGREEMENT):
+        return text
     if candidate.gap is not None and not candidate.gap.shrunk and proof.seen(candidate.answer) > SEEN:
         return "it does not shrink the gap on the points held out"
     return ""
-
-
-def agreement(space: Whitened, one: Evidence, groups: Sequence[Hashable], share: float) -> float:
-    """Probability that groups of numbers ask for sizes as different as they do, if all are of one effect.
-
-    Every group has its own factor on the answer at the best fit; all are fitted at once under the covariance of a
-    healthy rig, which is inflated where they leave more than such a rig does. Each factor may be off by a share.
-
-    groups : (n,) group of each number; share : relative error of the model's answer in a group
-    """
-    release = release_of(space, one.hypothesis.own)
-    number = numbered(groups)
-    answer = space.covariance.lower @ one.answer
-    split = np.where(number[:, None] == np.arange(number.max() + 1), answer[:, None], 0.0)
-    columns = space.covariance.whiten(split)
-    columns = columns[:, np.linalg.norm(columns, axis=0) > FAINT]
-    count = columns.shape[1]
-    if count < 2:
-        return 1.0
-    residual = space.freed(one.hypothesis.own)
-    gram, load = release.product(columns, columns), release.product(columns, residual)
-    inverse = np.linalg.pinv(gram, hermitian=True)
-    factors = inverse @ load
-    left = float(release.product(residual, residual) - load @ factors) / max(len(residual) - count, 1)
-    spread = inverse * max(left, 1.0) + share**2 * np.eye(count)
-    weights = np.linalg.inv(spread)
-    mean = float(weights.sum(axis=0) @ factors / weights.sum())
-    apart = factors - mean
-    return float(chi2.sf(apart @ weights @ apart, count - 1))
-
-
-FAINT = 0.5
-"""Whitened length of the answer in a group below which the group says nothing of its size."""

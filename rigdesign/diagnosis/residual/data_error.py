@@ -36,7 +36,7 @@ def data_error(
     changes = (
         *_swapped_channels(features, channels, values),
         *_swapped_points(features, values),
-        *_units(features, channels, values),
+        *_units(features, channels, values, met_before=met_before),
     )
     residuals = whitened(covariance, [(changed - expected)[None, :] for _, changed in changes])
     found = [
@@ -108,6 +108,13 @@ _MISREAD: Mapping[str, tuple[_Misreading, ...]] = {
     ),
     "drive_torque": _TORQUE,
     "torque": _TORQUE,
+    "angle": (
+        ("sign", -1.0, 0.0),
+        ("degrees as milliradians", 0.18 / np.pi, 0.0),
+        ("degrees as radians", 180.0 / np.pi, 0.0),
+        ("radians as milliradians", 1e-3, 0.0),
+        ("milliradians as radians", 1e3, 0.0),
+    ),
     "resonance_speed": (("radians per second", np.pi / 30.0, 0.0), ("hertz", 1.0 / 60.0, 0.0)),
     "natural_frequency": (("rpm", 60.0, 0.0), ("radians", 2.0 * np.pi, 0.0)),
 }
@@ -115,11 +122,14 @@ _MISREAD: Mapping[str, tuple[_Misreading, ...]] = {
 
 
 def _units(
-    features: Sequence[Feature], channels: Mapping[str, Channel], values: Array
+    features: Sequence[Feature], channels: Mapping[str, Channel], values: Array, *, met_before: bool
 ) -> list[tuple[str, Array]]:
-    """Of channels whose mean is read: orders alone, foretold badly, would be taken for a unit that makes them small."""
+    """Of channels whose mean is read; of orders alone where a healthy set says what to expect.
+
+    Foretold badly, they would be taken for a unit that makes them small.
+    """
     found = []
-    for name in dict.fromkeys(feature.channel for feature in features if feature.order == 0.0):
+    for name in dict.fromkeys(feature.channel for feature in features if met_before or feature.order == 0.0):
         rows = np.array([row for row, feature in enumerate(features) if feature.channel == name])
         for what, factor, shift in _MISREAD.get(channels[name].quantity, ()):
             changed = values.copy()

@@ -31,7 +31,10 @@ from rigdesign.diagnosis.statistics.outliers import Outlier, reject
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.diagnosis.statistics.resonance import steepness
 from rigdesign.measurement import Data
-from rigdesign.prediction.model import Channel, Feature
+from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel, Feature
+
+WITHOUT_HEAT = STANDING_QUANTITIES | {"root_strain"}
+"""Quantities that heat hardly moves, besides orders of what oscillates."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +63,18 @@ class ResidualProblem:
     def of_mesh(self) -> NDArray[np.bool_]:
         """(n,) whether a number is of an order of the meshes."""
         return np.array([feature.order in self.mesh_orders for feature in self.features], dtype=bool)
+
+    @cached_property
+    def of_heat(self) -> NDArray[np.bool_]:
+        """(n,) whether a number is of the heat or a mean torque; not of what oscillates, nor of the rig at rest."""
+        quantities = [self.channels[feature.channel].quantity for feature in self.features]
+        return np.array(
+            [
+                quantity not in WITHOUT_HEAT and not (quantity in ORDER_QUANTITIES and feature.order)
+                for quantity, feature in zip(quantities, self.features, strict=True)
+            ],
+            dtype=bool,
+        )
 
     @cached_property
     def steepness(self) -> Array:
@@ -186,7 +201,10 @@ def compare(
         library=cut,
         channels=channels,
         effects=tuple(effects),
-        errors=(*sensor_errors(cut, channels, own), *input_errors(cut, data.settings, stated)),
+        errors=(
+            *sensor_errors(cut, channels, own, data.values[usable]),
+            *input_errors(cut, data.settings, stated),
+        ),
         scatter=setting_scatter(cut, noise),
         mesh_orders=mesh_orders,
         teeth_a_turn=teeth_a_turn,

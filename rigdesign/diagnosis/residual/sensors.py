@@ -5,7 +5,7 @@ effect it may be many times that.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -82,10 +82,14 @@ CENTRIFUGAL = 5e-6
 
 
 def sensor_errors(
-    library: Library, channels: Mapping[str, Channel], stated: Mapping[str, Stated]
+    library: Library, channels: Mapping[str, Channel], stated: Mapping[str, Stated], values: Array
 ) -> tuple[SensorError, ...]:
-    """Offset and scale of every channel whose measurement states them; the zero of a torque cell is on the mean."""
+    """Offset and scale of every channel whose measurement states them; the zero of a torque cell is on the mean.
+
+    values : (n,) as read: what a sensor has wrong in orders, which no model foretells well, follows what it reads
+    """
     above = excess(library.features, library.base, channels, library.settings)
+    read = np.where([feature.order != 0.0 for feature in library.features], values, library.base)
     found = []
     for name, channel in channels.items():
         own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
@@ -114,12 +118,17 @@ def sensor_errors(
                     name=f"sensor_scale:{name}",
                     title=f"scale error of {name}",
                     kind="sensor",
-                    values=own * (library.base if channel.quantity != "temperature" else above),
+                    values=own * (read if channel.quantity != "temperature" else above),
                     unit="",
                     spread=one.scale,
                 )
             )
-    return (*found, *_angle_zero(library), *_lags(library, channels), *_centrifugal(library, channels))
+    return (
+        *found,
+        *_angle_zero(library, read),
+        *_lags(library, channels, read),
+        *_centrifugal(library, channels),
+    )
 
 
 def _of_gauge(library: Library, name: str, stated: Stated) -> list[SensorError]:
@@ -207,10 +216,10 @@ def index_pulse_offset(explanation: str) -> str:
     return angle.removesuffix(")") if kind == "angle_zero" else ""
 
 
-def _angle_zero(library: Library) -> list[SensorError]:
+def _angle_zero(library: Library, read: Array) -> list[SensorError]:
     """All orders turned by one angle of the reference gear: X_k by i k X_k per radian."""
     turning = Turning.of(library.features)
-    values = turning.order_of(len(library.features)) * turning.ahead(library.base)
+    values = turning.order_of(len(library.features)) * turning.ahead(read)
     if not values.any():
         return []
     return [
@@ -232,42 +241,33 @@ LAG = 2e-6
 LARGEST_LAG = 5e-4
 """Of a carrier amplifier with a low-pass of some 300 Hz that nobody stated [s]."""
 
-USUAL_LAG = 1e-4
-"""Lag at which the column of a lag is exact [s]; below and above it grows faster and slower than in proportion."""
 
+def _lags(library: Library, channels: Mapping[str, Channel], read: Array) -> list[SensorError]:
+    """Orders of every torque cell through a first-order lag T, per second of it.
 
-def lagged(amplitude: complex, frequency: float, lag: float) -> complex:
-    """What a first-order lag [s] makes of an amplitude at a frequency [rad/s]: amplitude/(1 + i frequency lag)."""
-    return amplitude / (1.0 + 1j * frequency * lag)
-
-
-def _lags(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
-    """Orders of every torque cell through a first-order lag, per second of it."""
-    place = {feature: i for i, feature in enumerate(library.features)}
+    What is read is X = S/(1 + i w T) of the torque S, so that X - S = -i w T X whatever the lag.
+    """
+    turning = Turning.of(library.features)
     speeds = {setting.name: setting.speed for setting in library.settings}
-    changes = {name: np.zeros(len(place)) for name, one in channels.items() if one.quantity == "torque"}
-    for feature, i in place.items():
-        if feature.channel not in changes or feature.part != "real":
+    speed = np.array([speeds.get(feature.setting, 0.0) for feature in library.features])
+    behind = -turning.order_of(len(read)) * speed * turning.ahead(read)
+    found = []
+    for name, channel in channels.items():
+        own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
+        if channel.quantity != "torque" or not (own * behind).any():
             continue
-        j = place.get(replace(feature, part="imaginary"))
-        if j is None:
-            continue
-        amplitude = complex(library.base[i], library.base[j])
-        change = lagged(amplitude, feature.order * speeds[feature.setting], USUAL_LAG) - amplitude
-        changes[feature.channel][[i, j]] = change.real / USUAL_LAG, change.imag / USUAL_LAG
-    return [
-        SensorError(
-            name=f"torque_lag:{name}",
-            title=f"lag of the torque cell {name}",
-            kind="sensor",
-            values=values,
-            unit="s",
-            spread=LAG,
-            times=LARGEST_LAG / LAG,
+        found.append(
+            SensorError(
+                name=f"torque_lag:{name}",
+                title=f"lag of the torque cell {name}",
+                kind="sensor",
+                values=own * behind,
+                unit="s",
+                spread=LAG,
+                times=LARGEST_LAG / LAG,
+            )
         )
-        for name, values in changes.items()
-        if values.any()
-    ]
+    return found
 
 
 def input_errors(

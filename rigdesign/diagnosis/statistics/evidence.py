@@ -329,13 +329,17 @@ def deviations_of(inverse: Array) -> tuple[float, ...]:
     return tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0)))
 
 
+JOIN = " + "
+"""Between the names of two explanations in that of their pair."""
+
+
 def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     """Two explanations at once, in closed form around the best fit of the first.
 
     The first is taken at its own best size with the slope there; of the second the slope at its best size. The
     spreads of both are integrated over the same mixtures as alone.
     """
-    name = f"{first.hypothesis.name} + {second.hypothesis.name}"
+    name = f"{first.hypothesis.name}{JOIN}{second.hypothesis.name}"
     own = (*first.hypothesis.own, *second.hypothesis.own)
     release = release_of(space, own)
     base = first.answer - first.columns @ np.array(first.coordinates)

@@ -38,6 +38,14 @@ class JointFit:
     coordinates: tuple[tuple[float, ...], ...]
     answer: Array
 
+    def with_other(self, other: "JointFit") -> "JointFit":
+        """With a fit to other numbers behind it."""
+        return JointFit(
+            sizes=(*self.sizes, *other.sizes),
+            coordinates=(*self.coordinates, *other.coordinates),
+            answer=np.concatenate([self.answer, other.answer]),
+        )
+
 
 def fit_together(
     space: Whitened,
