@@ -8,7 +8,7 @@ Each takes one part away from the calibration that is frozen.
 from collections.abc import Callable
 from dataclasses import replace
 
-from rigdesign.diagnosis.decision import search, workflow
+from rigdesign.diagnosis.decision import claims, finding, search
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 
@@ -68,8 +68,22 @@ def no_anonymous(calibration: Calibration) -> Calibration:
 
 
 def no_tiers(calibration: Calibration) -> Calibration:
-    """All numbers at once: orders of the meshes decide like the others."""
-    workflow._Data.tiers = ("all",)  # type: ignore[method-assign, assignment]
+    """Orders of the meshes decide like the others."""
+    domains = finding.Numbers.domains.fget
+    assert domains is not None
+    finding.Numbers.domains = property(lambda numbers: [tiers[-1:] for tiers in domains(numbers)])  # type: ignore[assignment, method-assign]
+    return calibration
+
+
+def no_domains(calibration: Calibration) -> Calibration:
+    """Heat and rotation at once, in tiers."""
+    finding.Numbers.domains = property(lambda numbers: [("all",)])  # type: ignore[assignment, method-assign]
+    return calibration
+
+
+def no_agreement(calibration: Calibration) -> Calibration:
+    """Channels and operating points need not agree on the size of a name."""
+    claims.DISAGREEMENT = 0.0
     return calibration
 
 
@@ -98,6 +112,8 @@ ABLATIONS: dict[str, Callable[[Calibration], Calibration]] = {
     "no_widening": no_widening,
     "no_anonymous": no_anonymous,
     "no_tiers": no_tiers,
+    "no_domains": no_domains,
+    "no_agreement": no_agreement,
     "no_groups": no_groups,
     "virtual_model": virtual_model,
 }

@@ -231,7 +231,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
         "name": spec.name,
         "rig": spec.rig,
         "verdict": found.decision.verdict,
-        "named": list(found.named),
+        "named": [*found.named, *found.decision.apart, *found.decision.as_well],
         "reason": found.decision.reason,
         "strength": found.strength,
         "refused": [one.explanation for one in found.refused],

@@ -157,5 +157,6 @@ def draughts(part: GearboxPart) -> Iterator[Effect]:
             change=_OneWall(f"{part.path}.housing.surface_film_factors", housing.surface_film_factors, wall),
             linear=True,
             matters=DRAUGHTY,
+            stands_for="a cold neighbour, or a frame bolted to the wall",
             likeness_of_place=True,
         )

@@ -148,6 +148,12 @@ def claim(
     )
 
 
+def withdrawn(claimed: Claim, proof: Proof, reason: str) -> Claim:
+    """A claim that is given up."""
+    decision = Decision(verdict="unknown_located", named=(), reason=reason)
+    return _without(decision, proof, claimed.refused)
+
+
 def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Claim:
     """No names."""
     nothing = np.zeros(len(proof.residuals.features))

@@ -4,8 +4,8 @@ The order of the questions is that of the workflow's step 8. Thresholds are froz
 (`rigdesign.diagnosis.decision.defaults`).
 """
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Literal
 
@@ -89,13 +89,14 @@ class Decision:
     """The verdict with the parts it depends on.
 
     named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
-        whichever of the group is present
+        whichever of the group is present; as_well : members of a further group, which one of is present as well
     """
 
     verdict: Verdict
     named: tuple[str, ...]
     reason: str
     apart: tuple[str, ...] = ()
+    as_well: tuple[str, ...] = ()
 
 
 def posterior(
@@ -180,6 +181,10 @@ class Candidates:
         """Effects that may be named."""
         return self.effects - self.passed_over
 
+    def without(self, others: Iterable[str]) -> "Candidates":
+        """With some more that are passed over."""
+        return replace(self, passed_over=self.passed_over.union(others))
+
 
 def decide(
     evidence: Sequence[Evidence],
@@ -214,6 +219,9 @@ def decide(
             named=(),
             reason="a cause outside the catalogue explains the data better than any effect of the catalogue",
         )
+    candidates = candidates.without(
+        sensor for sensor in candidates.sensors if _alone(sensor, evidence) < BY_ITSELF * best.gain
+    )
     named = tuple(
         part
         for part, mass in sorted(weights.inclusion.items(), key=lambda item: -item[1])
@@ -254,6 +262,16 @@ def _credible(
         return True
     alone = max((other.gain for other in evidence if set(other.hypothesis.parts) == others), default=0.0)
     return one.gain - alone < thresholds.share * one.gain
+
+
+BY_ITSELF = 0.7
+"""Least share of what the best explanation takes away that an error of a sensor in it takes away alone, to be named:
+two thermometers of one wall that are off together are rather a wall that is."""
+
+
+def _alone(part: str, evidence: Sequence[Evidence]) -> float:
+    """Largest fall of the whitened square by one part alone."""
+    return max((one.gain for one in evidence if one.hypothesis.parts == (part,)), default=0.0)
 
 
 def _smallest_group(

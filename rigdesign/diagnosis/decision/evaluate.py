@@ -76,7 +76,8 @@ class Criteria:
     """What every evaluation of one set of data has in common.
 
     points : (n,) operating point of each number; left out, a name may depend on one
-    orders : names of effects that show in orders and natural frequencies
+    orders : causes that show in orders and natural frequencies
+    unnamed : effects that are suspected at most
     signature : how wrong the model may answer to a right cause; left out, not at all
     """
 
@@ -84,6 +85,7 @@ class Criteria:
     priors: Mapping[str, float] = field(default_factory=lambda: dict(PRIOR))
     points: Sequence[str] = ()
     orders: frozenset[str] = frozenset()
+    unnamed: frozenset[str] = frozenset()
     signature: Signature | None = None
 
 
@@ -117,12 +119,13 @@ def evaluate(
         orders=criteria.orders,
         sensors=frozenset(part for one in explanations.sensor for part in one.parts),
         alike=_alike(singles, frozenset(part for one in known for part in one.parts)),
+        passed_over=criteria.unnamed,
     )
     square = WhitenedSquare(value=space.chi_square, count=len(space.residual))
     decision = decide(evidence, weights, square, candidates, criteria.thresholds)
     refused = _unsupported(space, decision, evidence, weights, criteria, explained)
     if refused and (decision.verdict == "alias_group" or not set(decision.named) - set(refused)):
-        others = replace(candidates, passed_over=frozenset(refused))
+        others = replace(candidates, passed_over=criteria.unnamed.union(refused))
         group = decide(evidence, weights, square, others, criteria.thresholds)
         if group.verdict == "alias_group":
             decision = group

@@ -12,7 +12,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from rigdesign.base.errors import RigdesignError
-from rigdesign.diagnosis.decision.claims import Claim, Traces, claim
+from rigdesign.diagnosis.decision.claims import Claim, Traces, claim, withdrawn
 from rigdesign.diagnosis.decision.decision import Decision, Verdict
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Evaluation, Explanations
@@ -22,7 +22,7 @@ from rigdesign.diagnosis.decision.search import Look, explanations_of, fitted, s
 from rigdesign.diagnosis.decision.suspicion import Suspicion, agreement_in, suspected
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.detectability import Detectability, aliases, detectabilities
+from rigdesign.diagnosis.statistics.detectability import SEEN, Detectability, aliases, detectabilities
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.intervals import JointFit
 
@@ -36,6 +36,22 @@ WORST_FIRST: tuple[Verdict, ...] = (
     "suspected", "unknown_located", "too_small", "within_noise", "data_insufficient",
 )  # fmt: skip
 """Of two domains that name nothing the verdict that comes first here holds for both."""
+
+
+WORDS: Mapping[Tier, str] = {
+    "heat": "temperatures, powers and mean torques",
+    "rotation": "orders and the rig at rest",
+}
+"""Domain -> its numbers, in words."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitted:
+    """Names of a claim with their fit; of a group its leader, and ``fits`` of every member."""
+
+    found: tuple[Evidence, ...]
+    fit: JointFit
+    fits: Mapping[str, JointFit]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,8 +96,45 @@ class Numbers:
         last = look.evaluations[-1].decision
         if last.verdict == "alias_group" and not claimed.found and claimed.insignificant:
             group = claim(last, (), traces, proof, fit, thresholds, agreement)
-            return replace(group, refused=claimed.refused)
+            claimed = replace(group, refused=claimed.refused)
+        if claimed.decision.verdict in SURE:
+            named = self.fitted(look, claimed)
+            if text := self.contradiction(look, named.found, named.fit):
+                return withdrawn(claimed, proof, text)
         return claimed
+
+    def fitted(self, look: Look, claimed: Claim) -> "Fitted":
+        """What a claim names with its sizes."""
+        if claimed.fit is not None:
+            return Fitted(found=claimed.found, fit=claimed.fit, fits=claimed.fits)
+        traces = self.traces(look)
+        members = {name: traces.of(name) for name in claimed.decision.named}
+        fits = {name: fitted(look.space, [one], self.calibration) for name, one in members.items()}
+        leader = claimed.decision.named[0]
+        return Fitted(found=(members[leader],), fit=fits[leader], fits=fits)
+
+    def contradiction(self, look: Look, found: Sequence[Evidence], fit: JointFit) -> str:
+        """What the other domain says against an error of a sensor that a look gives, in words; empty for nothing.
+
+        A wrong scale of a torque cell shows in its mean as well as in its orders. What else shows in both is known less
+        exactly in one of them.
+        """
+        other: Tier = "rotation" if look.tier == "heat" else "heat"
+        errors = [
+            (one.hypothesis.name, size)
+            for one, size in zip(found, fit.coordinates, strict=True)
+            if one.hypothesis.family == "sensor"
+        ]
+        if not errors or look.tier == "all" or not of_tier(self.residuals, other).any():
+            return ""
+        residuals, space = self._seen(other)
+        place = {feature: row for row, feature in enumerate(self.residuals.features)}
+        rows = [place[feature] for feature in residuals.features]
+        for name, size in errors:
+            rest = space.residual - space.covariance.whiten(self.proof("all").stored({name: size})[rows])
+            if float(rest @ rest) - space.chi_square > SEEN**2:
+                return f"{name} fits best, but not {WORDS[other]}"
+        return ""
 
     def traces(self, look: Look) -> Traces:
         """What single effects leave in the numbers of a look."""
@@ -206,7 +259,7 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
         suspicion = suspected(
             look, numbers.proof(look.tier), numbers.traces(look), numbers.calibration, numbers.has_baseline
         )
-        if suspicion is None:
+        if suspicion is None or numbers.contradiction(look, [suspicion.evidence], suspicion.fit):
             continue
         if suspicion.accounts_for_all(thresholds):
             held = numbers.claim(look, suspicion.as_named, [suspicion.evidence])
@@ -221,7 +274,7 @@ def _beside(sure: Finding, other: Finding) -> Finding:
     """A finding with names, and in its reason what the other domain says beyond a healthy rig."""
     if other.decision.verdict not in ("unknown_located", "suspected"):
         return sure
-    where = "temperatures, powers and mean torques" if other.tier == "heat" else "orders and the rig at rest"
+    where = WORDS["heat" if other.tier == "heat" else "rotation"]
     reason = f"{sure.claimed.decision.reason}; in {where}: {other.decision.reason}"
     decision = replace(sure.claimed.decision, reason=reason)
     return replace(sure, claimed=replace(sure.claimed, decision=decision))
@@ -232,7 +285,17 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
     grouped = [one for one in (first, second) if one.decision.verdict == "alias_group"]
     if len(grouped) == 2:
         leads, other = sorted(grouped, key=lambda one: len(one.decision.named))
-        return _beside(leads, other)
+        return replace(
+            leads,
+            claimed=replace(
+                leads.claimed,
+                decision=replace(
+                    leads.decision,
+                    as_well=other.decision.named,
+                    reason=f"{leads.decision.reason}; one of {', '.join(other.decision.named)} as well",
+                ),
+            ),
+        )
     leads, other = (second, first) if grouped == [second] else (first, second)
     decision = leads.decision
     if grouped:
@@ -240,7 +303,7 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
     else:
         names = tuple(dict.fromkeys((*decision.named, *other.decision.named)))
         decision = replace(decision, named=names, reason=f"{decision.reason}; so is {other.decision.reason}")
-    first_fit, others_fit = _fitted(numbers, leads), _fitted(numbers, other)
+    first_fit, others_fit = (numbers.fitted(one.look, one.claimed) for one in (leads, other))
     found = (*first_fit.found, *others_fit.found)
     fit = first_fit.fit.with_other(others_fit.fit)
     sizes = {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
@@ -261,26 +324,6 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
             refused=(*leads.claimed.refused, *other.claimed.refused),
         ),
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Fitted:
-    """Names of a finding with their fit; of a group its leader, and ``fits`` of every member."""
-
-    found: tuple[Evidence, ...]
-    fit: JointFit
-    fits: Mapping[str, JointFit]
-
-
-def _fitted(numbers: Numbers, finding: Finding) -> _Fitted:
-    claimed = finding.claimed
-    if claimed.fit is not None:
-        return _Fitted(found=claimed.found, fit=claimed.fit, fits=claimed.fits)
-    traces = numbers.traces(finding.look)
-    members = {name: traces.of(name) for name in claimed.decision.named}
-    fits = {name: fitted(finding.look.space, [one], numbers.calibration) for name, one in members.items()}
-    leader = claimed.decision.named[0]
-    return _Fitted(found=(members[leader],), fit=fits[leader], fits=fits)
 
 
 def _assemblies(residuals: ResidualProblem) -> list[tuple[tuple[str, int], ...]]:

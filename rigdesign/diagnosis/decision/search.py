@@ -55,6 +55,7 @@ def search(
         thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in residuals.features],
         orders=causes_of_orders(residuals, explanations),
+        unnamed=frozenset(effect.claim for effect in residuals.effects if effect.stands_for),
         signature=signature,
     )
     evaluations = [evaluate(space, explanations, criteria)]

@@ -5,7 +5,8 @@ probable explanation, but more is left than a healthy rig leaves, an unmodelled 
 as well, or the points held out do not prove it. It is suspected if
 
 - it explains most of what is explained: what it leaves is a small share of what it takes away. Another cause that goes
-  with it in the best explanation, named or not, is in the model meanwhile, if that one takes little of it away;
+  with it in the best explanation, named or not, is in the model meanwhile, if that one takes little of it away; not
+  with an error of a sensor, which would mend what something else leaves;
 - every channel and every operating point asks for the same size of it. What is one-sided, local or grows otherwise over
   the speed is something else that the effect is fitted to: a leak on one side is no leak on both;
 - it shrinks the gap on the points held out, where these show it at all;
@@ -78,7 +79,8 @@ class Suspicion:
         if not names:
             return None
         evidence = single[max(names, key=lambda name: inclusion[name])]
-        companion = agreement_in(look, calibration).companion(evidence)
+        of_rig = evidence.hypothesis.family == "physical"
+        companion = agreement_in(look, calibration).companion(evidence) if of_rig else None
         together = [evidence] if companion is None else [evidence, companion]
         both = fitted(look.space, together, calibration)
         explanation, size = evidence.hypothesis.name, both.coordinates[0]
@@ -125,11 +127,22 @@ class Suspicion:
         also = f"; {' and '.join(others)} would leave the same trace" if others else ""
         rest = f"{self.excess:.0%} of what it accounts for" if self.excess > 0.0 else "nothing"
         reason = f"{first} is the most probable effect; it leaves {rest} beyond a healthy rig"
-        return Decision(verdict="suspected", named=self.group, reason=reason + also)
+        as_well = f"; so would {self.stands_for}" if self.stands_for else ""
+        return Decision(verdict="suspected", named=self.group, reason=reason + also + as_well)
 
     def accounts_for_all(self, thresholds: Thresholds) -> bool:
         """Whether it leaves a healthy rig, to the share that no answer of the model is more exact than."""
-        return self.excess <= thresholds.share and self.mass(unmodelled=False) >= thresholds.named
+        return (
+            not self.stands_for
+            and self.excess <= thresholds.share
+            and self.mass(unmodelled=False) >= thresholds.named
+        )
+
+    @property
+    def stands_for(self) -> str:
+        """What outside the catalogue leaves its trace by its nature."""
+        own = self.evidence.hypothesis.parts[0]
+        return next((one.stands_for for one in self.look.residuals.effects if one.claim == own), "")
 
     @property
     def as_named(self) -> Decision:
