@@ -54,7 +54,7 @@ def search(
     criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in residuals.features],
-        orders=causes_of_orders(residuals, explanations),
+        orders=causes_of_orders(residuals, explanations, tier),
         unnamed=frozenset(effect.claim for effect in residuals.effects if effect.stands_for),
         signature=signature,
     )
@@ -87,11 +87,16 @@ def search(
     )
 
 
-def causes_of_orders(residuals: ResidualProblem, explanations: Explanations) -> frozenset[str]:
-    """Parts of explanations that show in orders and natural frequencies: effects, and orders without a cause."""
+def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tier: Tier) -> frozenset[str]:
+    """Parts of explanations whose evidence in a tier is of orders and natural frequencies; all of a look at rotation."""
     effects = {effect.claim for effect in residuals.effects if effect.family.dynamic}
-    orders = {part for one in explanations.unmodelled for part in one.parts if part.startswith(ORDER_CAUSE)}
-    return frozenset(effects | orders)
+    if tier == "heat":
+        return frozenset(effects)
+    others = (*explanations.sensor, *explanations.unmodelled)
+    of_orders = {
+        part for one in others for part in one.parts if tier != "all" or part.startswith(ORDER_CAUSE)
+    }
+    return frozenset(effects | of_orders)
 
 
 ORDER_CAUSE = "unknown: order "

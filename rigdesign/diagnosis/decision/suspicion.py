@@ -192,7 +192,7 @@ def objection(candidate: Suspicion, proof: Proof, calibration: Calibration, base
     name, size = one.hypothesis.name, candidate.fit.coordinates[0]
     if candidate.gain <= SEEN**2:
         return "it is not seen"
-    best, orders = look.first.weights.best, causes_of_orders(look.residuals, look.explanations)
+    best, orders = look.first.weights.best, causes_of_orders(look.residuals, look.explanations, look.tier)
     if best is None or not calibration.thresholds(baseline).exceeds_healthy(best, orders):
         return "healthy rigs have given as much evidence"
     if len(candidate.group) > LARGEST_GROUP:
