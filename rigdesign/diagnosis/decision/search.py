@@ -88,7 +88,7 @@ def search(
 
 
 def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tier: Tier) -> frozenset[str]:
-    """Parts of explanations whose evidence in a tier is of orders and natural frequencies; all of a look at rotation."""
+    """Parts of explanations whose evidence is of orders and natural frequencies: in a look at rotation all."""
     effects = {effect.claim for effect in residuals.effects if effect.family.dynamic}
     if tier == "heat":
         return frozenset(effects)
