@@ -57,7 +57,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.defaults.GIVEN_BASELINE": Source(
         "-", "fit", "development split of the blind score; evidence: largest of healthy pairs"
     ),
-    "decision.decision.RARE": Source("-", "choice", "the usual level of significance"),
+    "decision.decision.RARE": Source("sd", "fit", "108 healthy sets and 108 pairs of the virtual rig"),
     "decision.decision.PROBABLE": Source("-", "choice", "more never were in a group of three"),
     "decision.decision.BY_ITSELF": Source("-", "choice", "opened sets of the fourth score"),
     "decision.decision.PRIOR": Source("-", "choice", _TRIALS),

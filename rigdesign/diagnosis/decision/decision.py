@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 from scipy.special import logsumexp
-from scipy.stats import chi2
 
 from rigdesign.diagnosis.statistics.evidence import Evidence
 
@@ -128,8 +127,9 @@ def posterior(
     return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
 
 
-RARE = 0.01
-"""Share of healthy rigs that leave more than what is still called within their residual."""
+RARE = 3.0
+"""Standard deviations of the whitened square above that of a healthy rig up to which a residual is still called within
+it: 6 of 108 healthy pairs and 1 of 108 healthy sets without a baseline leave more in a domain."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,8 +146,8 @@ class WhitenedSquare:
 
     @property
     def rare(self) -> bool:
-        """Whether fewer than one in a hundred healthy rigs leave as much."""
-        return bool(chi2.sf(self.value, self.count) < RARE)
+        """Whether few healthy rigs leave as much."""
+        return self.value - self.count > RARE * self.deviation
 
     def misfit(self, gain: float, thresholds: Thresholds) -> str:
         """What an explanation leaves that takes ``gain`` away, in words; empty where nothing known leaves less."""

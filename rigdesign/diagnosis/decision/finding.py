@@ -33,7 +33,7 @@ OPEN = frozenset({"unknown_located", "too_small"})
 """Verdicts that an effect may be suspected under."""
 
 WORST_FIRST: tuple[Verdict, ...] = (
-    "input_error_suspected", "suspected", "unknown_located", "too_small", "within_noise", "data_insufficient",
+    "suspected", "unknown_located", "too_small", "within_noise", "data_insufficient",
 )  # fmt: skip
 """Of two domains that name nothing the verdict that comes first here holds for both."""
 

@@ -49,7 +49,7 @@ def search(
     problem: Problem, residuals: ResidualProblem, space: Whitened, calibration: Calibration, tier: Tier
 ) -> Look:
     """Evaluate, take what is named into the model, evaluate what is left."""
-    explanations = explanations_of(problem, residuals, space)
+    explanations = explanations_of(problem, residuals, space, data=False)
     signature = signature_of(problem, residuals, calibration)
     criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
@@ -107,7 +107,7 @@ def explanations_of(
     problem: Problem, residuals: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
 ) -> Explanations:
     """All explanations; without the unmodelled ``rivals`` where only data and catalogue are evaluated, and without
-    errors of the ``data`` where those were evaluated before."""
+    errors of the ``data``, which are sought in all numbers at once (`rigdesign.diagnosis.decision.workflow`)."""
     covariance = space.covariance
     expected = residuals.values - space.raw
     return Explanations(
