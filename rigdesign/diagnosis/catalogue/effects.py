@@ -75,6 +75,8 @@ class Effect:
     """Name of twice its amplitude, where drawings give that."""
     bends: bool = False
     """It shows only where shafts bend: a library with it is made with the shafts of the case."""
+    heats: str = ""
+    """Oil stream that takes most of a loss, ``test.gear_oil``."""
     stands_for: str = ""
     """What else leaves its trace and is in no catalogue: it is suspected at most, never named."""
     likeness_of_place: bool = False

@@ -61,6 +61,10 @@ LOSSES = (
 )  # fmt: skip
 
 
+INTO_GEAR_OIL = frozenset({"mesh", "windage", "jet", "squeeze"})
+"""Losses of which the gear oil takes most."""
+
+
 @of_rig()
 def not_steady(case: Case) -> Iterator[Effect]:
     """A rig whose points were read too early."""
@@ -91,6 +95,7 @@ def losses(part: GearboxPart) -> Iterator[Effect]:
             change=Scaled(((f"{part.path}.loss_factors.{loss.key}", now),)),
             healthy=loss.healthy,
             exponents=loss.exponents,
+            heats=f"{part.name}.gear_oil" if loss.key in INTO_GEAR_OIL else "",
         )
 
 

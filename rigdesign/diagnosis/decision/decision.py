@@ -173,6 +173,8 @@ class Candidates:
     sensors: frozenset[str] = frozenset()
     alike: Mapping[str, frozenset[str]] = field(default_factory=dict)
     """Effect -> those that leave its trace in these numbers, itself left out."""
+    one_oil: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    """Unmodelled loss in an oil -> losses of the catalogue of which that oil takes most."""
     passed_over: frozenset[str] = frozenset()
     """Effects that were refused: part of an explanation they may be, a name they are not."""
 
@@ -214,6 +216,8 @@ def decide(
     known = [one for one in evidence if _credible(one, evidence, candidates, thresholds)]
     leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
+        if losses := _losses_of_one_oil(evidence, weights, candidates, thresholds):
+            return losses
         return Decision(
             verdict="unknown_located",
             named=(),
@@ -241,6 +245,8 @@ def decide(
                 named=group,
                 reason="one of them is present; the data do not identify which",
             )
+        if losses := _losses_of_one_oil(evidence, weights, candidates, thresholds):
+            return losses
         return Decision(
             verdict="unknown_located",
             named=(),
@@ -307,6 +313,36 @@ def _group_of_one_trace(
     if not 1 < len(group) <= thresholds.one_trace or mass_of_any(evidence, weights, group) < thresholds.named:
         return ()
     return tuple(sorted(group, key=lambda part: (-known.get(part, 0.0), part)))
+
+
+def _losses_of_one_oil(
+    evidence: Sequence[Evidence], weights: Posterior, candidates: Candidates, thresholds: Thresholds
+) -> Decision | None:
+    """The losses that one oil takes, where one of them or a loss there by another law is present.
+
+    A law of speed and torque that no loss of the catalogue follows does not make it another cause: none is known that
+    well. None where the best of them accounts for too little of what the law does.
+    """
+    by_oil: dict[frozenset[str], set[str]] = {}
+    for cause, losses in candidates.one_oil.items():
+        by_oil.setdefault(losses, set()).add(cause)
+    for losses, causes in by_oil.items():
+        known = [
+            part for part in losses if part in candidates.open and weights.inclusion.get(part, 0.0) > 0.0
+        ]
+        first = max(known, key=lambda part: weights.inclusion[part], default="")
+        best = max((_alone(part, evidence) for part in causes), default=0.0)
+        if len(known) < 2 or _alone(first, evidence) < BY_LAW * best:
+            continue
+        if mass_of_any(evidence, weights, losses | causes) >= thresholds.named:
+            group = tuple(sorted(known, key=lambda part: (-weights.inclusion[part], part)))
+            reason = f"a loss in one oil; the data do not identify by its law which, {first} is the nearest"
+            return Decision(verdict="alias_group", named=group, reason=reason)
+    return None
+
+
+BY_LAW = 0.8
+"""Least share of what a loss by any law explains that the nearest loss of the catalogue explains."""
 
 
 def mass_of_any(evidence: Sequence[Evidence], weights: Posterior, parts: Collection[str]) -> float:

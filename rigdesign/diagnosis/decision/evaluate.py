@@ -78,6 +78,7 @@ class Criteria:
     points : (n,) operating point of each number; left out, a name may depend on one
     orders : causes that show in orders and natural frequencies
     unnamed : effects that are suspected at most
+    one_oil : as of `Candidates`
     signature : how wrong the model may answer to a right cause; left out, not at all
     """
 
@@ -86,6 +87,7 @@ class Criteria:
     points: Sequence[str] = ()
     orders: frozenset[str] = frozenset()
     unnamed: frozenset[str] = frozenset()
+    one_oil: Mapping[str, frozenset[str]] = field(default_factory=dict)
     signature: Signature | None = None
 
 
@@ -119,6 +121,7 @@ def evaluate(
         orders=criteria.orders,
         sensors=frozenset(part for one in explanations.sensor for part in one.parts),
         alike=_alike(singles, frozenset(part for one in known for part in one.parts)),
+        one_oil=criteria.one_oil,
         passed_over=criteria.unnamed,
     )
     square = WhitenedSquare(value=space.chi_square, count=len(space.residual))

@@ -56,6 +56,7 @@ def search(
         points=[feature.setting for feature in residuals.features],
         orders=causes_of_orders(residuals, explanations, tier),
         unnamed=frozenset(effect.claim for effect in residuals.effects if effect.stands_for),
+        one_oil=losses_of_oils(residuals, explanations),
         signature=signature,
     )
     evaluations = [evaluate(space, explanations, criteria)]
@@ -97,6 +98,17 @@ def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tie
         part for one in others for part in one.parts if tier != "all" or part.startswith(ORDER_CAUSE)
     }
     return frozenset(effects | of_orders)
+
+
+def losses_of_oils(residuals: ResidualProblem, explanations: Explanations) -> dict[str, frozenset[str]]:
+    """Unmodelled loss in an oil, whatever its law -> losses of the catalogue of which that oil takes most."""
+    oils = {effect.heats for effect in residuals.effects if effect.heats}
+    found: dict[str, frozenset[str]] = {}
+    for oil in oils:
+        losses = frozenset(effect.claim for effect in residuals.effects if effect.heats == oil)
+        start = f"unknown: heat at oil:{oil} "
+        found |= {one.name: losses for one in explanations.unmodelled if one.name.startswith(start)}
+    return found
 
 
 ORDER_CAUSE = "unknown: order "

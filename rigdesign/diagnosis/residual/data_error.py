@@ -46,6 +46,10 @@ def data_error(
     return [*found, *(_turned_mark(covariance, features, values, expected) if met_before else [])]
 
 
+COMMON = 0.5
+"""Least share of the numbers of two channels that both have, to be exchanged; some may be rejected as outliers."""
+
+
 def _swapped_channels(
     features: Sequence[Feature], channels: Mapping[str, Channel], values: Array
 ) -> list[tuple[str, Array]]:
@@ -54,10 +58,12 @@ def _swapped_channels(
         rows.setdefault(feature.channel, {})[feature.setting, feature.order, feature.part] = row
     found = []
     for first, second in combinations(rows, 2):
-        if channels[first].quantity != channels[second].quantity or rows[first].keys() != rows[second].keys():
+        common = [key for key in rows[first] if key in rows[second]]
+        most = max(len(rows[first]), len(rows[second]))
+        if channels[first].quantity != channels[second].quantity or len(common) < COMMON * most:
             continue
-        here = np.array(list(rows[first].values()))
-        there = np.array([rows[second][key] for key in rows[first]])
+        here = np.array([rows[first][key] for key in common])
+        there = np.array([rows[second][key] for key in common])
         changed = values.copy()
         changed[here], changed[there] = values[there], values[here]
         found.append((f"swapped_channels:{first},{second}", changed))
