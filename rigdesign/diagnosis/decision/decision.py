@@ -369,7 +369,8 @@ def _silent(
             named=(),
             reason="the residual exceeds that of a healthy rig; no explanation fits",
         )
-    if weights.masses["none"] >= 0.5 and not square.rare:
+    likely_none = weights.best is None or weights.masses["none"] >= 0.5
+    if likely_none and not square.rare:
         return Decision(
             verdict="within_noise", named=(), reason="the residual is within that of a healthy rig"
         )

@@ -13,7 +13,7 @@ import numpy as np
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.decision.claims import Claim, Traces, claim, withdrawn
-from rigdesign.diagnosis.decision.decision import Decision, Verdict
+from rigdesign.diagnosis.decision.decision import Decision
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Evaluation, Explanations
 from rigdesign.diagnosis.decision.problem import Problem, Tier, of_tier
@@ -31,12 +31,6 @@ SURE = frozenset({"named", "alias_group"})
 
 OPEN = frozenset({"unknown_located", "too_small"})
 """Verdicts that an effect may be suspected under."""
-
-WORST_FIRST: tuple[Verdict, ...] = (
-    "suspected", "unknown_located", "too_small", "within_noise", "data_insufficient",
-)  # fmt: skip
-"""Of two domains that name nothing the verdict that comes first here holds for both."""
-
 
 WORDS: Mapping[Tier, str] = {
     "heat": "temperatures, powers and mean torques",
@@ -236,7 +230,22 @@ def found_in(numbers: Numbers, given: Decision | None = None) -> Finding:
     if sure:
         (other,) = (one for one in findings if one is not sure[0])
         return _beside(sure[0], other)
-    return min(findings, key=lambda one: WORST_FIRST.index(one.decision.verdict))
+    return max(findings, key=_severity)
+
+
+def _severity(finding: Finding) -> int:
+    """Of two domains that name nothing the verdict of the graver one holds for both."""
+    match finding.decision.verdict:
+        case "suspected":
+            return 4
+        case "unknown_located":
+            return 3
+        case "too_small":
+            return 2
+        case "data_insufficient":  # for a name that was found, else to see anything here
+            return 2 if finding.claimed.refused else 0
+        case _:
+            return 1
 
 
 def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
@@ -304,8 +313,8 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
         names = tuple(dict.fromkeys((*decision.named, *other.decision.named)))
         decision = replace(decision, named=names, reason=f"{decision.reason}; so is {other.decision.reason}")
     first_fit, others_fit = (numbers.fitted(one.look, one.claimed) for one in (leads, other))
-    found = (*first_fit.found, *others_fit.found)
-    fit = first_fit.fit.with_other(others_fit.fit)
+    found = (*others_fit.found, *first_fit.found)
+    fit = others_fit.fit.with_other(first_fit.fit)
     sizes = {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
     proof = numbers.proof("all")
     try:
@@ -318,7 +327,7 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
             decision=decision,
             found=found,
             fit=fit,
-            fits={member: one.with_other(others_fit.fit) for member, one in first_fit.fits.items()},
+            fits={member: others_fit.fit.with_other(one) for member, one in first_fit.fits.items()},
             answer=answer,
             gap=proof.gap(answer),
             refused=(*leads.claimed.refused, *other.claimed.refused),

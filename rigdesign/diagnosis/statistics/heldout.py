@@ -61,8 +61,8 @@ class Gap:
 
     @property
     def shrunk(self) -> bool:
-        """Whether the gap shrinks by more than its scatter."""
-        return self.fall > self.scatter
+        """Whether the gap shrinks by more than its scatter, and that of the effect's own readings does not grow."""
+        return self.fall > self.scatter and self.raw_after <= self.raw_before
 
     @property
     def grown(self) -> bool:
@@ -104,6 +104,8 @@ def gap_in_words(gap: Gap) -> str:
     if gap.grown:
         return f"on {', '.join(gap.points)}, held out, grows {numbers}"
     enough = "" if gap.shrunk else ", no more than its scatter"
+    if gap.raw_after > gap.raw_before:
+        enough = ", but that of the effect's own readings grows"
     return f"on {', '.join(gap.points)}, held out, falls {numbers}{enough}"
 
 

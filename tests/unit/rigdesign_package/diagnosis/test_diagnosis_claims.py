@@ -227,26 +227,49 @@ def test_effects_present_apart_from_a_group_are_reported():
     assert again.case_patch is not None and again.case_patch.title.count("single pitch deviation") == 1
 
 
+def slight_below(problem: Problem, effect: str, least: float) -> Problem:
+    """The problem with an effect that does not matter below a coordinate."""
+
+    def more(residuals):
+        effects = [replace(one, matters=least) if one.name == effect else one for one in residuals.effects]
+        return replace(residuals, effects=tuple(effects))
+
+    return replace(problem, residuals=more(problem.residuals), baseline=more(problem.baseline))
+
+
 def test_a_group_stands_beside_a_name_that_is_too_little_for_one():
-    """A pitch error that explains 5 % of what friction or viscosity does, either of which is present."""
-    problem = thin_oil(healthy(), teeth=0.0)
-    both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (6.2e-6,)}
+    """Friction of teeth that explains part of what friction of bearings, or viscosity, does."""
+    problem = slight_below(thin_oil(healthy(), teeth=0.0), "mesh_loss:test", log(1.05))
+    both = {"bearing_loss:test": (log(1.12),), "mesh_loss:test": (log(1.02),)}
     found = diagnosed(with_added(problem, stored(problem, both)))
-    assert found.evaluations[0].weights.inclusion["single_pitch:test.pinion"] > 0.95
+    assert found.evaluations[0].weights.inclusion["mesh_loss:test"] > 0.95
     assert found.decision.verdict == "alias_group", found.decision.reason
     assert set(found.named) == {"bearing_loss:test", "oil_viscosity:test"}
 
 
 def test_a_name_is_not_left_alone_where_most_belongs_to_a_slight_one():
     """A draught was named where a bolted frame took the heat, as a rig not yet steady was too slight to be named."""
-    problem = healthy()
-    both = {"mesh_loss:test": (log(1.02),), "single_pitch:test.pinion/5": (6e-6,)}
+    problem = slight_below(healthy(), "mesh_loss:test", log(1.2))
+    both = {"mesh_loss:test": (log(1.1),), "bearing_loss:test": (log(1.06),)}
     found = diagnosed(with_added(problem, stored(problem, both)))
     assert [(one.name, one.slight) for one in found.refused] == [
-        ("single_pitch:test.pinion", True), ("mesh_loss:test", False),
+        ("mesh_loss:test", True), ("bearing_loss:test", False),
     ]  # fmt: skip
     assert (found.decision.verdict, found.named) == ("unknown_located", ())
-    assert "after mesh_loss:test alone the residual is" in found.decision.reason
+    assert "after bearing_loss:test alone the residual is" in found.decision.reason
+
+
+def test_effects_of_different_domains_do_not_compete():
+    """Friction of the teeth in temperatures, a pitch error in orders: both are named, each by its own numbers."""
+    problem = healthy()
+    both = {"mesh_loss:test": (log(1.3),), "single_pitch:test.pinion/5": (30e-6,)}
+    found = diagnosed(with_added(problem, stored(problem, both)))
+    assert found.decision.verdict == "named"
+    assert set(found.named) == {"mesh_loss:test", "single_pitch:test.pinion"}
+    assert found.gap is not None and found.gap.shrunk
+    sizes = {one.effect: one for one in found.fit.sizes}
+    for name, (size,) in both.items():
+        assert sizes[name].interval[0] < size < sizes[name].interval[1]
 
 
 def traces(columns, *, noise=None, assembly=None):
