@@ -8,7 +8,7 @@ Each takes one part away from the calibration that is frozen.
 from collections.abc import Callable
 from dataclasses import replace
 
-from rigdesign.diagnosis.decision import claims, finding, search
+from rigdesign.diagnosis.decision import claims, kept_numbers, search
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 
@@ -69,15 +69,15 @@ def no_anonymous(calibration: Calibration) -> Calibration:
 
 def no_tiers(calibration: Calibration) -> Calibration:
     """Orders of the meshes decide like the others."""
-    domains = finding.Numbers.domains.fget
+    domains = kept_numbers.Numbers.domains.fget
     assert domains is not None
-    finding.Numbers.domains = property(lambda numbers: [tiers[-1:] for tiers in domains(numbers)])  # type: ignore[assignment, method-assign]
+    kept_numbers.Numbers.domains = property(lambda numbers: [tiers[-1:] for tiers in domains(numbers)])  # type: ignore[assignment, method-assign]
     return calibration
 
 
 def no_domains(calibration: Calibration) -> Calibration:
     """Heat and rotation at once, in tiers."""
-    finding.Numbers.domains = property(lambda numbers: [("all",)])  # type: ignore[assignment, method-assign]
+    kept_numbers.Numbers.domains = property(lambda numbers: [("all",)])  # type: ignore[assignment, method-assign]
     return calibration
 
 

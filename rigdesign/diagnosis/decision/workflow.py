@@ -12,7 +12,8 @@ from rigdesign.diagnosis.decision.claims import Refusal
 from rigdesign.diagnosis.decision.decision import Decision, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.evaluate import Evaluation
-from rigdesign.diagnosis.decision.finding import Numbers, found_in
+from rigdesign.diagnosis.decision.finding import found_in
+from rigdesign.diagnosis.decision.kept_numbers import Numbers
 from rigdesign.diagnosis.decision.problem import Problem, Tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.decision.search import explanations_of, signature_of

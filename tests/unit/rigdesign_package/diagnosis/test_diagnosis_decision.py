@@ -21,19 +21,22 @@ def evidence(name, log_bayes, family="physical"):
 
 USUAL = Thresholds()
 
+LOSS = "unknown: heat at oil:test.gear_oil ~n"
 
-def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0, alike=()):
+
+def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0, alike=(), one_oil=()):
     ordered = sorted(evaluated, key=lambda one: -one.log_bayes)
     return decide(
         ordered,
         posterior(ordered, COUNTS),
         WhitenedSquare(value=ordered[0].gain + 60.0 + left, count=60),
         Candidates(
-            effects=frozenset({"leak", "ripple", *sensors, *alike}),
+            effects=frozenset({"leak", "ripple", *sensors, *alike, *one_oil}),
             detectable={"leak": True},
             orders=frozenset(loop),
             sensors=frozenset(sensors),
             alike={name: frozenset(alike) - {name} for name in alike},
+            one_oil={LOSS: frozenset(one_oil)} if one_oil else {},
         ),
         thresholds,
     )
@@ -113,3 +116,35 @@ def test_the_small_rest_of_a_sensor_is_no_cause_outside_the_catalogue(alone, nam
 @pytest.mark.parametrize(("log_bayes", "named"), [(100.0, ()), (2000.0, ("leak",))])
 def test_what_is_left_is_held_against_what_was_explained(log_bayes, named):
     assert verdict(evidence("leak", log_bayes), left=100.0).named == named
+
+
+LOSSES = ("mesh", "windage", "squeeze")
+
+
+@pytest.mark.parametrize(("nearest", "found"), [(52.0, "alias_group"), (30.0, "unknown_located")])
+def test_a_loss_by_a_law_of_its_own_is_one_of_the_losses_of_that_oil(nearest, found):
+    """If the nearest of them accounts for four fifths of it; their order is that of the evidence."""
+    said = verdict(
+        evidence(LOSS, 60.0, "unmodelled"),
+        evidence("windage", nearest),
+        evidence("mesh", nearest - 3.0),
+        evidence("squeeze", nearest - 6.0),
+        one_oil=LOSSES,
+    )
+    assert said.verdict == found
+    if found == "alias_group":
+        assert said.named == ("windage", "mesh", "squeeze") and "by its law" in said.reason
+
+
+def test_a_loss_elsewhere_is_none_of_them():
+    other = evidence("unknown: heat at body:test.housing ~n", 60.0, "unmodelled")
+    assert verdict(other, evidence("windage", 52.0), evidence("mesh", 50.0), one_oil=LOSSES).named == ()
+
+
+def test_two_sensors_that_are_off_together_are_not_named():
+    """As two thermometers of the wall beside a hot neighbour."""
+    first, second = "sensor_offset:TC03", "sensor_offset:TC05"
+    both = (evidence(first, 40.0, "sensor"), evidence(f"{first} + {second}", 41.0, "pair"))
+    assert verdict(*both, sensors=(first, second)).named == (first,)
+    most = evidence(f"{first} + {second}", 90.0, "pair")
+    assert verdict(both[0], most, sensors=(first, second)).named == ()

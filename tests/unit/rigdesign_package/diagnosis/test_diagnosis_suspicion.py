@@ -149,6 +149,24 @@ def test_a_common_cause_in_the_covariance_is_no_disagreement():
     assert agreement(space, evaluate_hypothesis(space, hypothesis), groups.tolist(), 0.1) > AGREEMENT
 
 
+def test_a_cause_beside_an_effect_has_a_size_of_its_own():
+    """Two causes that overlap in one group: alone the first seems to want two sizes there, with the second one."""
+    rng = np.random.default_rng(7)
+    count = 60
+    groups = np.repeat(np.arange(3), 20)
+    first, second = rng.normal(size=count), np.where(groups == 0, rng.normal(size=count), 0.0)
+    second = np.where(groups == 0, second + 0.9 * first, 0.0)
+    space = Whitened.of(Covariance.of_noise(np.ones(count), [], {}), 20.0 * first + 30.0 * second)
+    one, other = (
+        evaluate_hypothesis(
+            space, Hypothesis(name=name, family="physical", parts=(name,), columns=column[:, None], half=90.0)
+        )
+        for name, column in (("a", first), ("b", second))
+    )
+    assert agreement(space, one, groups.tolist(), 0.1) < AGREEMENT
+    assert agreement(space, one, groups.tolist(), 0.1, [other]) > AGREEMENT
+
+
 @pytest.mark.parametrize(
     ("cause", "words"),
     [

@@ -49,6 +49,8 @@ def of(name):
         ("M", "kilopond metre", 0.1019716, 0.0),
         ("M", "pound-force foot", 0.7375621, 0.0),
         ("M", "pound-force inch", 8.850746, 0.0),
+        ("phi", "degrees as milliradians", 0.05729578, 0.0),
+        ("phi", "milliradians as radians", 1e3, 0.0),
         ("P", "horsepower", 1.341022e-3, 0.0),
         ("P", "metric horsepower", 1.359622e-3, 0.0),
     ],
@@ -103,3 +105,15 @@ def test_exchanged_points_are_recognised():
         return changed
 
     assert likeliest(change) == "swapped_points:P01,P03"
+
+
+def test_exchanged_channels_are_recognised_where_a_reading_of_one_was_rejected():
+    kept = [row for row, one in enumerate(FEATURES) if (one.channel, one.setting) != ("T_front", "P02")]
+    features = [FEATURES[row] for row in kept]
+    expected = np.array([LEVEL[one.channel] for one in features])
+    other = {"T_front": "T_rear", "T_rear": "T_front"}
+    values = np.array([LEVEL[other.get(one.channel, one.channel)] for one in features])
+    covariance = Covariance.of_noise(np.array([NOISE[one.channel] for one in features]), [], {})
+    found = data_error(covariance, features, CHANNELS, values, expected, met_before=True)
+    least = min(found, key=lambda one: float(one.residual @ one.residual))
+    assert least.name == "swapped_channels:T_front,T_rear"
