@@ -87,6 +87,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.suspicion.LARGEST_GROUP": Source("-", "choice", _JUDGEMENT),
     "decision.agreement.APART": Source("-", "choice", _JUDGEMENT),
     "decision.agreement.FAINT": Source("sd", "choice", _JUDGEMENT),
+    "decision.claims.UNEQUAL": Source("-", "choice", "frozen set 01"),
     "decision.claims.DISAGREEMENT": Source("-", "choice", "opened sets of the fourth score"),
     "decision.simulation.SEED": Source("-", "definition", "any number"),
     "statistics.next_measurement.MOST_TOGETHER": Source("-", "choice", _REPORT),

@@ -35,14 +35,16 @@ class Agreement:
     features: Sequence[Feature] = field(repr=False)
     errors: Mapping[str, float]
 
-    def objection(self, one: Evidence, beside: Sequence[Evidence], least: float) -> str:
+    def objection(
+        self, one: Evidence, beside: Sequence[Evidence], least: float, admitted: float = 0.0
+    ) -> str:
         """What disagrees on the size of an effect, in words; empty where nothing does.
 
         beside : causes that are in the model with sizes of their own; least : probability of sizes that differ as
-            much, below which they are of different things
+            much, below which they are of different things; admitted : least relative error of the answer in a group
         """
         kind = one.hypothesis.parts[0].split(":")[0].split("/")[0]
-        share = self.errors.get(kind, self.errors.get("", 0.0))
+        share = max(self.errors.get(kind, self.errors.get("", 0.0)), admitted)
         for what, groups in (
             ("channels", [feature.channel for feature in self.features]),
             ("operating points", [feature.setting for feature in self.features]),

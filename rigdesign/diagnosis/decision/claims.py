@@ -230,6 +230,10 @@ def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal 
     return _unproven(found[least], sizes, gaps[least])
 
 
+UNEQUAL = 0.35
+"""Error of the answer in one channel, or at one point, over that in the others, which a name may have: a leak warms the
+end walls of the virtual rig half as much as the model says, and the oil half as much again."""
+
 DISAGREEMENT = 1e-6
 """Probability of sizes that differ as much between channels, or between points, below which no name is given."""
 
@@ -247,7 +251,7 @@ def _disputed(found: Sequence[Evidence], fit: JointFit, agreement: Agreement) ->
 def _disagreement(one: Evidence, others: Sequence[Evidence], agreement: Agreement) -> str:
     companion = agreement.companion(one)
     beside = [*others, *([] if companion is None or companion in others else [companion])]
-    return agreement.objection(one, beside, DISAGREEMENT)
+    return agreement.objection(one, beside, DISAGREEMENT, UNEQUAL)
 
 
 def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequence[float]) -> str:
