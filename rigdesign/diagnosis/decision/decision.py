@@ -89,6 +89,7 @@ class Decision:
 
     named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
         whichever of the group is present; as_well : members of a further group, which one of is present as well
+    elsewhere : what the numbers of the other domain say beyond a healthy rig, in words
     """
 
     verdict: Verdict
@@ -96,6 +97,7 @@ class Decision:
     reason: str
     apart: tuple[str, ...] = ()
     as_well: tuple[str, ...] = ()
+    elsewhere: str = ""
 
 
 def posterior(

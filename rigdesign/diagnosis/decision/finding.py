@@ -122,16 +122,15 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
 
 
 def _beside(sure: Finding, other: Finding) -> Finding:
-    """A finding with names, and in its reason what the other domain says beyond a healthy rig."""
+    """A finding with names, and what the other domain says beyond a healthy rig."""
     if other.decision.verdict not in ("unknown_located", "suspected"):
         return sure
     where = WORDS["heat" if other.tier == "heat" else "rotation"]
-    return _reworded(sure, reason=f"{sure.decision.reason}; in {where}: {other.decision.reason}")
+    return _with_decision(sure, replace(sure.decision, elsewhere=f"in {where}: {other.decision.reason}"))
 
 
-def _reworded(sure: Finding, *, reason: str, as_well: tuple[str, ...] = ()) -> Finding:
-    decision = replace(sure.claimed.decision, reason=reason, as_well=as_well)
-    return replace(sure, claimed=replace(sure.claimed, decision=decision))
+def _with_decision(finding: Finding, decision: Decision) -> Finding:
+    return replace(finding, claimed=replace(finding.claimed, decision=decision))
 
 
 def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
@@ -140,8 +139,7 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
     leads, other = (second, first) if grouped == [second] else (first, second)
     if len(grouped) == 2:
         leads, other = sorted(grouped, key=lambda one: len(one.decision.named))
-        also = f"; one of {', '.join(other.decision.named)} as well"
-        return _reworded(leads, reason=leads.decision.reason + also, as_well=other.decision.named)
+        return _with_decision(leads, replace(leads.decision, as_well=other.decision.named))
     further = tuple(name for name in other.decision.named if name not in leads.decision.named)
     if not further:
         return leads
@@ -155,7 +153,7 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
     try:
         answer = proof.again(sizes)
     except RigdesignError:
-        return _reworded(leads, reason=reason, as_well=further)
+        return _with_decision(leads, replace(leads.decision, as_well=further))
     decision = replace(leads.decision, reason=reason)
     if grouped:
         decision = replace(decision, apart=(*decision.apart, *further))

@@ -98,12 +98,13 @@ class Names:
         return explanation if found is None else found[0].name
 
     def title(self, explanation: str) -> str:
-        """In words; of a pair both."""
+        """In words; of a pair both, of an effect at any order without the order."""
         if " + " in explanation:
             return " and ".join(self.title(part) for part in explanation.split(" + "))
         found = self.entry(explanation)
         if found is None:
-            return _without_entry(explanation)
+            of_orders = next((one.title for one in self._effects.values() if one.claim == explanation), "")
+            return of_orders.rpartition(", ")[0] or _without_entry(explanation)
         entry, tooth = found
         return entry.title if tooth is None else f"{entry.title}: tooth {tooth}"
 

@@ -64,10 +64,10 @@ def headline(outcome: Outcome) -> str:
     found = outcome.result.diagnosis
     match outcome.verdict:
         case "named":
-            return " ".join(_named(outcome))
+            return " ".join([*_named(outcome), *_besides(outcome)])
         case "alias_group":
             group = f"One of these effects is present; the data do not identify which: {_titles(outcome)}."
-            return " ".join([group, *_named(outcome)])
+            return " ".join([group, *_named(outcome), *_besides(outcome)])
         case "suspected":
             return _suspected(outcome)
         case "input_error_suspected":
@@ -93,6 +93,18 @@ def _named(outcome: Outcome) -> list[str]:
         own = [one for one in outcome.named if isinstance(one.entry, Effect) == of_case]
         if own:
             texts.append(f"{lead}: {'; '.join(f'{one.title}, {formatted(one.shown[0])}' for one in own)}.")
+    return texts
+
+
+def _besides(outcome: Outcome) -> list[str]:
+    """A further group, and what the numbers of the other domain say."""
+    decision = outcome.result.diagnosis.decision
+    texts = []
+    if decision.as_well:
+        titles = "; ".join(outcome.names.title(name) for name in decision.as_well)
+        texts.append(f"One of these as well: {titles}.")
+    if decision.elsewhere:
+        texts.append(f"{decision.elsewhere[:1].upper()}{decision.elsewhere[1:]}.")
     return texts
 
 
