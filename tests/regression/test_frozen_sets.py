@@ -50,7 +50,7 @@ VERDICTS = {
     "set_08": "alias_group",
     "set_09": "unknown_located",
     "set_10": "input_error_suspected",
-    "set_11": "too_small",
+    "set_11": "within_noise",
 }
 
 
