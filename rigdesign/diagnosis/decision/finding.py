@@ -103,16 +103,13 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
             return Finding(looks=(look,), claimed=claimed)
         looks.append((look, claimed))
     contradicted = any(claimed.contradicted for _, claimed in looks)
-    thresholds = numbers.calibration.thresholds(numbers.has_baseline)
     for look, claimed in () if contradicted else looks:
         if claimed.decision.verdict not in OPEN:
             continue
-        suspicion = suspected(
-            look, numbers.proof(look.tier), numbers.traces(look), numbers.calibration, numbers.has_baseline
-        )
+        suspicion = suspected(look, numbers.proof(look.tier), numbers.traces(look), numbers.calibration)
         if suspicion is None or numbers.contradiction(look, [suspicion.evidence], suspicion.fit):
             continue
-        if suspicion.accounts_for_all(thresholds):
+        if suspicion.accounts_for_all:
             held = numbers.claim(look, suspicion.as_named, [suspicion.evidence])
             if held.decision.verdict in SURE:
                 return Finding(looks=(look,), claimed=held)

@@ -86,13 +86,12 @@ class Numbers:
         model found holds.
         """
         fit = partial(fitted, look.space, calibration=self.calibration)
-        thresholds = self.calibration.thresholds(self.has_baseline)
         traces, proof = self.traces(look), self.proof(look.tier)
         agreement = agreement_in(look, self.calibration)
-        claimed = claim(decision, found, traces, proof, fit, thresholds, agreement)
+        claimed = claim(decision, found, traces, proof, fit, look.criteria.thresholds, agreement)
         last = look.evaluations[-1].decision
         if last.verdict == "alias_group" and not claimed.found and claimed.insignificant:
-            group = claim(last, (), traces, proof, fit, thresholds, agreement)
+            group = claim(last, (), traces, proof, fit, look.criteria.thresholds, agreement)
             claimed = replace(group, refused=claimed.refused)
         if claimed.decision.verdict in SURE:
             named = self.fitted(look, claimed)
@@ -140,11 +139,6 @@ class Numbers:
         )
 
     @property
-    def has_baseline(self) -> bool:
-        """Whether a healthy set of the rig is known."""
-        return self.problem.baseline is not None
-
-    @property
     def domains(self) -> Iterator[tuple[Tier, ...]]:
         """Tiers of heat and of rotation, those that decide first; one domain where the other is not read."""
         heat, mesh = self.residuals.of_heat, self.residuals.of_mesh
@@ -167,7 +161,7 @@ class Numbers:
 
     @cached_property
     def _explanations(self) -> Explanations:
-        return explanations_of(self.problem, *self._seen("all"), data=False)
+        return explanations_of(self.problem, *self._seen("all"))
 
     def _seen(self, tier: Tier) -> tuple[ResidualProblem, Whitened]:
         """Numbers of a tier at the points that are not held out, and their space; made once."""

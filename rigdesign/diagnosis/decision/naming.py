@@ -11,7 +11,7 @@ from math import atan2, exp, hypot, isfinite, log, pi
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
 from rigdesign.diagnosis.decision.unmodelled_words import in_words
 from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
-from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence
 from rigdesign.diagnosis.statistics.intervals import NORMAL_95, Size
 
 DIGITS = 6
@@ -99,8 +99,8 @@ class Names:
 
     def title(self, explanation: str) -> str:
         """In words; of a pair both, of an effect at any order without the order."""
-        if " + " in explanation:
-            return " and ".join(self.title(part) for part in explanation.split(" + "))
+        if JOIN in explanation:
+            return " and ".join(self.title(part) for part in explanation.split(JOIN))
         found = self.entry(explanation)
         if found is None:
             of_orders = next((one.title for one in self._effects.values() if one.claim == explanation), "")

@@ -28,14 +28,15 @@ MOST_EFFECTS = 4
 class Look:
     """What a search evaluated and found.
 
-    residuals, space : of the numbers it had; evaluations : one after the other, the first with nothing named yet;
-    found : the best explanation of every name
+    residuals, space : of the numbers it had; criteria : of every evaluation; evaluations : one after the other, the
+    first with nothing named yet; found : the best explanation of every name
     """
 
     tier: Tier
     residuals: ResidualProblem = field(repr=False)
     space: Whitened = field(repr=False)
     explanations: Explanations = field(repr=False)
+    criteria: Criteria = field(repr=False)
     evaluations: tuple[Evaluation, ...] = field(repr=False)
     found: tuple[Evidence, ...]
 
@@ -49,7 +50,7 @@ def search(
     problem: Problem, residuals: ResidualProblem, space: Whitened, calibration: Calibration, tier: Tier
 ) -> Look:
     """Evaluate, take what is named into the model, evaluate what is left."""
-    explanations = explanations_of(problem, residuals, space, data=False)
+    explanations = explanations_of(problem, residuals, space)
     signature = signature_of(problem, residuals, calibration)
     criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
@@ -68,7 +69,7 @@ def search(
         found += new
         after = _with_named(space, found, signature)
         claimed = {part for one in found for part in one.hypothesis.parts}
-        rest = explanations_of(problem, residuals, after, data=False)
+        rest = explanations_of(problem, residuals, after)
         left = Explanations(
             physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
             sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
@@ -83,6 +84,7 @@ def search(
         residuals=residuals,
         space=space,
         explanations=explanations,
+        criteria=criteria,
         evaluations=tuple(evaluations),
         found=tuple(found),
     )
@@ -116,10 +118,10 @@ ORDER_CAUSE = "unknown: order "
 
 
 def explanations_of(
-    problem: Problem, residuals: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
+    problem: Problem, residuals: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = False
 ) -> Explanations:
-    """All explanations; without the unmodelled ``rivals`` where only data and catalogue are evaluated, and without
-    errors of the ``data``, which are sought in all numbers at once (`rigdesign.diagnosis.decision.workflow`)."""
+    """All explanations; without the unmodelled ``rivals`` where only data and catalogue are evaluated; with errors of
+    the ``data`` where all numbers are looked at for them (`rigdesign.diagnosis.decision.workflow`)."""
     covariance = space.covariance
     expected = residuals.values - space.raw
     return Explanations(

@@ -19,10 +19,10 @@ import numpy as np
 
 from rigdesign.diagnosis.decision.agreement import Agreement
 from rigdesign.diagnosis.decision.claims import Traces, too_little
-from rigdesign.diagnosis.decision.decision import UNNAMED, Decision, Thresholds, mass_of_any
+from rigdesign.diagnosis.decision.decision import UNNAMED, Decision, mass_of_any
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.proof import Proof
-from rigdesign.diagnosis.decision.search import Look, bounds_of, causes_of_orders, fitted
+from rigdesign.diagnosis.decision.search import Look, bounds_of, fitted
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import SEEN
 from rigdesign.diagnosis.statistics.evidence import Evidence, release_of
@@ -130,8 +130,10 @@ class Suspicion:
         as_well = f"; so would {self.stands_for}" if self.stands_for else ""
         return Decision(verdict="suspected", named=self.group, reason=reason + also + as_well)
 
-    def accounts_for_all(self, thresholds: Thresholds) -> bool:
+    @property
+    def accounts_for_all(self) -> bool:
         """Whether it leaves a healthy rig, to the share that no answer of the model is more exact than."""
+        thresholds = self.look.criteria.thresholds
         return (
             not self.stands_for
             and self.excess <= thresholds.share
@@ -178,22 +180,20 @@ def agreement_in(look: Look, calibration: Calibration) -> Agreement:
     )
 
 
-def suspected(
-    look: Look, proof: Proof, traces: Traces, calibration: Calibration, baseline: bool
-) -> Suspicion | None:
+def suspected(look: Look, proof: Proof, traces: Traces, calibration: Calibration) -> Suspicion | None:
     """The effect that every probable explanation of a look holds, if nothing speaks against it."""
     candidate = Suspicion.of(look, proof, traces, calibration)
-    return None if candidate is None or objection(candidate, proof, calibration, baseline) else candidate
+    return None if candidate is None or objection(candidate, proof, calibration) else candidate
 
 
-def objection(candidate: Suspicion, proof: Proof, calibration: Calibration, baseline: bool) -> str:
+def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> str:
     """What speaks against suspecting an effect; empty where nothing does."""
     one, look = candidate.evidence, candidate.look
     name, size = one.hypothesis.name, candidate.fit.coordinates[0]
     if candidate.gain <= SEEN**2:
         return "it is not seen"
-    best, orders = look.first.weights.best, causes_of_orders(look.residuals, look.explanations, look.tier)
-    if best is None or not calibration.thresholds(baseline).exceeds_healthy(best, orders):
+    best, criteria = look.first.weights.best, look.criteria
+    if best is None or not criteria.thresholds.exceeds_healthy(best, criteria.orders):
         return "healthy rigs have given as much evidence"
     if len(candidate.group) > LARGEST_GROUP:
         return "too many effects leave its trace"

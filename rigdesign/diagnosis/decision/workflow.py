@@ -161,7 +161,7 @@ def _wrong_data(
     what stands out: of exchanged readings that are the only ones of their channels nothing else is left. Without one
     it may be the model that is out.
     """
-    everything = explanations_of(problem, residuals, whole, rivals=False)
+    everything = explanations_of(problem, residuals, whole, rivals=False, data=True)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     contest = Contest(whole, signature_of(problem, residuals, calibration))
     evaluated = contest.evaluated([evaluate_hypothesis(whole, one) for one in singles])
