@@ -57,11 +57,11 @@ SOURCES: Mapping[str, Source] = {
     "decision.defaults.GIVEN_BASELINE": Source(
         "-", "fit", "development split of the blind score; evidence: largest of healthy pairs"
     ),
-    "decision.decision.RARE": Source("sd", "fit", "108 healthy sets and 108 pairs of the virtual rig"),
-    "decision.decision.PROBABLE": Source("-", "choice", "more never were in a group of three"),
-    "decision.decision.BY_LAW": Source("-", "choice", "opened sets of the fourth score"),
+    "decision.verdict.RARE": Source("sd", "fit", "108 healthy sets and 108 pairs of the virtual rig"),
+    "decision.groups.PROBABLE": Source("-", "choice", "more never were in a group of three"),
+    "decision.groups.BY_LAW": Source("-", "choice", "opened sets of the fourth score"),
     "decision.decision.BY_ITSELF": Source("-", "choice", "opened sets of the fourth score"),
-    "decision.decision.PRIOR": Source("-", "choice", _TRIALS),
+    "decision.posterior.PRIOR": Source("-", "choice", _TRIALS),
     "catalogue.lateral.GENERAL_GRADE": Source("mm/s", "literature", "ISO 21940-11, table 1"),
     "catalogue.lateral.TIMES_GENERAL": Source("-", "choice", _PRACTICE),
     "catalogue.lateral.HEALTHY_GRADE": Source("mm/s", "literature", "ISO 21940-11, table 1"),

@@ -39,7 +39,7 @@ def comparators(result: Result) -> dict[str, list[str]]:
     """Comparator -> effects it names on the set of a diagnosis."""
     problem = result.problem
     space = problem.space(result.calibration)
-    known = explanations_of(problem, problem.residuals, space, rivals=False)
+    known = explanations_of(problem.residuals, space, rivals=False)
     singles = [evaluate_hypothesis(space, one) for one in (*known.physical, *known.sensor)]
     candidates = [Candidate(one.hypothesis.parts[0], one.columns) for one in singles if one.columns.size]
     return {name: choose(space.residual, candidates) for name, choose in COMPARATORS.items()}

@@ -15,9 +15,9 @@ from scipy.linalg import solve_triangular
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.agreement import Agreement
-from rigdesign.diagnosis.decision.decision import Decision, Thresholds, Verdict, WhitenedSquare
 from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.decision.proof import Proof, Sizes
+from rigdesign.diagnosis.decision.verdict import Decision, Thresholds, Verdict, WhitenedSquare
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN

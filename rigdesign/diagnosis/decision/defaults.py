@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from rigdesign.diagnosis.decision.decision import Thresholds
+from rigdesign.diagnosis.decision.verdict import Thresholds
 from rigdesign.diagnosis.residual.baseline import Drift
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 

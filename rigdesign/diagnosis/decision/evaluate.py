@@ -5,17 +5,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from rigdesign.diagnosis.decision.decision import (
-    PRIOR,
-    UNNAMED,
-    Candidates,
-    Decision,
-    Posterior,
-    Thresholds,
-    WhitenedSquare,
-    decide,
-    posterior,
-)
+from rigdesign.diagnosis.decision.decision import UNNAMED, decide
+from rigdesign.diagnosis.decision.posterior import PRIOR, Posterior, gain_of, posterior
+from rigdesign.diagnosis.decision.verdict import Candidates, Decision, Thresholds, WhitenedSquare
 from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, Detectability, detectabilities
@@ -39,7 +31,6 @@ class Explanations:
     physical: Sequence[Hypothesis]
     sensor: Sequence[Hypothesis]
     unmodelled: Sequence[Hypothesis]
-    data: Sequence[Hypothesis]
 
     @property
     def members(self) -> dict[str, int]:
@@ -51,7 +42,6 @@ class Explanations:
             "sensor": len(self.sensor),
             "unmodelled": unnamed - local,
             "local": local,
-            "input": len(self.data),
             "pair": (known + unnamed) * (known + unnamed - 1) // 2,
         }
 
@@ -111,9 +101,8 @@ def evaluate(
         contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.unmodelled)]
     )
     singles = _without_copies(singles)
-    data = [evaluate_hypothesis(space, one) for one in explanations.data]
     pairs = _with_model_error(contest, _pairs(space, singles))
-    evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
+    evidence = sorted((*singles, *pairs), key=lambda one: -one.log_bayes)
     weights = posterior(evidence, explanations.members, criteria.priors)
     candidates = Candidates(
         effects=frozenset(part for one in known for part in one.parts),
@@ -219,9 +208,7 @@ def _without(decision: Decision, refused: Mapping[str, str]) -> Decision:
 
 def _added(best: Evidence, part: str, evidence: Sequence[Evidence]) -> float:
     """Fall of the whitened square that a part adds to the rest of an explanation."""
-    rest = tuple(other for other in best.hypothesis.parts if other != part)
-    alone = max((one.gain for one in evidence if rest and one.hypothesis.parts == rest), default=0.0)
-    return best.gain - alone
+    return best.gain - gain_of([other for other in best.hypothesis.parts if other != part], evidence)
 
 
 def _with_model_error(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:

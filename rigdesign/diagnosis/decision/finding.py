@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.decision.claims import Claim
-from rigdesign.diagnosis.decision.decision import Decision
 from rigdesign.diagnosis.decision.evaluate import Evaluation
 from rigdesign.diagnosis.decision.kept_numbers import SURE, WORDS, Numbers
 from rigdesign.diagnosis.decision.problem import Tier
 from rigdesign.diagnosis.decision.search import Look
 from rigdesign.diagnosis.decision.suspicion import Suspicion, suspected
+from rigdesign.diagnosis.decision.verdict import Decision
 
 OPEN = frozenset({"unknown_located", "too_small"})
 """Verdicts that an effect may be suspected under."""

@@ -7,13 +7,13 @@ from functools import cached_property, partial
 import numpy as np
 
 from rigdesign.diagnosis.decision.claims import Claim, Traces, claim, withdrawn
-from rigdesign.diagnosis.decision.decision import Decision
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Explanations
 from rigdesign.diagnosis.decision.problem import Problem, Tier, of_tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.decision.search import Look, explanations_of, fitted, search
 from rigdesign.diagnosis.decision.suspicion import agreement_in
+from rigdesign.diagnosis.decision.verdict import Decision
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import SEEN, Detectability, aliases, detectabilities
@@ -161,7 +161,7 @@ class Numbers:
 
     @cached_property
     def _explanations(self) -> Explanations:
-        return explanations_of(self.problem, *self._seen("all"))
+        return explanations_of(*self._seen("all"))
 
     def _seen(self, tier: Tier) -> tuple[ResidualProblem, Whitened]:
         """Numbers of a tier at the points that are not held out, and their space; made once."""

@@ -8,7 +8,6 @@ import numpy as np
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Evaluation, Explanations, evaluate
 from rigdesign.diagnosis.decision.problem import Problem, Tier
-from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
@@ -50,7 +49,7 @@ def search(
     problem: Problem, residuals: ResidualProblem, space: Whitened, calibration: Calibration, tier: Tier
 ) -> Look:
     """Evaluate, take what is named into the model, evaluate what is left."""
-    explanations = explanations_of(problem, residuals, space)
+    explanations = explanations_of(residuals, space)
     signature = signature_of(problem, residuals, calibration)
     criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
@@ -69,12 +68,11 @@ def search(
         found += new
         after = _with_named(space, found, signature)
         claimed = {part for one in found for part in one.hypothesis.parts}
-        rest = explanations_of(problem, residuals, after)
+        rest = explanations_of(residuals, after)
         left = Explanations(
             physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
             sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
             unmodelled=rest.unmodelled,
-            data=rest.data,
         )
         earlier = Earlier(look=evaluations[0], named=frozenset(claimed))
         explained = max(one.gain for one in found)
@@ -117,13 +115,9 @@ ORDER_CAUSE = "unknown: order "
 """How the name of an unmodelled cause of an order begins."""
 
 
-def explanations_of(
-    problem: Problem, residuals: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = False
-) -> Explanations:
-    """All explanations; without the unmodelled ``rivals`` where only data and catalogue are evaluated; with errors of
-    the ``data`` where all numbers are looked at for them (`rigdesign.diagnosis.decision.workflow`)."""
+def explanations_of(residuals: ResidualProblem, space: Whitened, *, rivals: bool = True) -> Explanations:
+    """All explanations; without the unmodelled ``rivals`` where only the catalogue is evaluated."""
     covariance = space.covariance
-    expected = residuals.values - space.raw
     return Explanations(
         physical=physical(
             covariance,
@@ -135,16 +129,6 @@ def explanations_of(
         sensor=sensor(covariance, residuals.errors),
         unmodelled=without_a_name(covariance, unmodelled_causes(residuals.library, residuals.channels))
         if rivals
-        else [],
-        data=data_error(
-            covariance,
-            residuals.features,
-            residuals.channels,
-            residuals.values,
-            expected,
-            met_before=problem.baseline is not None,
-        )
-        if data
         else [],
     )
 

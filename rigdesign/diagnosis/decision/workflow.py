@@ -9,15 +9,17 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from rigdesign.diagnosis.decision.claims import Refusal
-from rigdesign.diagnosis.decision.decision import Decision, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.evaluate import Evaluation
 from rigdesign.diagnosis.decision.finding import found_in
 from rigdesign.diagnosis.decision.kept_numbers import Numbers
+from rigdesign.diagnosis.decision.posterior import posterior
 from rigdesign.diagnosis.decision.problem import Problem, Tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.decision.search import explanations_of, signature_of
 from rigdesign.diagnosis.decision.suspicion import Suspicion
+from rigdesign.diagnosis.decision.verdict import Decision
+from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of
 from rigdesign.diagnosis.residual.signature import Contest
 from rigdesign.diagnosis.statistics.columns import Array
@@ -161,12 +163,20 @@ def _wrong_data(
     what stands out: of exchanged readings that are the only ones of their channels nothing else is left. Without one
     it may be the model that is out.
     """
-    everything = explanations_of(problem, residuals, whole, rivals=False, data=True)
-    singles = (*everything.physical, *everything.sensor, *everything.data)
+    everything = explanations_of(residuals, whole, rivals=False)
+    data = data_error(
+        whole.covariance,
+        residuals.features,
+        residuals.channels,
+        residuals.values,
+        residuals.values - whole.raw,
+        met_before=problem.baseline is not None,
+    )
+    singles = (*everything.physical, *everything.sensor, *data)
     contest = Contest(whole, signature_of(problem, residuals, calibration))
     evaluated = contest.evaluated([evaluate_hypothesis(whole, one) for one in singles])
     evidence = sorted(evaluated, key=lambda one: -one.log_bayes)
-    weights = posterior(evidence, everything.members)
+    weights = posterior(evidence, {**everything.members, "input": len(data)})
     if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
         return None
     best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])

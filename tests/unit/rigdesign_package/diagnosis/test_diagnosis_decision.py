@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.decision import Candidates, Thresholds, WhitenedSquare, decide, posterior
+from rigdesign.diagnosis.decision.decision import decide
+from rigdesign.diagnosis.decision.posterior import posterior
+from rigdesign.diagnosis.decision.verdict import Candidates, Thresholds, WhitenedSquare
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 
 COUNTS = {"physical": 50, "unmodelled": 100, "pair": 1000, "sensor": 20}

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.decision import Thresholds
 from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Explanations, evaluate
+from rigdesign.diagnosis.decision.verdict import Thresholds
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Release, Whitened
 from rigdesign.diagnosis.statistics.evidence import (
@@ -59,7 +59,7 @@ def explanations(covariance, effects, rng, *, half=5.0):
         )
         for i in range(30)
     ]
-    return Explanations(physical=physical, sensor=[], unmodelled=unknown, data=[])
+    return Explanations(physical=physical, sensor=[], unmodelled=unknown)
 
 
 def draw(rng, covariance):
@@ -179,7 +179,7 @@ def test_an_error_of_a_sensor_is_not_told_from_heat_that_looks_the_same():
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
     named = {}
     for rivals in ([], [unnamed(covariance, effects[:, 3], "local")]):
-        both = Explanations(physical=catalogue, sensor=[reads_wrong], unmodelled=rivals, data=[])
+        both = Explanations(physical=catalogue, sensor=[reads_wrong], unmodelled=rivals)
         named[len(rivals)] = evaluate(space, both, USUAL).decision
     assert named[0].named == ("sensor_offset:T",)
     assert named[1].verdict == "unknown_located"
