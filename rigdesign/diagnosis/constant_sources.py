@@ -58,6 +58,9 @@ SOURCES: Mapping[str, Source] = {
         "-", "fit", "development split of the blind score; evidence: largest of healthy pairs"
     ),
     "decision.verdict.RARE": Source("sd", "fit", "108 healthy sets and 108 pairs of the virtual rig"),
+    "decision.finding.NO_LONGER": Source("-", "choice", "60 sets of changed circuits"),
+    "decision.other_domain.WIDE": Source("-", "choice", "60 sets of changed circuits"),
+    "residual.signature.SHARES": Source("-", "choice", "60 sets of changed circuits"),
     "decision.groups.PROBABLE": Source("-", "choice", "more never were in a group of three"),
     "decision.groups.BY_LAW": Source("-", "choice", "opened sets of the fourth score"),
     "decision.decision.BY_ITSELF": Source("-", "choice", "opened sets of the fourth score"),

@@ -1,4 +1,4 @@
-"""How far the answers of four models of one rig lie apart, by kind of effect.
+"""How far the answers of three other models of one rig lie from those of its own model, by kind of effect.
 
     python -m tests.blind.model_spread loop_1to1 loop_hunting
 
@@ -47,7 +47,10 @@ def main(rigs: Sequence[str]) -> None:
 
 
 def spread_of(rig: str) -> dict[str, float]:
-    """Effect -> relative error of the answer of the model that data are held against, over the other models."""
+    """Effect -> relative error of the answer of the model that data are held against, over the other models.
+
+    The model of the four that data are held against is no other one: it answers alike to the last digit.
+    """
     with tempfile.TemporaryDirectory() as scratch:
         make_set(rig, {"kind": "none", "sensors": "rich", "plan": 9}, 1, Path(scratch) / "set")
         data = features(load_measurement(set_of(Path(scratch) / "set"), case_of(rig)))
@@ -57,7 +60,12 @@ def spread_of(rig: str) -> dict[str, float]:
     series = series_numbers(data.features)
     found = {}
     for name, answer in own.items():
-        squares = [apart(answer, other[name], noise, series) ** 2 for other in others if name in other]
+        others_of = [other[name] for other in others if name in other]
+        squares = [
+            apart(answer, other, noise, series) ** 2
+            for other in others_of
+            if not np.array_equal(answer, other)
+        ]
         found[name] = float(np.sqrt(np.mean(squares))) if squares else 0.0
     return found
 

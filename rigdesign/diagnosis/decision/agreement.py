@@ -13,7 +13,6 @@ from scipy.stats import chi2
 from rigdesign.diagnosis.statistics.columns import numbered
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence, release_of
-from rigdesign.prediction.model import Feature
 
 APART = 0.7
 """Least part of what an effect explains alone that another cause in the model leaves to it, to be something else."""
@@ -26,13 +25,15 @@ FAINT = 0.5
 class Agreement:
     """Sizes of effects by channel and by operating point.
 
-    evidence : of the evaluation that found them, best first; features : (n,); errors : kind of effect -> relative
-        error of the model's answer to it, "" for the others
+    evidence : of the evaluation that found them, best first; channels, points : (n,) of each number, natural
+        frequencies as one channel, since those that lie close share a change; errors : kind of effect -> relative error
+        of the model's answer to it, "" for the others
     """
 
     space: Whitened = field(repr=False)
     evidence: Sequence[Evidence] = field(repr=False)
-    features: Sequence[Feature] = field(repr=False)
+    channels: Sequence[str] = field(repr=False)
+    points: Sequence[str] = field(repr=False)
     errors: Mapping[str, float]
 
     def objection(
@@ -46,8 +47,8 @@ class Agreement:
         kind = one.hypothesis.parts[0].split(":")[0].split("/")[0]
         share = max(self.errors.get(kind, self.errors.get("", 0.0)), admitted)
         for what, groups in (
-            ("channels", [feature.channel for feature in self.features]),
-            ("operating points", [feature.setting for feature in self.features]),
+            ("channels", self.channels),
+            ("operating points", self.points),
         ):
             if agreement(self.space, one, groups, share, beside) < least:
                 return f"its size is not the same for all {what}"

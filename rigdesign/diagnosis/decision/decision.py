@@ -6,7 +6,12 @@ The order of the questions is that of the workflow's step 8. Thresholds are froz
 
 from collections.abc import Sequence
 
-from rigdesign.diagnosis.decision.groups import group_of_one_trace, losses_of_one_oil, smallest_group
+from rigdesign.diagnosis.decision.groups import (
+    changes_of_the_circuit,
+    group_of_one_trace,
+    losses_of_one_oil,
+    smallest_group,
+)
 from rigdesign.diagnosis.decision.posterior import Posterior, gain_of
 from rigdesign.diagnosis.decision.verdict import Candidates, Decision, Thresholds, WhitenedSquare
 from rigdesign.diagnosis.statistics.evidence import Evidence
@@ -52,9 +57,7 @@ def decide(
         if part in candidates.open and mass >= thresholds.named
     )
     if named:
-        return Decision(
-            verdict="named", named=named, reason=f"{named[0]} is part of every probable explanation"
-        )
+        return _named(named, evidence, candidates, thresholds)
     if weights.masses["none"] < 1.0 - thresholds.named:
         group = smallest_group(evidence, weights, candidates.open, thresholds) or group_of_one_trace(
             evidence, weights, candidates, thresholds
@@ -75,18 +78,42 @@ def decide(
     return _silent(weights, square, candidates, thresholds)
 
 
+def _named(
+    named: tuple[str, ...], evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
+) -> Decision:
+    """Names, of which one that changes the power circuit stands with all that it cannot be told from."""
+    reason = f"{named[0]} is part of every probable explanation"
+    circuit = [part for part in named if part in candidates.circuit]
+    group = changes_of_the_circuit(circuit[0], evidence, candidates, thresholds) if circuit else ()
+    if len(group) < 2:
+        return Decision(verdict="named", named=named, reason=reason)
+    if len(group) > thresholds.one_trace:
+        reason = f"{len(group)} changes of the power circuit explain the data about as well as {circuit[0]}"
+        return Decision(verdict="unknown_located", named=(), reason=reason)
+    return Decision(
+        verdict="alias_group",
+        named=group,
+        reason=f"a change of the power circuit; the data do not identify which, {group[0]} is the most probable",
+    )
+
+
 def _credible(
     one: Evidence, evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
 ) -> bool:
-    """Of the catalogue alone; an error of a sensor by itself or as a small rest, not to mend what something else
-    leaves."""
+    """Of the catalogue alone; an error of a sensor, or an unmodelled order, by itself or as a small rest, not to mend
+    what something else leaves.
+
+    What the model answers wrongly to a change of the circuit stays at an order of the meshes.
+    """
     parts = frozenset(one.hypothesis.parts)
-    if not parts <= candidates.effects:
+    known = parts & candidates.effects
+    if not known or (parts - known and not known <= candidates.circuit):
         return False
-    others = parts - candidates.sensors
+    others = known - candidates.sensors
     if len(parts) == 1 or others == parts:
         return True
-    return one.gain - gain_of(others, evidence) < thresholds.share * one.gain
+    share = thresholds.share if known == parts else thresholds.share_loop
+    return one.gain - gain_of(others, evidence) < share * one.gain
 
 
 BY_ITSELF = 0.7

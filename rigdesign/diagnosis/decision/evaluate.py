@@ -1,6 +1,6 @@
 """One evaluation of a residual: every explanation evaluated, the best of them joined in pairs, a verdict."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -31,6 +31,11 @@ class Explanations:
     physical: Sequence[Hypothesis]
     sensor: Sequence[Hypothesis]
     unmodelled: Sequence[Hypothesis]
+
+    @property
+    def single(self) -> tuple[Hypothesis, ...]:
+        """All of them."""
+        return (*self.physical, *self.sensor, *self.unmodelled)
 
     @property
     def members(self) -> dict[str, int]:
@@ -69,6 +74,7 @@ class Criteria:
     orders : causes that show in orders and natural frequencies
     unnamed : effects that are suspected at most
     one_oil : as of `Candidates`
+    contradicted : whether numbers of the other domain speak against an explanation
     signature : how wrong the model may answer to a right cause; left out, not at all
     """
 
@@ -79,6 +85,12 @@ class Criteria:
     unnamed: frozenset[str] = frozenset()
     one_oil: Mapping[str, frozenset[str]] = field(default_factory=dict)
     signature: Signature | None = None
+    contradicted: Callable[[Evidence], bool] = lambda one: False
+
+    @property
+    def circuit(self) -> frozenset[str]:
+        """Effects that change what goes through the power circuit."""
+        return frozenset() if self.signature is None else self.signature.circuit
 
 
 def evaluate(
@@ -100,8 +112,10 @@ def evaluate(
     singles = _with_model_error(
         contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.unmodelled)]
     )
-    singles = _without_copies(singles)
-    pairs = _with_model_error(contest, _pairs(space, singles))
+    singles = [one for one in _without_copies(singles) if not criteria.contradicted(one)]
+    pairs = [
+        one for one in _with_model_error(contest, _pairs(space, singles)) if not criteria.contradicted(one)
+    ]
     evidence = sorted((*singles, *pairs), key=lambda one: -one.log_bayes)
     weights = posterior(evidence, explanations.members, criteria.priors)
     candidates = Candidates(
@@ -109,6 +123,7 @@ def evaluate(
         detectable={row.effect: row.detectable <= row.bound for row in table},
         orders=criteria.orders,
         sensors=frozenset(part for one in explanations.sensor for part in one.parts),
+        circuit=criteria.circuit,
         alike=_alike(singles, frozenset(part for one in known for part in one.parts)),
         one_oil=criteria.one_oil,
         passed_over=criteria.unnamed,

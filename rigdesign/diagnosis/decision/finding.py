@@ -7,11 +7,13 @@ a model known well decide; orders of the meshes are asked where those name nothi
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.decision.claims import Claim
 from rigdesign.diagnosis.decision.evaluate import Evaluation
 from rigdesign.diagnosis.decision.kept_numbers import SURE, WORDS, Numbers
+from rigdesign.diagnosis.decision.posterior import mass_of_any
 from rigdesign.diagnosis.decision.problem import Tier
 from rigdesign.diagnosis.decision.search import Look
 from rigdesign.diagnosis.decision.suspicion import Suspicion, suspected
@@ -96,10 +98,12 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
     A suspect that leaves no more than the model may answer wrongly is held against the points held out like a name.
     """
     looks = []
-    for tier in tiers:
+    for tier, further in zip_longest(tiers, tiers[1:]):
         look = numbers.look(tier)
         claimed = numbers.claim(look, look.first.decision, look.found)
-        if claimed.decision.verdict in SURE:
+        if claimed.decision.verdict in SURE and not (
+            further and _passed_on(numbers.look(further), claimed.decision.named)
+        ):
             return Finding(looks=(look,), claimed=claimed)
         looks.append((look, claimed))
     contradicted = any(claimed.contradicted for _, claimed in looks)
@@ -116,6 +120,20 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
         return Finding(looks=(look,), claimed=claimed, suspicion=suspicion)
     look, claimed = looks[-1]
     return Finding(looks=(look,), claimed=claimed)
+
+
+def _passed_on(look: Look, named: Sequence[str]) -> bool:
+    """Whether the orders of the meshes show another circuit, and no longer what is named.
+
+    A changed circuit passes on otherwise what the healthy teeth excite, which alone looks like other teeth.
+    """
+    circuit = look.criteria.circuit - set(named)
+    masses = [mass_of_any(look.first.evidence, look.first.weights, parts) for parts in (circuit, named)]
+    return masses[0] >= look.criteria.thresholds.named and masses[1] < NO_LONGER
+
+
+NO_LONGER = 0.5
+"""Posterior mass of names below which the orders of the meshes speak for something else."""
 
 
 def _beside(sure: Finding, other: Finding) -> Finding:

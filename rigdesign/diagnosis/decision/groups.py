@@ -43,6 +43,17 @@ def group_of_one_trace(
     return tuple(sorted(group, key=lambda part: (-known.get(part, 0.0), part)))
 
 
+def changes_of_the_circuit(
+    name: str, evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
+) -> tuple[str, ...]:
+    """Changes of the power circuit that explain, alone, as much as a named one does, to the share that no answer of the
+    model is more exact than; itself first, the others by what they explain."""
+    least = (1.0 - thresholds.share_loop) * gain_of({name}, evidence)
+    gains = {part: gain_of({part}, evidence) for part in (candidates.circuit & candidates.open) - {name}}
+    others = sorted((part for part in gains if gains[part] >= least), key=lambda part: (-gains[part], part))
+    return (name, *others)
+
+
 def losses_of_one_oil(
     evidence: Sequence[Evidence], weights: Posterior, candidates: Candidates, thresholds: Thresholds
 ) -> Decision | None:

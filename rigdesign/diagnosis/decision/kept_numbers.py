@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import partial
 
 import numpy as np
 
 from rigdesign.diagnosis.decision.claims import Claim, Traces, claim, withdrawn
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Explanations
+from rigdesign.diagnosis.decision.other_domain import OtherDomain
 from rigdesign.diagnosis.decision.problem import Problem, Tier, of_tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.decision.search import Look, explanations_of, fitted, search
@@ -65,11 +66,18 @@ class Numbers:
     rerun: Rerun | None
     _proofs: dict[Tier, Proof] = field(default_factory=dict, repr=False)
     _spaces: dict[Tier, tuple[ResidualProblem, Whitened]] = field(default_factory=dict, repr=False)
+    _explanations: dict[Tier, Explanations] = field(default_factory=dict, repr=False)
 
     def look(self, tier: Tier) -> Look:
         """The search over the numbers of a tier at the points that are not held out."""
-        residuals, space = self._seen(tier)
-        return search(self.problem, residuals, space, self.calibration, tier)
+        return search(
+            self.problem,
+            *self._seen(tier),
+            self._explained(tier),
+            self.calibration,
+            tier,
+            self._heat_beside(tier),
+        )
 
     def proof(self, tier: Tier) -> Proof:
         """What names of a tier are held against; made once."""
@@ -151,17 +159,33 @@ class Numbers:
     @property
     def detectability(self) -> tuple[Detectability, ...]:
         """Of every effect in all numbers."""
-        known = (*self._explanations.physical, *self._explanations.sensor)
-        return tuple(detectabilities(self._seen("all")[1], known, self._explanations.unmodelled))
+        all_of_them = self._explained("all")
+        known = (*all_of_them.physical, *all_of_them.sensor)
+        return tuple(detectabilities(self._seen("all")[1], known, all_of_them.unmodelled))
 
     @property
     def aliases(self) -> tuple[tuple[str, str, float], ...]:
         """Effects that leave one trace in all numbers."""
-        return tuple(aliases(self._seen("all")[1], self._explanations.physical))
+        return tuple(aliases(self._seen("all")[1], self._explained("all").physical))
 
-    @cached_property
-    def _explanations(self) -> Explanations:
-        return explanations_of(*self._seen("all"))
+    def _explained(self, tier: Tier) -> Explanations:
+        """Explanations of the numbers of a tier; made once."""
+        if tier not in self._explanations:
+            self._explanations[tier] = explanations_of(*self._seen(tier))
+        return self._explanations[tier]
+
+    def _heat_beside(self, tier: Tier) -> OtherDomain | None:
+        """The heat, where a tier looks at what oscillates; None where no heat is read, or it is in the tier.
+
+        What stiffness, damping and tooth errors make of the losses goes by the square of mesh orders: no evidence. Nor
+        is an order evidence against heat, as the model knows less well what the heat makes of it.
+        """
+        if tier in ("all", "heat") or not self.residuals.of_heat.any():
+            return None
+        known = self._explained("heat")
+        moving = {effect.claim for effect in self.residuals.effects if effect.family.dynamic}
+        known = replace(known, physical=[one for one in known.physical if moving.isdisjoint(one.parts)])
+        return OtherDomain.of(self._seen("heat")[1], self._explained(tier), known)
 
     def _seen(self, tier: Tier) -> tuple[ResidualProblem, Whitened]:
         """Numbers of a tier at the points that are not held out, and their space; made once."""

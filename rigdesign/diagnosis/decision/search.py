@@ -1,18 +1,20 @@
 """The search over one selection of the numbers: evaluate, take what is named into the model, evaluate what is left."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Evaluation, Explanations, evaluate
+from rigdesign.diagnosis.decision.other_domain import OtherDomain
 from rigdesign.diagnosis.decision.problem import Problem, Tier
 from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.residual.signature import Signature
 from rigdesign.diagnosis.residual.unmodelled_cause import unmodelled_causes
+from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.evidence import Evidence
@@ -46,10 +48,18 @@ class Look:
 
 
 def search(
-    problem: Problem, residuals: ResidualProblem, space: Whitened, calibration: Calibration, tier: Tier
+    problem: Problem,
+    residuals: ResidualProblem,
+    space: Whitened,
+    explanations: Explanations,
+    calibration: Calibration,
+    tier: Tier,
+    other: OtherDomain | None = None,
 ) -> Look:
-    """Evaluate, take what is named into the model, evaluate what is left."""
-    explanations = explanations_of(residuals, space)
+    """Evaluate, take what is named into the model, evaluate what is left.
+
+    explanations : of the numbers of the tier; other : numbers of the other domain, where they are read
+    """
     signature = signature_of(problem, residuals, calibration)
     criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
@@ -59,6 +69,8 @@ def search(
         one_oil=losses_of_oils(residuals, explanations),
         signature=signature,
     )
+    if other is not None:
+        criteria = replace(criteria, contradicted=other.contradicts)
     evaluations = [evaluate(space, explanations, criteria)]
     found: list[Evidence] = []
     while evaluations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
@@ -146,6 +158,7 @@ def signature_of(problem: Problem, residuals: ResidualProblem, calibration: Cali
         relative_speed(residuals.features, residuals.library.settings),
         calibration.signature_error,
         None if problem.baseline is None else own,
+        CloseModes.of(residuals.natural_frequencies, calibration.amplitudes.frequency),
         circuit=frozenset(effect.claim for effect in residuals.effects if effect.family.circuit),
     )
 
@@ -186,12 +199,6 @@ def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature
 
 def fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:
     """The joint fit of some explanations in a space, with their intervals."""
-    return fit_together(space, found, calibration.signature_error, [bounds_of(one) for one in found])
-
-
-def bounds_of(one: Evidence) -> list[tuple[float, float]]:
-    """Physical bounds of every coordinate of an explanation."""
-    curve = one.hypothesis.curve
-    if curve is not None:
-        return [curve.bounds]
-    return [(-one.hypothesis.half, one.hypothesis.half)] * one.columns.shape[1]
+    return fit_together(
+        space, found, calibration.signature_error, [one.hypothesis.intervals for one in found]
+    )

@@ -23,7 +23,7 @@ from rigdesign.diagnosis.decision.decision import UNNAMED
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.posterior import mass_of_any
 from rigdesign.diagnosis.decision.proof import Proof
-from rigdesign.diagnosis.decision.search import Look, bounds_of, fitted
+from rigdesign.diagnosis.decision.search import Look, fitted
 from rigdesign.diagnosis.decision.verdict import Decision
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import SEEN
@@ -164,7 +164,7 @@ class Suspicion:
     @property
     def at_bound(self) -> bool:
         """Whether the best size is the largest one the catalogue admits."""
-        limits = bounds_of(self.evidence)
+        limits = self.evidence.hypothesis.intervals
         return any(
             limit != 0.0 and abs(size.coordinate - limit) <= 1e-6 * abs(limit)
             for size, ends in zip(self.fit.sizes, limits, strict=True)
@@ -174,10 +174,14 @@ class Suspicion:
 
 def agreement_in(look: Look, calibration: Calibration) -> Agreement:
     """What channels and operating points of a look agree on."""
+    features, modes = look.residuals.features, look.residuals.natural_frequencies
     return Agreement(
         space=look.space,
         evidence=look.first.evidence,
-        features=look.residuals.features,
+        channels=[
+            "natural frequencies" if mode else one.channel for one, mode in zip(features, modes, strict=True)
+        ],
+        points=[one.setting for one in features],
         errors=calibration.signature_error,
     )
 
@@ -210,6 +214,6 @@ def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> s
     beside = [] if candidate.companion is None else [candidate.companion]
     if text := agreement_in(look, calibration).objection(one, beside, AGREEMENT):
         return text
-    if candidate.gap is not None and not candidate.gap.shrunk and proof.seen(candidate.answer) > SEEN:
+    if candidate.gap is not None and not candidate.gap.closer and proof.seen(candidate.answer) > SEEN:
         return "it does not shrink the gap on the points held out"
     return ""

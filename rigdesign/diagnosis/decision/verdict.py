@@ -105,13 +105,14 @@ class Candidates:
     effects : of catalogue and sensors, not the unmodelled causes
     detectable : effect -> whether these sensors could see it within its bounds at all
     orders : causes that show in orders and natural frequencies, unmodelled ones among them
-    sensors : those that are errors of sensors and settings
+    sensors : those that are errors of sensors and settings; circuit : those that change what passes through it
     """
 
     effects: frozenset[str]
     detectable: Mapping[str, bool]
     orders: frozenset[str] = frozenset()
     sensors: frozenset[str] = frozenset()
+    circuit: frozenset[str] = frozenset()
     alike: Mapping[str, frozenset[str]] = field(default_factory=dict)
     """Effect -> those that leave its trace in these numbers, itself left out."""
     one_oil: Mapping[str, frozenset[str]] = field(default_factory=dict)

@@ -122,6 +122,8 @@ def without_a_name(covariance: Covariance, causes: Iterable[UnmodelledCause]) ->
                 parts=(f"unknown: {name}",),
                 columns=white.T / longest,
                 half=SIGMAS,
+                unit=longest,
+                limits=(np.full(white.shape[0], -np.inf), np.full(white.shape[0], np.inf)),
             )
         )
     return found

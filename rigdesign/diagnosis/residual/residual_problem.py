@@ -77,6 +77,12 @@ class ResidualProblem:
         )
 
     @cached_property
+    def natural_frequencies(self) -> Array:
+        """(n,) as predicted, zero for numbers that are none."""
+        own = [self.channels[one.channel].quantity == "natural_frequency" for one in self.features]
+        return np.where(own, self.library.base, 0.0)
+
+    @cached_property
     def steepness(self) -> Array:
         """(n,) of the orders (`rigdesign.diagnosis.statistics.resonance`)."""
         return steepness(self.features, self.library.settings, self.library.modes)

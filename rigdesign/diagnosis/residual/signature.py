@@ -3,7 +3,8 @@
 A cause in the model never leaves exactly the trace it leaves on the rig. An explanation with the answer a is
 therefore evaluated under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
 answer, the same over all points and along the speed, and orders by themselves
-(`rigdesign.diagnosis.statistics.model_error`). With no cause there is no answer and no such error, so that a small
+(`rigdesign.diagnosis.statistics.model_error`). Natural frequencies that lie close together may share a change otherwise
+(`rigdesign.diagnosis.statistics.close_modes`). With no cause there is no answer and no such error, so that a small
 effect is not hidden by it; rivals that differ by less than the model error are separated by their priors
 alone.
 
@@ -17,8 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve, solve_triangular
 from scipy.sparse import csr_array
+from scipy.special import logsumexp
 
 from rigdesign.diagnosis.residual.healthy import TREND
+from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.evidence import (
@@ -42,6 +45,10 @@ CONTENDERS = 60
 SLIGHT = 0.1
 """Error of one number by itself that is left out [standard deviations of its residual on a healthy rig]."""
 
+SHARES = (1.0, 0.3, 0.1)
+"""Of the error of every number by itself: how far an answer is off is not known, and numbers that follow it closely are
+no sign of an answer that is off by all that is admitted."""
+
 MOST_ALONE = 400
 """Numbers whose model error counts, those with the largest."""
 
@@ -52,7 +59,7 @@ class Signature:
 
     order : (n,) places of the numbers sorted by series; starts : (s,) where each begins in it
     trend : (n,) logarithm of the relative speed; errors : kind of effect -> relative error, "" for the others
-    own : error of every number by itself, if there is one
+    own : error of every number by itself, if there is one; modes : natural frequencies among the numbers
     circuit : effects that change what goes through the circuit
     """
 
@@ -61,6 +68,7 @@ class Signature:
     trend: Array
     errors: Mapping[str, float]
     own: ModelError | None
+    modes: CloseModes
     circuit: frozenset[str]
 
     @classmethod
@@ -70,13 +78,23 @@ class Signature:
         trend: Array,
         errors: Mapping[str, float],
         own: ModelError | None = None,
+        modes: CloseModes | None = None,
         circuit: frozenset[str] = frozenset(),
     ) -> "Signature":
         """Of the numbers of a comparison."""
         series = series_numbers(features)
         order = np.argsort(series, kind="stable")
         starts = np.searchsorted(series[order], np.arange(series.max(initial=-1) + 1))
-        return cls(order=order, starts=starts, trend=trend, errors=errors, own=own, circuit=circuit)
+        none = CloseModes.of(np.zeros(len(features)), 0.0)
+        return cls(
+            order=order,
+            starts=starts,
+            trend=trend,
+            errors=errors,
+            own=own,
+            modes=modes or none,
+            circuit=circuit,
+        )
 
     def error_of(self, hypothesis: Hypothesis) -> float:
         """Relative error of the answer of an explanation; the largest of its parts."""
@@ -85,19 +103,28 @@ class Signature:
         kinds = [part.split(":")[0].split("/")[0] for part in hypothesis.parts]
         return max(self.errors.get(kind, self.errors.get("", 0.0)) for kind in kinds)
 
-    def rows(self, hypothesis: Hypothesis, answer: Array, precision: Array) -> csr_array:
-        """(m, n) rows of E' for an answer (n,): series alike at all points, along the speed, numbers by themselves.
+    def rows(
+        self, hypothesis: Hypothesis, answer: Array, precision: Array
+    ) -> tuple[csr_array, NDArray[np.bool_]]:
+        """(m, n) rows of E' for an answer (n,): series alike at all points, along the speed, numbers by themselves, and
+        pairs of natural frequencies.
 
         precision : (n,) diagonal of the inverse covariance of a healthy rig
+
+        Beside them (m,) whether a row is of a number by itself.
         """
         alike = self.error_of(hypothesis) * answer
         along = TREND * alike * self.trend
         places, alone = self._alone(hypothesis, answer, precision)
-        values = np.concatenate([alike[self.order], along[self.order], alone])
-        count = len(answer)
-        ends = np.concatenate([self.starts, count + self.starts, 2 * count + np.arange(len(places) + 1)])
-        across = np.concatenate([self.order, self.order, places])
-        return csr_array((values, across, ends), shape=(len(ends) - 1, count))
+        pairs = np.stack([self.modes.first, self.modes.second], axis=1)
+        exchanged = np.stack(self.modes.errors(answer), axis=1)
+        values = np.concatenate([alike[self.order], along[self.order], alone, exchanged.ravel()])
+        count, by_number = len(answer), 2 * len(answer) + np.arange(len(places) + 1)
+        by_pair = by_number[-1] + 2 * np.arange(1, len(pairs) + 1)
+        ends = np.concatenate([self.starts, count + self.starts, by_number, by_pair])
+        across = np.concatenate([self.order, self.order, places, pairs.ravel()])
+        alone_rows = np.repeat([False, True, False], [2 * len(self.starts), len(places), len(pairs)])
+        return csr_array((values, across, ends), shape=(len(ends) - 1, count)), alone_rows
 
     def _alone(
         self, hypothesis: Hypothesis, answer: Array, precision: Array
@@ -115,7 +142,7 @@ class Signature:
         """The error of an answer (n,) as columns of a covariance; none where it is exact."""
         if self.error_of(hypothesis) == 0.0:
             return []
-        rows = self.rows(hypothesis, answer, precision).toarray()
+        rows = self.rows(hypothesis, answer, precision)[0].toarray()
         return [
             Column(name=f"answer to {hypothesis.name}, {number}", kind="signature", values=row, spread=1.0)
             for number, row in enumerate(rows)
@@ -143,58 +170,75 @@ class Contest:
             or not np.any(one.answer)
         ):
             return one
-        space, count = self.space, one.columns.shape[1]
-        own = release_of(space, one.hypothesis.own).directions
         base = one.answer - one.columns @ np.array(one.coordinates)
-        left = space.freed(one.hypothesis.own) - base
-        inner = _Inner.of(self, one, own, np.column_stack([one.columns, left]))
-        gram, load = inner.products[:count, :count], inner.products[:count, count]
-        square = float(inner.products[count, count])
-        log_bayes = mixed(gram, load, one.spreads) + 0.5 * (space.chi_square - square) - 0.5 * inner.logarithm
+        products = _Products.of(self, one, base)
+        found = [self._at(products, one, base, share) for share in SHARES]
+        log_bayes = float(logsumexp([other.log_bayes for other in found])) - float(np.log(len(SHARES)))
+        return replace(max(found, key=lambda other: other.log_bayes), log_bayes=log_bayes)
+
+    def _at(self, products: "_Products", one: Evidence, base: Array, share: float) -> Evidence:
+        """One explanation with a share of the error of every number by itself."""
+        inner, logarithm = products.inside(share)
+        count = one.columns.shape[1]
+        gram, load, square = inner[:count, :count], inner[:count, count], float(inner[count, count])
+        fall = self.space.chi_square - square
         inverse = inverse_of(gram)
-        best = np.clip(inverse @ load, *_limits(one))
+        best = np.clip(inverse @ load, *one.hypothesis.bounds)
+        gain = fall + float(2.0 * best @ load - best @ gram @ best)
         return replace(
             one,
-            log_bayes=log_bayes,
+            log_bayes=min(mixed(gram, load, one.spreads) + 0.5 * fall, 0.5 * gain) - 0.5 * logarithm,
             coordinates=tuple(float(value) for value in best),
             deviations=deviations_of(inverse),
-            gain=space.chi_square - square + float(2.0 * best @ load - best @ gram @ best),
+            gain=gain,
             answer=base + one.columns @ best,
         )
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Inner:
-    """Products (m, m) of columns under C - U U' + E E', and the logarithm of its determinant over that of C."""
+class _Products:
+    """What products of columns (m, m) under C - U U' + s E s E' are made of, for any share s of the errors by number.
 
-    products: Array
-    logarithm: float
+    own : products with what is released; errors : of the errors of the answer; across : of both, of either with the
+    columns, and of these with each other
+    alone : (k,) whether an error is of a number by itself
+    """
+
+    own: Array
+    reached: Array
+    errors: Array
+    through_own: Array
+    through_errors: Array
+    columns: Array
+    alone: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, contest: Contest, one: Evidence, own: Array, columns: Array) -> "_Inner":
-        signature, lower = contest.signature, contest.space.covariance.lower
-        precision = contest.space.precision
-        rows = signature.rows(one.hypothesis, lower @ one.answer, np.diagonal(precision))
-        white = np.hstack([own, columns])
-        solved = solve_triangular(lower, white, lower=True, trans="T", check_finite=False)
+    def of(cls, contest: Contest, one: Evidence, base: Array) -> "_Products":
+        space, lower = contest.space, contest.space.covariance.lower
+        own = release_of(space, one.hypothesis.own).directions
+        columns = np.column_stack([one.columns, space.freed(one.hypothesis.own) - base])
+        rows, alone = contest.signature.rows(one.hypothesis, lower @ one.answer, np.diagonal(space.precision))
+        solved = solve_triangular(lower, np.hstack([own, columns]), lower=True, trans="T", check_finite=False)
         reached = rows @ solved
-        errors = rows @ (rows @ precision).T
         taken = own.shape[1]
-        inside = np.block([[own.T @ own, reached[:, :taken].T], [reached[:, :taken], errors]])
+        return cls(
+            own=own.T @ own,
+            reached=reached[:, :taken],
+            errors=rows @ (rows @ space.precision).T,
+            through_own=own.T @ columns,
+            through_errors=reached[:, taken:],
+            columns=columns.T @ columns,
+            alone=alone,
+        )
+
+    def inside(self, share: float) -> tuple[Array, float]:
+        """Products of the columns (m, m), and the logarithm of the determinant over that of C."""
+        scale = np.where(self.alone, share, 1.0)[:, None]
+        across = scale * self.reached
+        inside = np.block([[self.own, across.T], [across, scale * self.errors * scale.T]])
         diagonal = np.arange(len(inside))
-        inside[diagonal, diagonal] += np.where(diagonal < taken, -1.0, 1.0)
-        through = np.vstack([own.T @ columns, reached[:, taken:]])
+        inside[diagonal, diagonal] += np.where(diagonal < len(self.own), -1.0, 1.0)
+        through = np.vstack([self.through_own, scale * self.through_errors])
         factors = lu_factor(inside, overwrite_a=True, check_finite=False)
-        products = columns.T @ columns - through.T @ lu_solve(factors, through, check_finite=False)
-        logarithm = float(np.log(np.abs(np.diagonal(factors[0]))).sum())
-        return cls(products=products, logarithm=logarithm)
-
-
-def _limits(one: Evidence) -> tuple[Array, Array]:
-    """Bounds of the coordinates of an explanation; of a pair as wide as its priors."""
-    curve = one.hypothesis.curve
-    if curve is not None:
-        return np.array([curve.bounds[0]]), np.array([curve.bounds[1]])
-    half = np.inf if one.hypothesis.family == "pair" else one.hypothesis.half
-    bound = np.full(one.columns.shape[1], half)
-    return -bound, bound
+        products = self.columns - through.T @ lu_solve(factors, through, check_finite=False)
+        return products, float(np.log(np.abs(np.diagonal(factors[0]))).sum())

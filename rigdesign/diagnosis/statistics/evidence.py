@@ -3,7 +3,8 @@
     ln B = ln p(residual | effect) - ln p(residual | healthy),  sizes integrated over a prior from the bounds
 
 The prior of a size is a mixture of normals around neutral with spreads from the bound down to a five-hundredth of
-it, so that a small effect is not punished for the width of its bound. What the covariance lets the same thing
+it, so that a small effect is not punished for the width of its bound. The tails of the normals end nowhere, and so an
+explanation has at most the evidence of the best size within its bounds. What the covariance lets the same thing
 spread by itself is taken out while its effect is tested (`covariance.Release`).
 
 Source: design of the workflow, step 6; the integrals are those of Bayesian model comparison (Kass, Raftery,
@@ -107,6 +108,33 @@ class Hypothesis:
     """Effects whose own spread is released."""
     residual: Array | None = field(default=None, repr=False)
     """Whitened residual under the hypothesis, where the data themselves are wrong."""
+    unit: float = 1.0
+    """Whitened length that a coordinate of one stands for, of columns that are brought to a length of one."""
+
+    def at(self, size: Array) -> Array:
+        """(n,) whitened answer at a size (k,), of a curve at most at its ends."""
+        if self.curve is not None:
+            return np.asarray(self.curve.at(np.clip(size, *self.curve.bounds))[0])
+        assert self.columns is not None
+        return np.asarray(self.columns @ size)
+
+    limits: tuple[Array, Array] | None = None
+    """Least and largest coordinates (k,), where columns have different ones."""
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Least and largest coordinates (k,)."""
+        if self.limits is not None:
+            return self.limits
+        if self.curve is not None:
+            return np.array([self.curve.bounds[0]]), np.array([self.curve.bounds[1]])
+        bound = np.full(0 if self.columns is None else self.columns.shape[1], self.half)
+        return -bound, bound
+
+    @property
+    def intervals(self) -> list[tuple[float, float]]:
+        """The same, of one coordinate after the other."""
+        return [(float(low), float(high)) for low, high in zip(*self.bounds, strict=True)]
 
     @property
     def widest(self) -> float:
@@ -277,15 +305,15 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
     spreads = np.outer(np.array(SPREADS) * hypothesis.half, np.ones(len(load)))
     before = float(release.product(residual, residual))
     shift = 0.5 * (space.chi_square - before)
-    log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
     inverse = inverse_of(gram)
-    best = np.clip(inverse @ load, -hypothesis.half, hypothesis.half)
+    best = np.clip(inverse @ load, *hypothesis.bounds)
+    gain = space.chi_square - before + float(2.0 * best @ load - best @ gram @ best)
     return Evidence(
         hypothesis=hypothesis,
-        log_bayes=log_bayes,
+        log_bayes=min(mixed(gram, load, spreads) + shift, 0.5 * gain) - 0.5 * release.log_determinant,
         coordinates=tuple(float(value) for value in best),
         deviations=deviations_of(inverse),
-        gain=space.chi_square - before + float(2.0 * best @ load - best @ gram @ best),
+        gain=gain,
         columns=columns,
         answer=columns @ best,
         spreads=spreads,
@@ -351,23 +379,28 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
     halves = np.array([first.hypothesis.widest, second.hypothesis.widest])
     shift = 0.5 * (space.chi_square - float(release.product(left, left)))
     spreads = (_PAIRS_OF_SPREADS * halves)[:, owner]
-    log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
+    limits = (
+        np.concatenate([one.hypothesis.bounds[0] for one in (first, second)]),
+        np.concatenate([one.hypothesis.bounds[1] for one in (first, second)]),
+    )
     inverse = inverse_of(gram)
-    best = inverse @ load
+    best = np.clip(inverse @ load, *limits)
     after = left - columns @ best
+    gain = space.chi_square - float(release.product(after, after))
     hypothesis = Hypothesis(
         name=name,
         family="pair",
         parts=(*first.hypothesis.parts, *second.hypothesis.parts),
         columns=columns,
         own=own,
+        limits=limits,
     )
     return Evidence(
         hypothesis=hypothesis,
-        log_bayes=log_bayes,
+        log_bayes=min(mixed(gram, load, spreads) + shift, 0.5 * gain) - 0.5 * release.log_determinant,
         coordinates=tuple(float(value) for value in best),
         deviations=deviations_of(inverse),
-        gain=space.chi_square - float(release.product(after, after)),
+        gain=gain,
         columns=columns,
         answer=base + columns @ best,
         spreads=spreads,

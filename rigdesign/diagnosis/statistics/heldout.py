@@ -60,9 +60,14 @@ class Gap:
     points: tuple[str, ...]
 
     @property
+    def closer(self) -> bool:
+        """Whether the gap shrinks by more than its scatter."""
+        return self.fall > self.scatter
+
+    @property
     def shrunk(self) -> bool:
-        """Whether the gap shrinks by more than its scatter, and that of the effect's own readings does not grow."""
-        return self.fall > self.scatter and self.raw_after <= self.raw_before
+        """Whether it does, and that of the effect's own readings does not grow."""
+        return self.closer and self.raw_after <= self.raw_before
 
     @property
     def grown(self) -> bool:

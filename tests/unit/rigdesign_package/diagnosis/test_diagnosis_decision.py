@@ -26,14 +26,15 @@ USUAL = Thresholds()
 LOSS = "unknown: heat at oil:test.gear_oil ~n"
 
 
-def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0, alike=(), one_oil=()):
+def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0, alike=(), one_oil=(), circuit=()):
     ordered = sorted(evaluated, key=lambda one: -one.log_bayes)
     return decide(
         ordered,
         posterior(ordered, COUNTS),
         WhitenedSquare(value=ordered[0].gain + 60.0 + left, count=60),
         Candidates(
-            effects=frozenset({"leak", "ripple", *sensors, *alike, *one_oil}),
+            effects=frozenset({"leak", "ripple", *sensors, *alike, *one_oil, *circuit}),
+            circuit=frozenset(circuit),
             detectable={"leak": True},
             orders=frozenset(loop),
             sensors=frozenset(sensors),
@@ -150,3 +151,33 @@ def test_two_sensors_that_are_off_together_are_not_named():
     assert verdict(*both, sensors=(first, second)).named == (first,)
     most = evidence(f"{first} + {second}", 90.0, "pair")
     assert verdict(both[0], most, sensors=(first, second)).named == ()
+
+
+CIRCUIT = ("mesh", "coupling", "spline")
+
+
+@pytest.mark.parametrize(("rival", "group"), [(380.0, ("mesh", "coupling")), (280.0, ("mesh",))])
+def test_changes_of_the_circuit_that_explain_about_as_much_are_a_group(rival, group):
+    """Whatever the evidence of one over the other: no answer of the model is more exact than a quarter."""
+    found = verdict(
+        evidence("mesh", 400.0), evidence("coupling", rival), evidence("spline", 100.0), circuit=CIRCUIT
+    )
+    assert found.named == group
+    assert found.verdict == ("alias_group" if len(group) > 1 else "named")
+
+
+def test_too_many_changes_of_the_circuit_are_no_group():
+    many = [evidence(f"shaft {place}", 380.0) for place in range(USUAL.one_trace)]
+    found = verdict(
+        evidence("mesh", 400.0), *many, circuit=(*CIRCUIT, *(one.hypothesis.name for one in many))
+    )
+    assert (found.verdict, found.named) == ("unknown_located", ())
+
+
+@pytest.mark.parametrize(("rest", "named"), [(480.0, ("mesh",)), (600.0, ())])
+def test_an_order_beside_a_change_of_the_circuit_may_be_what_the_model_answers_wrongly(rest, named):
+    """Up to a quarter of both; beside any other effect it is a cause of its own."""
+    pair = evidence("mesh + unknown: order 32", rest, "pair")
+    assert verdict(evidence("mesh", 400.0), pair, circuit=CIRCUIT).named == named
+    leak = evidence("leak + unknown: order 32", rest, "pair")
+    assert verdict(evidence("leak", 400.0), leak).named == ()

@@ -275,3 +275,19 @@ def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units
     best = np.linalg.lstsq(white, space.residual, rcond=None)[0]
     pair = evaluate_pair(space, first, evaluate_hypothesis(space, apart))
     assert pair.coordinates == pytest.approx((best[0], 1e-7 * best[1]), rel=1e-8)
+
+
+def test_a_size_beyond_its_bounds_has_the_evidence_of_the_largest_one():
+    """The prior of a size has tails, what is physical has none."""
+    column = np.random.default_rng(8).normal(size=(30, 1))
+    space = Whitened.of(Covariance(base=np.eye(30), columns=(), amplitudes={}), 50.0 * column[:, 0])
+    near = Hypothesis(name="pitch", family="physical", parts=("pitch",), columns=column, half=1.0)
+    other = Hypothesis(
+        name="ripple", family="physical", parts=("ripple",), columns=np.eye(30)[:, :1], half=1.0
+    )
+    one = evaluate_hypothesis(space, near)
+    assert one.coordinates == (1.0,)
+    assert one.log_bayes == pytest.approx(0.5 * one.gain)
+    both = evaluate_pair(space, one, evaluate_hypothesis(space, other))
+    assert both.coordinates[0] == 1.0
+    assert both.log_bayes == pytest.approx(0.5 * both.gain) and both.gain < one.gain + 60.0

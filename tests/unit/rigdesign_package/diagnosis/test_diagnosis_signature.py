@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.special import logsumexp
 
-from rigdesign.diagnosis.residual.signature import Contest, Signature
+from rigdesign.diagnosis.residual.signature import SHARES, Contest, Signature
+from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis, evaluate_pair
@@ -19,11 +21,15 @@ STEEP = np.array([0.3 if feature.order else 0.0 for feature in FEATURES])
 """Relative error of orders by themselves."""
 TREND = np.repeat(np.linspace(-0.7, 0.7, POINTS), 3)
 SHARE = 0.2
+MODES = CloseModes.of(
+    np.where(np.isin(np.arange(len(FEATURES)), (0, 3)), 100.0 + np.arange(len(FEATURES)), 0.0), 0.02
+)
+"""Two of the numbers as if they were natural frequencies of 100 and 103 Hz."""
 
 
 def signature(alone: float = 0.0) -> Signature:
     own = ModelError.of(FEATURES, alone * STEEP, np.zeros(len(FEATURES), dtype=bool), np.zeros(len(FEATURES)))
-    return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0}, own)
+    return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0}, own, MODES)
 
 
 def healthy(own: float = 0.0) -> Covariance:
@@ -72,16 +78,20 @@ def direct(
 
 @pytest.mark.parametrize("alone", [0.0, 1.0])
 @pytest.mark.parametrize("own", [0.0, 0.4])
-def test_low_rank_algebra_is_the_whole_covariance(own, alone):
+def test_low_rank_algebra_is_the_whole_covariance(own, alone, monkeypatch):
     """An explanation whose constant has its own healthy spread, and one without; orders off by themselves, or not."""
+    monkeypatch.setattr("rigdesign.diagnosis.residual.signature.SLIGHT", 0.0)
     covariance = healthy(own)
     residual = 6.0 * trace() + np.random.default_rng(5).normal(size=len(FEATURES))
     space = Whitened.of(covariance, residual)
     first = evaluate_hypothesis(space, plane(covariance, trace()))
     found = Contest(space, signature(alone)).again(first)
     answer = covariance.lower @ first.answer
-    wanted = direct(covariance, residual, answer, lambda wide: plane(wide, trace()), alone)
-    assert found.log_bayes == pytest.approx(wanted, rel=1e-9)
+    wanted = [
+        direct(covariance, residual, answer, lambda wide: plane(wide, trace()), alone * share)
+        for share in SHARES
+    ]
+    assert found.log_bayes == pytest.approx(logsumexp(wanted) - np.log(len(SHARES)), rel=1e-9)
     assert found.log_bayes != pytest.approx(first.log_bayes, abs=0.1)
 
 
@@ -106,11 +116,25 @@ def test_an_order_near_a_resonance_is_off_by_a_share_of_its_amplitude():
     """Whatever its phase; numbers of which the residual of a healthy rig is larger are left out."""
     answer = np.tile([5.0, 3.0, -4.0], POINTS)
     precision = np.where([feature.setting == "P0" for feature in FEATURES], 1e-4, 1.0)
-    own = signature(1.0).rows(plane(healthy(), answer), answer, precision).toarray()[2 * len(NUMBERS) :]
+    rows, alone = signature(1.0).rows(plane(healthy(), answer), answer, precision)
+    own = rows.toarray()[alone]
     assert len(own) == 2 * (POINTS - 1)
     variances = np.einsum("kn,kn->n", own, own)
     near = (STEEP > 0.0) & (precision == 1.0)
     assert variances == pytest.approx(np.where(near, (0.3 * 5.0) ** 2, 0.0))
+
+
+def test_numbers_that_follow_an_answer_closely_are_no_sign_of_one_that_is_far_off():
+    """An answer that is met exactly has the evidence of the least error that is admitted, but for the others' prior."""
+    answer = np.where([feature.order != 0.0 for feature in FEATURES], 6.0, 0.0) * trace()
+    space = Whitened.of(healthy(), answer)
+    hypothesis = plane(healthy(), answer / 6.0)
+    found, least, most = (
+        Contest(space, signature(alone)).again(evaluate_hypothesis(space, hypothesis)).log_bayes
+        for alone in (1.0, SHARES[-1], 10.0)
+    )
+    assert found > most + 5.0
+    assert found == pytest.approx(least, abs=2.0)
 
 
 def test_exact_explanations_keep_their_evidence():
