@@ -49,7 +49,9 @@ SOURCES: Mapping[str, Source] = {
         "coordinate", "fit", "108 pairs of healthy sets of the virtual rig, three rigs"
     ),
     "decision.defaults.SIGNATURE_ERROR": Source(
-        "-", "fit", "traces of 22 effects in the virtual rig; not_steady: second score"
+        "-",
+        "fit",
+        "traces of 22 effects in the virtual rig; not_steady: second score; circuit: four models of two loops",
     ),
     "decision.defaults.PLAIN": Source(
         "-", "fit", "development split of the blind score; evidence: largest of 108 healthy sets"

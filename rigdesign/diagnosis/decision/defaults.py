@@ -103,7 +103,12 @@ SIGNATURE_ERROR = {
 """Kind of effect -> relative error of the model's answer to it: how far the traces of 22 effects of the heat, and of
 run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants; of a rig not yet steady
 by how far its rate was off in the second score, as its parts warm at their own pace; of heat at one place by the
-rise of a single shell, which is half of that of the virtual rig, and by walls that the catalogue divides otherwise."""
+rise of a single shell, which is half of that of the virtual rig, and by walls that the catalogue divides otherwise; of
+what changes the power circuit, of profile slopes and of cumulative pitch how far three other models of the two loops
+answer from their own one (`tests.blind.model_spread`: shafts that twist or bend, teeth analytic or by influence
+numbers).
+The spread of a pitch error of one tooth and of a weak tooth, 1.05 and 1.07 there, is not taken over: models that count
+teeth from another angle would give as much."""
 
 
 PLAIN = Thresholds(evidence=10.0, evidence_loop=100.0)
