@@ -196,8 +196,8 @@ def library(runs: Sequence[OperatingCondition], channels, *, without: Sequence[s
         rows = [column(lambda f, run, at=tuple(at), name=name: answer(name, at, f, run)) for at in places]
         responses[name] = Response(coordinates=np.array(places), answers=np.array(rows))
     heat = {
-        "gear oil": column(lambda f, run: {"P": 1.0, "T_gear": 1 / 60.0}.get(f.channel, 0.0)),
-        "bearing oil": column(lambda f, run: {"P": 1.0, "T_bearing": 1 / 45.0}.get(f.channel, 0.0)),
+        "body:gear": column(lambda f, run: {"P": 1.0, "T_gear": 1 / 60.0}.get(f.channel, 0.0)),
+        "film:bearing": column(lambda f, run: {"P": 1.0, "T_bearing": 1 / 45.0}.get(f.channel, 0.0)),
     }
     dry = {name: np.where([f.channel == "P" for f in names], 0.0, values) for name, values in heat.items()}
     inputs = {
@@ -287,6 +287,10 @@ def rerun(runs: Sequence[OperatingCondition]):
     return again
 
 
+FRETTING = 120.0
+"""Heat of the story of that name [W]."""
+
+
 @cache
 def story(name: str) -> Result:
     """Diagnoses that several tests look at; made once."""
@@ -312,6 +316,13 @@ def story(name: str) -> Result:
             return result_of(write_set(folder, Rig({"angle_zero": (0.02,)})))
         case "one point":
             return result_of(write_set(folder, Rig(points=1, repeats=1)))
+        case "fretting":  # heat in the gear that no effect of the catalogue gives
+
+            def fret(point, values):
+                return {**values, "P": values["P"] + FRETTING, "T_gear": values["T_gear"] + FRETTING / 60.0}
+
+            write_set(folder / "healthy", Rig(seed=7), title="as new")
+            return result_of(write_set(folder / "set", Rig(), baseline="../healthy", spoil=fret))
         case "healthy":
             return result_of(write_set(folder, Rig()))
     raise KeyError(name)

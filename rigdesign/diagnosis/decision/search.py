@@ -13,7 +13,7 @@ from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.residual.signature import Signature
-from rigdesign.diagnosis.residual.unmodelled_cause import unmodelled_causes
+from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN, unmodelled_causes
 from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Whitened
@@ -118,12 +118,12 @@ def losses_of_oils(residuals: ResidualProblem, explanations: Explanations) -> di
     found: dict[str, frozenset[str]] = {}
     for oil in oils:
         losses = frozenset(effect.claim for effect in residuals.effects if effect.heats == oil)
-        start = f"unknown: heat at oil:{oil} "
+        start = f"{UNKNOWN}heat at oil:{oil} "
         found |= {one.name: losses for one in explanations.unmodelled if one.name.startswith(start)}
     return found
 
 
-ORDER_CAUSE = "unknown: order "
+ORDER_CAUSE = f"{UNKNOWN}order "
 """How the name of an unmodelled cause of an order begins."""
 
 

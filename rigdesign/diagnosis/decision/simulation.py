@@ -7,6 +7,7 @@ import numpy as np
 
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.rivals import Leading
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array
@@ -31,13 +32,14 @@ class Simulation:
     foreseen: Foreseen
     rows: tuple[int, ...]
 
-    def verified(self, names: Sequence[str], calibration: Calibration) -> tuple[tuple[str, bool], ...]:
-        """Effect -> whether the diagnosis of its simulated readings names it, by itself or in a group."""
-        return tuple((name, self._ends_in(name, number, calibration)) for number, name in enumerate(names))
-
-    def _ends_in(self, name: str, number: int, calibration: Calibration) -> bool:
-        found = diagnose(replace(self.problem, residuals=self._read(number)), calibration)
-        return found.decision.verdict == "named" and name in found.named
+    def verified(
+        self, explanations: Sequence[Leading], calibration: Calibration
+    ) -> tuple[tuple[str, bool], ...]:
+        """Explanation -> whether the diagnosis of its simulated readings names it, or locates what has no name."""
+        return tuple(
+            (one.name, one.ends(diagnose(replace(self.problem, residuals=self._read(number)), calibration)))
+            for number, one in enumerate(explanations)
+        )
 
     def _read(self, number: int) -> ResidualProblem:
         """The set with the further readings as one rival foresees them, with their scatter."""

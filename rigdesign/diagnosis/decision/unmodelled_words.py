@@ -2,6 +2,8 @@
 
 import re
 
+from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN
+
 LAWS = {
     "constant": "the same at all operating points",
     "~n": "growing with the speed",
@@ -41,6 +43,13 @@ def in_words(cause: str) -> str:
         return f"order {found[1]} of {found[2]} without a known source, {LAWS[found[3]]}"
     if cause.startswith("conductance "):
         return f"heat path other than modelled: {_path(cause.removeprefix('conductance '))}"
+    return cause
+
+
+def place_of(cause: str) -> str:
+    """Heat at a place, whatever its law and whether the motor pays for it; other causes as they are."""
+    if found := _HEAT.match(cause.removeprefix(UNKNOWN)):
+        return f"{UNKNOWN}heat at {found[2]}:{found[3]}"
     return cause
 
 

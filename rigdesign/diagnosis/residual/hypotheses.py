@@ -7,7 +7,7 @@ import numpy as np
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.residual.sensors import SensorError
-from rigdesign.diagnosis.residual.unmodelled_cause import UnmodelledCause
+from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN, UnmodelledCause
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis
@@ -117,9 +117,9 @@ def without_a_name(covariance: Covariance, causes: Iterable[UnmodelledCause]) ->
             continue
         found.append(
             Hypothesis(
-                name=f"unknown: {name}",
+                name=f"{UNKNOWN}{name}",
                 family=family,
-                parts=(f"unknown: {name}",),
+                parts=(f"{UNKNOWN}{name}",),
                 columns=white.T / longest,
                 half=SIGMAS,
                 unit=longest,

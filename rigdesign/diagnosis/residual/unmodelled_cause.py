@@ -18,6 +18,9 @@ from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.reference_scale import excess
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 
+UNKNOWN = "unknown: "
+"""How the name of an explanation begins that is in no catalogue."""
+
 UnmodelledCause = tuple[Literal["unmodelled", "local"], str, Array]
 """Family, name, (n, k) columns: k = 2 for an order with free phase. Local is what one thermometer alone may feel."""
 

@@ -154,7 +154,7 @@ def test_names_know_orders_from_teeth() -> None:
     entry, tooth = known.entry("cumulative_pitch:test.pinion/3") or (None, None)
     assert entry is not None and entry.name == "cumulative_pitch:test.pinion/3" and tooth is None
     assert known.plain("single_pitch:test.wheel/11") == "single_pitch:test.wheel"
-    assert known.entry("unknown: heat at gear oil ~n") is None
+    assert known.entry("unknown: heat at body:gear ~n") is None
     assert known.entry("run_out:test.pinion/4") is None
     assert known.title("swapped_points:P01,P02") == "operating points P01 and P02 exchanged"
     assert known.title("angle_zero (+0.2 rad)") == "index pulse offset by +0.2 rad"

@@ -176,9 +176,9 @@ def test_the_healthy_rig_that_goes_furthest_counts_beside_the_mean(monkeypatch):
 def test_heat_without_a_name_is_widened_by_its_share_of_the_losses(monkeypatch):
     monkeypatch.setattr(problems, "BENDING_STEPS", 0)
     residuals = story("healthy").problem.residuals
-    unpaid = next(one for one in residuals.directions() if one.likeness == "heat unpaid at gear oil ~n2")
+    unpaid = next(one for one in residuals.directions() if one.likeness == "heat unpaid at body ~n2")
     losses = np.mean(list(residuals.library.powers.values()))
-    watts = residuals.library.dry_sources["gear oil"]
+    watts = residuals.library.dry_sources["body:gear"]
     at_mean = np.exp(relative_speed(residuals.features, residuals.library.settings)) ** 2
     assert unpaid.values[:, 0] == pytest.approx(losses * watts * at_mean)
     only = residuals.inflated({unpaid.likeness: 0.1})

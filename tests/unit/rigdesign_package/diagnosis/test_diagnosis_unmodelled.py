@@ -46,9 +46,9 @@ def test_heat_in_the_drain_is_felt_by_one_thermometer_alone(residuals):
 def test_heat_follows_every_law_at_every_place_paid_and_unpaid(residuals):
     found = {heat.name: heat for heat in heats(residuals.library)}
     assert len(found) == 2 * 2 * 4
-    constant, square = found["heat at bearing oil constant"], found["heat at bearing oil ~n2"]
+    constant, square = found["heat at film:bearing constant"], found["heat at film:bearing ~n2"]
     speeds = {run.name: run.speed for run in residuals.library.settings}
     mean = np.exp(np.mean(np.log(list(speeds.values()))))
     law = np.array([(speeds[one.setting] / mean) ** 2 for one in residuals.features])
     assert square.values == pytest.approx(constant.values * law)
-    assert square.likeness == "heat at bearing oil ~n2"
+    assert square.likeness == "heat at film ~n2"
