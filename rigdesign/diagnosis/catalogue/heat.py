@@ -23,7 +23,8 @@ class _Loss:
     """A loss of a gearbox that the case scales.
 
     key : of ``loss_factors``; bounds : of the factor; healthy : spread of its logarithm
-    exponents : settings over which the exponent of its law is uncertain
+    in_gear_oil : whether the gear oil takes most of it; exponents : settings over which the exponent of its law is
+    uncertain
     """
 
     key: str
@@ -31,6 +32,7 @@ class _Loss:
     bounds: tuple[float, float]
     healthy: float
     signature: str
+    in_gear_oil: bool = True
     exponents: tuple[str, ...] = ()
 
 
@@ -42,7 +44,7 @@ LOSSES = (
     ),
     _Loss(
         key="bearing", words="friction of the bearing films", bounds=(0.5, 2.0), healthy=0.12,
-        signature="grows with n^1.6 to n^2 at any torque: bearing oil, shells and drive torque",
+        signature="grows with n^1.6 to n^2 at any torque: bearing oil, shells and drive torque", in_gear_oil=False,
         exponents=("speed",),
     ),
     _Loss(
@@ -59,10 +61,6 @@ LOSSES = (
         signature="grows with torque and speed, straight into the oil",
     ),
 )  # fmt: skip
-
-
-INTO_GEAR_OIL = frozenset({"mesh", "windage", "jet", "squeeze"})
-"""Losses of which the gear oil takes most."""
 
 
 @of_rig()
@@ -95,7 +93,7 @@ def losses(part: GearboxPart) -> Iterator[Effect]:
             change=Scaled(((f"{part.path}.loss_factors.{loss.key}", now),)),
             healthy=loss.healthy,
             exponents=loss.exponents,
-            heats=f"{part.name}.gear_oil" if loss.key in INTO_GEAR_OIL else "",
+            heats=f"{part.name}.gear_oil" if loss.in_gear_oil else "",
         )
 
 

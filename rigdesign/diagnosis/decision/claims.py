@@ -21,8 +21,9 @@ from rigdesign.diagnosis.decision.verdict import Decision, Thresholds, Verdict, 
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, release_of
+from rigdesign.diagnosis.statistics.evidence import Evidence, release_of
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.intervals import JointFit
 
 NAMED = frozenset({"physical", "sensor"})

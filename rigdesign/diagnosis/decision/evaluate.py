@@ -11,7 +11,8 @@ from rigdesign.diagnosis.decision.verdict import Candidates, Decision, Threshold
 from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, Detectability, detectabilities
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis, evaluate_pair
+from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis, evaluate_pair
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.support import support
 
 LEADERS = 12

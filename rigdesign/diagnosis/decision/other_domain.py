@@ -14,7 +14,8 @@ from rigdesign.diagnosis.residual.signature import EXACT
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import SEEN
-from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 
 WIDE = 2.0
 """Factor by which an answer of the model may be too small or too large in the other domain."""

@@ -15,7 +15,8 @@ from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN, unmodelled_causes
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import ALIAS
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.next_measurement import Rival
 from rigdesign.diagnosis.statistics.required_size import straight
 

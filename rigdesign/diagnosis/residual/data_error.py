@@ -14,7 +14,7 @@ from rigdesign.diagnosis.residual.hypotheses import whitened
 from rigdesign.diagnosis.residual.sensors import LARGEST_ANGLE_ERROR, mark_elsewhere
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance
-from rigdesign.diagnosis.statistics.evidence import Hypothesis
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Channel, Feature
 

@@ -10,7 +10,7 @@ from rigdesign.diagnosis.residual.sensors import SensorError
 from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN, UnmodelledCause
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance
-from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis
+from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
 from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Feature
 

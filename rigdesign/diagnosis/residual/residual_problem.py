@@ -26,7 +26,7 @@ from rigdesign.diagnosis.residual.sensors import (
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Curve
+from rigdesign.diagnosis.statistics.hypothesis import Curve
 from rigdesign.diagnosis.statistics.outliers import Outlier, reject
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.diagnosis.statistics.resonance import steepness

@@ -24,14 +24,8 @@ from rigdesign.diagnosis.residual.healthy import TREND
 from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.evidence import (
-    Evidence,
-    Hypothesis,
-    deviations_of,
-    inverse_of,
-    mixed,
-    release_of,
-)
+from rigdesign.diagnosis.statistics.evidence import Evidence, deviations_of, inverse_of, mixed, release_of
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.model_error import ModelError
 from rigdesign.prediction.model import Feature
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.evidence import Hypothesis, release_of
+from rigdesign.diagnosis.statistics.evidence import release_of
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 
 SEEN = 3.3
 """Standard deviations at which a size is distinguished from nothing with 5 % error on both sides (1.645 + 1.645)."""

@@ -6,7 +6,8 @@ import pytest
 from rigdesign.diagnosis.decision.decision import decide
 from rigdesign.diagnosis.decision.posterior import posterior
 from rigdesign.diagnosis.decision.verdict import Candidates, Thresholds, WhitenedSquare
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 
 COUNTS = {"physical": 50, "unmodelled": 100, "pair": 1000, "sensor": 20}
 

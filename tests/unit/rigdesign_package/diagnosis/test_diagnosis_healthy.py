@@ -13,7 +13,8 @@ from rigdesign.diagnosis.residual.covariance_inflation import INFLATE_ABOVE, LAR
 from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.support import support
 from rigdesign.prediction.model import Channel, OperatingCondition, features_of
 from tests.builders.diagnosis import DESIGN, story

@@ -14,8 +14,9 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import aliases, detectabilities
-from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
+from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
 from rigdesign.diagnosis.statistics.intervals import fit_together
 from rigdesign.diagnosis.statistics.marginal_likelihood import Group, group_misfit
 from rigdesign.diagnosis.statistics.next_measurement import Foreseen, Proposal, Rival, ranked, smallest_set

@@ -6,7 +6,8 @@ import pytest
 from rigdesign.diagnosis.decision.evaluate import Explanations
 from rigdesign.diagnosis.decision.other_domain import WIDE, OtherDomain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis, evaluate_pair
+from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis, evaluate_pair
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 
 COUNT = 20
 RNG = np.random.default_rng(6)
