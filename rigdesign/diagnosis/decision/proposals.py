@@ -8,7 +8,7 @@ import numpy as np
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
-from rigdesign.diagnosis.decision.rivals import leading, needed, nothing, rivals
+from rigdesign.diagnosis.decision.rivals import compared, leading, needed, nothing
 from rigdesign.diagnosis.decision.simulation import Simulation
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Extra, extra_points
@@ -84,37 +84,38 @@ def next_measurements(
     explanations = leading(found)
     insufficient = found.decision.verdict == "data_insufficient"
     alone = insufficient or (found.decision.verdict == "suspected" and len(found.decision.named) == 1)
-    if len(explanations) < (1 if alone else 2) and not insufficient:
+    explanations = explanations[:1] if alone else explanations
+    least = 1 if alone else 2
+    if len(explanations) < least and not insufficient:
         return NOTHING_NEXT
     offer = offered()
     if offer is None:
         return NOTHING_NEXT
     whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
-    sizes_needed = needed(whole, measured) if insufficient else []
-    if len(explanations) < (1 if alone else 2) and len(sizes_needed) < 2:
-        return NOTHING_NEXT
-    if len(sizes_needed) > 1:
-        compared = sizes_needed
-    elif alone:
-        explanations = explanations[:1]
-        compared = [*rivals(whole, found, explanations), nothing(whole)]
-    else:
-        compared = rivals(whole, found, explanations)
     mean, matrix = problem.healthy(whole, calibration)
-    foreseen = Foreseen.of(matrix, found.residual, compared)
+    causes = needed(whole, measured) if insufficient else []
+    ends = compared(whole, found, explanations, matrix)
+    if len(causes) < 2 and len(ends) < least:
+        return NOTHING_NEXT
+    if len(causes) > 1:
+        rivals, ends = causes, []
+    else:
+        rivals, causes = [one.rival for one in ends], []
+        rivals += [nothing(whole)] if alone else []
+    foreseen = Foreseen.of(matrix, found.residual, rivals)
     offers = _offers(whole.features[measured:], whole.channels, offer)
     together = smallest_set(foreseen, offers)
     verified: tuple[tuple[str, bool], ...] = ()
-    if together is not None and len(sizes_needed) < 2:
+    if together is not None and ends:
         simulation = Simulation(
             problem=problem, whole=whole, measured=measured, mean=mean, foreseen=foreseen, rows=together.rows
         )
-        verified = simulation.verified(explanations, calibration)
+        verified = simulation.verified([one.leading for one in ends], calibration)
     return NextMeasurements(
         ranked=ranked(foreseen, offers),
         together=together,
         verified=verified,
-        causes=tuple(one.name for one in sizes_needed) if len(sizes_needed) > 1 else (),
+        causes=tuple(one.name for one in causes),
     )
 
 

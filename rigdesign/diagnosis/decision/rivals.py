@@ -1,14 +1,16 @@
 """What a further measurement has to tell apart, each explanation with its answer at all that could be read."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.posterior import mass_of_any
+from rigdesign.diagnosis.decision.decision import UNNAMED
 from rigdesign.diagnosis.decision.required import RequiredCause, required_causes
-from rigdesign.diagnosis.decision.unmodelled_words import place_of
+from rigdesign.diagnosis.decision.unmodelled_words import in_words, place_of
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
@@ -26,74 +28,146 @@ MOST_BEYOND = 3.0
 """Size over its bound up to which a cause counts as a rival where the data are too few."""
 
 
+LOCATED = 0.95
+"""Posterior mass that the places of a cause in no catalogue have to hold together."""
 NAMEABLE = frozenset({"physical", "sensor"})
 
 
 @dataclass(frozen=True, kw_only=True)
 class Leading:
-    """An explanation that a measurement has to tell from others; it stands for all of its kind at one place."""
+    """An explanation that a measurement has to tell from others.
 
-    thing: str
+    things : an effect, an error, or the places of a cause in no catalogue, whatever its law; evidence : of the best one
+    """
+
+    things: tuple[str, ...]
     evidence: Evidence
 
     @property
     def name(self) -> str:
-        """Of the explanation."""
+        """Of the best explanation."""
         return self.evidence.hypothesis.parts[0]
 
+    @property
+    def unnamed(self) -> bool:
+        """Whether no catalogue has it."""
+        return self.evidence.hypothesis.family not in NAMEABLE
+
+    @property
+    def in_words(self) -> str:
+        """Of a cause in no catalogue."""
+        return in_words(self.name.removeprefix(UNKNOWN))
+
     def ends(self, found: Diagnosis) -> bool:
-        """Whether a diagnosis ends in it: named, or heat located at its place, as a cause in no catalogue is."""
-        if self.evidence.hypothesis.family in NAMEABLE:
+        """Whether a diagnosis ends in it: named, or located at its places."""
+        if not self.unnamed:
             return found.decision.verdict == "named" and self.name in found.named
-        return found.decision.verdict == "unknown_located" and mass_at(found, self.thing) >= LOCATED
+        return found.decision.verdict == "unknown_located" and mass_at(found, self.things) >= LOCATED
 
 
-LOCATED = 0.95
-"""Posterior mass of a place from which an effect in no catalogue is located there."""
+def mass_at(found: Diagnosis, things: Collection[str]) -> float:
+    """Posterior mass of all explanations that stand for one of some things."""
+    evaluation = found.evaluations[0]
+    return sum(
+        evaluation.weights.masses[one.hypothesis.name]
+        for one in evaluation.evidence
+        if _stands_for(one.hypothesis) in things
+    )
 
 
-def mass_at(found: Diagnosis, thing: str) -> float:
-    """Posterior mass of all explanations with a cause at one place."""
-    evaluation = found.deciding
-    parts = {part for one in evaluation.evidence for part in one.hypothesis.parts if place_of(part) == thing}
-    return mass_of_any(evaluation.evidence, evaluation.weights, parts)
+def _stands_for(hypothesis: Hypothesis) -> str:
+    """The place of what no catalogue has, if an explanation holds such a cause, else its first part."""
+    unnamed = [part for part in hypothesis.parts if part.startswith(UNKNOWN)]
+    return place_of((*unnamed, *hypothesis.parts)[0])
 
 
 def leading(found: Diagnosis) -> list[Leading]:
     """The likeliest single explanations of different things, the members of a group first.
 
-    Where nothing in the catalogue explains the data, causes without a name count as well, all laws of heat at one place
-    as one thing.
+    Where nothing in the catalogue explains the data: causes in no catalogue as well, as many as hold `LOCATED` of the
+    posterior mass together, at most `RIVALS`; all of these where a single effect holds it that the data contradict.
     """
-    evaluation, group = found.evaluations[0], found.decision.named
-    families = NAMEABLE | ({"unmodelled"} if found.decision.verdict == "unknown_located" else set())
-    singles = [
+    if found.decision.verdict == "unknown_located":
+        credible = _credible(found, LOCATED)
+        return credible if len(credible) > 1 or credible_places(found) else _credible(found, inf)
+    masses, group = found.evaluations[0].weights.inclusion, found.decision.named
+    best = {
+        one.hypothesis.parts[0]: Leading(things=one.hypothesis.parts, evidence=one)
+        for one in reversed(_singles(found, NAMEABLE))
+    }
+    ordered = sorted(best.items(), key=lambda item: (item[0] not in group, -masses.get(item[0], 0.0)))
+    return [one for _, one in ordered][:RIVALS]
+
+
+def _singles(found: Diagnosis, families: Collection[str]) -> list[Evidence]:
+    return [
         one
-        for one in evaluation.evidence
+        for one in found.evaluations[0].evidence
         if one.hypothesis.family in families and len(one.hypothesis.parts) == 1
     ]
-    ordered = sorted(singles, key=lambda one: -evaluation.weights.masses[one.hypothesis.name])
-    best: dict[str, Leading] = {}
-    for one in ordered:
-        thing = place_of(one.hypothesis.parts[0])
-        best.setdefault(thing, Leading(thing=thing, evidence=one))
-    return sorted(best.values(), key=lambda one: one.thing not in group)[:RIVALS]
 
 
-def rivals(whole: ResidualProblem, found: Diagnosis, explanations: Sequence[Leading]) -> list[Rival]:
+def _credible(found: Diagnosis, least: float) -> list[Leading]:
+    """As many of the likeliest as hold a posterior mass together."""
+    weights = found.evaluations[0].weights
+    singles = sorted(_singles(found, NAMEABLE | UNNAMED), key=lambda one: weights.masses[one.hypothesis.name])
+    best = {_stands_for(one.hypothesis): one for one in singles}
+    masses = {thing: mass_at(found, [thing]) for thing in best}
+    chosen: list[Leading] = []
+    held = 0.0
+    for thing in sorted(masses, key=lambda one: -masses[one])[:RIVALS]:
+        if held >= least:
+            break
+        chosen.append(Leading(things=(thing,), evidence=best[thing]))
+        held += masses[thing]
+    return chosen
+
+
+def credible_places(found: Diagnosis) -> list[Leading]:
+    """The places of a cause in no catalogue, the likeliest first; none where they do not hold `LOCATED` together."""
+    if found.decision.verdict != "unknown_located":
+        return []
+    places = _credible(found, LOCATED)
+    held = mass_at(found, [thing for one in places for thing in one.things])
+    return places if held >= LOCATED and all(one.unnamed for one in places) else []
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """An explanation with what it foresees."""
+
+    leading: Leading
+    rival: Rival
+
+
+def compared(
+    whole: ResidualProblem, found: Diagnosis, explanations: Sequence[Leading], matrix: Array
+) -> list[Compared]:
     """The explanations at their best fit, at the numbers measured and at those that could be.
 
-    whole : the numbers of the set followed by those that could be read
+    Causes in no catalogue that leave one trace in all that could be read are one: nothing tells them apart.
+
+    whole : the numbers of the set followed by those that could be read; matrix : covariance of a healthy rig in them
     """
-    catalogue = [one.evidence for one in explanations if one.evidence.hypothesis.family in NAMEABLE]
-    answers = _answers(whole, catalogue)
+    answers = _answers(whole, [one.evidence for one in explanations if not one.unnamed])
     unnamed = {name: columns for _, name, columns in unmodelled_causes(whole.library, whole.channels)}
-    return [
-        _rival(one.evidence, answers[one.evidence.hypothesis.name])
-        if one.evidence in catalogue
-        else _fitted(one.name, unnamed[one.name.removeprefix(UNKNOWN)], found)
-        for one in explanations
-    ]
+    factor = np.linalg.cholesky(matrix)
+    found_so_far: list[tuple[Compared, Array]] = []
+    for one in explanations:
+        rival = (
+            _fitted(one.name, unnamed[one.name.removeprefix(UNKNOWN)], found)
+            if one.unnamed
+            else _rival(one.evidence, answers[one.evidence.hypothesis.name])
+        )
+        trace = np.asarray(solve_triangular(factor, rival.answer, lower=True))
+        for place, (other, seen) in enumerate(found_so_far):
+            if one.unnamed and other.leading.unnamed and _cosine(trace, seen) >= ALIAS:
+                joined = replace(other.leading, things=(*other.leading.things, *one.things))
+                found_so_far[place] = replace(other, leading=joined), seen
+                break
+        else:
+            found_so_far.append((Compared(leading=one, rival=rival), trace))
+    return [one for one, _ in found_so_far]
 
 
 def _answers(whole: ResidualProblem, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:

@@ -5,6 +5,7 @@ from math import exp
 
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import formatted
+from rigdesign.diagnosis.decision.rivals import credible_places
 from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, gap_in_words
@@ -75,7 +76,7 @@ def headline(outcome: Outcome) -> str:
         case "unknown_located":
             reason = found.decision.reason
             lead = "An effect is present; the data do not identify it"
-            return f"{lead}: {reason}. {_where(outcome)}".rstrip()
+            return f"{lead}: {reason}. {_located(outcome)}{_where(outcome)}".rstrip()
         case "within_noise":
             return (
                 "No missing effect is detectable in these data: the residual is within that of a healthy rig."
@@ -115,6 +116,20 @@ def _suspected(outcome: Outcome) -> str:
     gap = "" if outcome.gap is None else f" With it in the model the gap {gap_in_words(outcome.gap)}."
     reason = outcome.result.diagnosis.decision.reason
     return f"Suspected: {one.title}, {formatted(one.shown[0])}. {reason[:1].upper()}{reason[1:]}.{gap}"
+
+
+def _located(outcome: Outcome) -> str:
+    """The places of a cause in no catalogue in a sentence; empty where they are not known."""
+    places = _places(outcome)
+    return f"Located: {places}. " if places else ""
+
+
+def _places(outcome: Outcome) -> str:
+    """``power loss in a or power loss in b, growing with the speed``; empty where they are not known."""
+    found = [one.in_words.partition(", ") for one in credible_places(outcome.result.diagnosis)]
+    if len({law for _, _, law in found}) == 1:
+        return f"{' or '.join(cause for cause, _, _ in found)}, {found[0][2]}".rstrip(", ")
+    return " or ".join("".join(one) for one in found)
 
 
 def _where(outcome: Outcome) -> str:
@@ -273,6 +288,11 @@ def _first(outcome: Outcome) -> list[NextStep]:
                 text = f"{check} {outcome.suspected.title}{offered}"
                 return [NextStep(text=text, why="the data point at it and do not prove it")]
         case "unknown_located":
+            if places := _places(outcome):
+                text = f"inspect the rig for {places}"
+                return [
+                    NextStep(text=text, why="the data locate it, and no effect of the catalogue is there")
+                ]
             place = outcome.before[0].group if outcome.before else "the rig"
             return [NextStep(text=f"look at {place}", why="the residual is largest there")]
     return corrections

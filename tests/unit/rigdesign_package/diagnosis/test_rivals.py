@@ -1,12 +1,14 @@
 """What a further measurement has to tell apart where nothing in the catalogue explains the data."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.rivals import RIVALS, leading, mass_at, rivals
+from rigdesign.diagnosis.decision.rivals import RIVALS, compared, credible_places, leading, mass_at
 from rigdesign.diagnosis.decision.unmodelled_words import place_of
+from rigdesign.diagnosis.decision.workflow import Diagnosis
 from tests.builders.diagnosis import FRETTING, story
 
 GEAR = "unknown: heat at body:gear"
@@ -19,37 +21,77 @@ def test_laws_of_heat_at_one_place_are_one_thing() -> None:
     assert place_of(order) == order and place_of("mesh_loss:test") == "mesh_loss:test"
 
 
-def test_a_cause_in_no_catalogue_leads_and_is_told_from_the_catalogue_and_from_other_places() -> None:
+def test_one_place_that_holds_all_the_mass_has_nothing_to_be_told_from() -> None:
     found = story("fretting").diagnosis
     assert found.decision.verdict == "unknown_located"
-    things = [one.thing for one in leading(found)]
-    assert things[0] == GEAR and len(things) == len(set(things)) == RIVALS
-    assert "mesh_loss:test" in things and "unknown: heat at film:bearing" in things
-    assert mass_at(found, GEAR) == pytest.approx(1.0, abs=1e-3)
+    (only,) = leading(found)
+    assert only.things == (GEAR,) and only.unnamed and credible_places(found) == [only]
+    assert mass_at(found, [GEAR]) == pytest.approx(1.0, abs=1e-3)
+
+
+def divided(found: Diagnosis, masses: Mapping[str, float]) -> Diagnosis:
+    """The posterior of single explanations, given by hand."""
+    first, *others = found.evaluations
+    nothing = dict.fromkeys(first.weights.masses, 0.0)
+    weights = replace(first.weights, masses=nothing | masses)
+    return replace(found, evaluations=(replace(first, weights=weights), *others))
+
+
+def test_places_that_hold_the_mass_together_are_in_question_and_the_catalogue_beside_them() -> None:
+    found = story("fretting").diagnosis
+    bearing = "unknown: heat at film:bearing"
+    two = divided(found, {f"{GEAR} constant": 0.5, f"{GEAR} ~n": 0.2, f"{bearing} constant": 0.3})
+    assert (
+        [one.things for one in leading(two)]
+        == [(GEAR,), (bearing,)]
+        == [one.things for one in credible_places(two)]
+    )
+    assert leading(two)[0].name == f"{GEAR} constant"
+    beside = divided(found, {f"{GEAR} constant": 0.6, "mesh_loss:test": 0.4})
+    assert [one.name for one in leading(beside)] == [f"{GEAR} constant", "mesh_loss:test"]
+    assert credible_places(beside) == []
+    refused = divided(found, {"mesh_loss:test": 1.0})
+    assert (
+        len(leading(refused)) == RIVALS and not leading(refused)[0].unnamed and credible_places(refused) == []
+    )
 
 
 def test_where_an_effect_is_named_no_cause_without_a_name_is_in_question() -> None:
-    things = [one.thing for one in leading(story("mesh loss").diagnosis)]
-    assert things[0] == "mesh_loss:test"
-    assert not any(thing.startswith("unknown: ") for thing in things)
+    found = story("mesh loss").diagnosis
+    assert leading(found)[0].name == "mesh_loss:test" and not any(one.unnamed for one in leading(found))
+    assert credible_places(found) == []
 
 
 def test_a_cause_without_a_name_is_foreseen_at_the_size_that_fits() -> None:
     result = story("fretting")
     found = result.diagnosis
-    first = leading(found)[0]
-    (rival,) = rivals(result.problem.residuals.rows(found.kept), found, [first])
-    power = [result.problem.residuals.features[row].channel == "P" for row in found.kept]
-    spread = abs(float(rival.slopes[power][0, 0]) * rival.deviations[0])
-    assert rival.answer[power] == pytest.approx(np.full(sum(power), FRETTING), abs=3.0 * spread)
+    kept = result.problem.residuals.rows(found.kept)
+    (one,) = compared(kept, found, leading(found), found.covariance.matrix)
+    power = [feature.channel == "P" for feature in kept.features]
+    spread = abs(float(one.rival.slopes[power][0, 0]) * one.rival.deviations[0])
+    assert one.rival.answer[power] == pytest.approx(np.full(sum(power), FRETTING), abs=3.0 * spread)
     assert 0.0 < spread < 0.1 * FRETTING
 
 
-def test_it_ends_in_heat_located_at_its_place_alone() -> None:
+def test_places_with_one_trace_are_one_rival() -> None:
+    result = story("fretting")
+    found = result.diagnosis
+    kept = result.problem.residuals.rows(found.kept)
+    (one,) = leading(found)
+    there = replace(one, things=("unknown: heat at rim:gear",))
+    alike = compared(kept, found, [one, there], found.covariance.matrix)
+    assert [entry.leading.things for entry in alike] == [(GEAR, "unknown: heat at rim:gear")]
+    bearing = divided(found, {"unknown: heat at film:bearing ~n": 1.0})
+    apart = compared(kept, found, [one, *leading(bearing)], found.covariance.matrix)
+    assert len(apart) == 2
+
+
+def test_it_ends_in_its_place_or_in_its_name() -> None:
     found = story("fretting").diagnosis
-    gear, *others = leading(found)
-    assert gear.ends(found) and not any(one.ends(found) for one in others)
-    named = replace(found, decision=replace(found.decision, verdict="named", named=("mesh_loss:test",)))
+    (gear,) = leading(found)
+    assert gear.ends(found)
+    assert not gear.ends(divided(found, {f"{GEAR} ~n": 0.9, "mesh_loss:test": 0.1}))
+    named = replace(found, named=("mesh_loss:test",), decision=replace(found.decision, verdict="named"))
     assert not gear.ends(named)
-    loss = next(one for one in others if one.thing == "mesh_loss:test")
-    assert loss.ends(replace(named, named=("mesh_loss:test",)))
+    (loss, *_) = leading(divided(found, {"mesh_loss:test": 1.0}))
+    assert loss.ends(named) and not loss.ends(found)
