@@ -97,7 +97,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.simulation.SEED": Source("-", "definition", "any number"),
     "statistics.next_measurement.MOST_TOGETHER": Source("-", "choice", _REPORT),
     "statistics.detectability.REACHES": Source("-", "choice", _DEVELOPMENT),
-    "decision.claims.SIZES": Source("-", "choice", _NUMERICS),
+    "decision.traces.SIZES": Source("-", "choice", _NUMERICS),
     "decision.constants.NARROWED": Source(
         "-", "choice", "a constant known hardly better stays as the case has it"
     ),

@@ -49,24 +49,20 @@ def main(rigs: Sequence[str]) -> None:
 def spread_of(rig: str) -> dict[str, float]:
     """Effect -> relative error of the answer of the model that data are held against, over the other models.
 
-    The model of the four that data are held against is no other one: it answers alike to the last digit.
+    The nearest of the four models is the one that data are held against, and no other one.
     """
     with tempfile.TemporaryDirectory() as scratch:
         make_set(rig, {"kind": "none", "sensors": "rich", "plan": 9}, 1, Path(scratch) / "set")
         data = features(load_measurement(set_of(Path(scratch) / "set"), case_of(rig)))
-    own, *others = (answers(rig, data, model) for model in (MEASURED_AGAINST, *MODELS))
+    own, *models = (answers(rig, data, model) for model in (MEASURED_AGAINST, *MODELS))
     shown = np.array([not one.order or one.order not in mesh_orders(case_of(rig)) for one in data.features])
     noise = np.where(shown, data.noise, np.inf)
     series = series_numbers(data.features)
     found = {}
     for name, answer in own.items():
-        others_of = [other[name] for other in others if name in other]
-        squares = [
-            apart(answer, other, noise, series) ** 2
-            for other in others_of
-            if not np.array_equal(answer, other)
-        ]
-        found[name] = float(np.sqrt(np.mean(squares))) if squares else 0.0
+        errors = sorted(apart(answer, model[name], noise, series) for model in models if name in model)
+        squares = np.square(errors[1:])
+        found[name] = float(np.sqrt(np.mean(squares))) if len(squares) else 0.0
     return found
 
 

@@ -14,6 +14,7 @@ from rigdesign.diagnosis.decision.groups import (
 )
 from rigdesign.diagnosis.decision.posterior import Posterior, gain_of
 from rigdesign.diagnosis.decision.verdict import Candidates, Decision, Thresholds, WhitenedSquare
+from rigdesign.diagnosis.residual.unmodelled_cause import ORDER_CAUSE
 from rigdesign.diagnosis.statistics.evidence import Evidence
 
 UNNAMED = frozenset({"unmodelled", "local"})
@@ -47,6 +48,7 @@ def decide(
             verdict="unknown_located",
             named=(),
             reason="a cause outside the catalogue explains the data better than any effect of the catalogue",
+            outside=True,
         )
     candidates = candidates.without(
         sensor for sensor in candidates.sensors if gain_of({sensor}, evidence) < BY_ITSELF * best.gain
@@ -81,14 +83,14 @@ def decide(
 def _named(
     named: tuple[str, ...], evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
 ) -> Decision:
-    """Names, of which one that changes the power circuit stands with all that it cannot be told from."""
-    reason = f"{named[0]} is part of every probable explanation"
-    circuit = [part for part in named if part in candidates.circuit]
-    group = changes_of_the_circuit(circuit[0], evidence, candidates, thresholds) if circuit else ()
+    """Names; a single one that changes the power circuit stands with all that it cannot be told from."""
+    only = named[0] if len(named) == 1 and named[0] in candidates.circuit else ""
+    group = changes_of_the_circuit(only, evidence, candidates, thresholds) if only else ()
     if len(group) < 2:
+        reason = f"{named[0]} is part of every probable explanation"
         return Decision(verdict="named", named=named, reason=reason)
     if len(group) > thresholds.one_trace:
-        reason = f"{len(group)} changes of the power circuit explain the data about as well as {circuit[0]}"
+        reason = f"{len(group)} changes of the power circuit explain the data about as well as {only}"
         return Decision(verdict="unknown_located", named=(), reason=reason)
     return Decision(
         verdict="alias_group",
@@ -100,14 +102,17 @@ def _named(
 def _credible(
     one: Evidence, evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
 ) -> bool:
-    """Of the catalogue alone; an error of a sensor, or an unmodelled order, by itself or as a small rest, not to mend
-    what something else leaves.
+    """Of the catalogue alone; an error of a sensor by itself or with a small share, not to mend what something else
+    leaves.
 
-    What the model answers wrongly to a change of the circuit stays at an order of the meshes.
+    What the model answers wrongly to a change of the circuit stays as an order of no known source: with a small share
+    it does not make the change a cause outside the catalogue.
     """
     parts = frozenset(one.hypothesis.parts)
     known = parts & candidates.effects
-    if not known or (parts - known and not known <= candidates.circuit):
+    unnamed = parts - known
+    answered_wrongly = known <= candidates.circuit and all(part.startswith(ORDER_CAUSE) for part in unnamed)
+    if not known or (unnamed and not answered_wrongly):
         return False
     others = known - candidates.sensors
     if len(parts) == 1 or others == parts:

@@ -60,6 +60,8 @@ class Evaluation:
     """
 
     evidence: tuple[Evidence, ...]
+    contradicted: tuple[Evidence, ...]
+    """Single explanations that the other domain contradicts, not in the evidence."""
     weights: Posterior
     decision: Decision
     detectability: tuple[Detectability, ...]
@@ -113,7 +115,10 @@ def evaluate(
     singles = _with_model_error(
         contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.unmodelled)]
     )
-    singles = [one for one in _without_copies(singles) if not criteria.contradicted(one)]
+    singles = _without_copies(singles)
+    against = [criteria.contradicted(one) for one in singles]
+    contradicted = [one for one, spoken in zip(singles, against, strict=True) if spoken]
+    singles = [one for one, spoken in zip(singles, against, strict=True) if not spoken]
     pairs = [
         one for one in _with_model_error(contest, _pairs(space, singles)) if not criteria.contradicted(one)
     ]
@@ -141,6 +146,7 @@ def evaluate(
     decision = _without(decision, refused)
     return Evaluation(
         evidence=tuple(evidence),
+        contradicted=tuple(contradicted),
         weights=weights,
         decision=_undivided(decision, earlier, criteria.thresholds),
         detectability=tuple(table),

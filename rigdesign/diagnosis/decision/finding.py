@@ -2,7 +2,8 @@
 
 Heat hardly knows what the rig does at an order, and no temperature tells a tooth. An effect that either domain names is
 named whatever the other one leaves, and two effects of different domains do not compete. Within a domain the numbers of
-a model known well decide; orders of the meshes are asked where those name nothing, and cannot veto.
+a model known well decide; orders of the meshes are asked where those name nothing. They overrule a name in one case:
+where they show a changed power circuit, through which what healthy teeth excite looks like other teeth.
 """
 
 from collections.abc import Sequence
@@ -10,7 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from rigdesign.base.errors import RigdesignError
-from rigdesign.diagnosis.decision.claims import Claim
+from rigdesign.diagnosis.decision.claims import Claim, Refusal, refusals
 from rigdesign.diagnosis.decision.evaluate import Evaluation
 from rigdesign.diagnosis.decision.kept_numbers import SURE, WORDS, Numbers
 from rigdesign.diagnosis.decision.posterior import mass_of_any
@@ -93,18 +94,20 @@ def _severity(finding: Finding) -> int:
 
 
 def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
-    """By the first tier that names something; else what may be suspected.
+    """By the first tier that names something which the next one does not overrule; else what may be suspected.
 
     A suspect that leaves no more than the model may answer wrongly is held against the points held out like a name.
     """
     looks = []
+    overruled: tuple[Refusal, ...] = ()
     for tier, further in zip_longest(tiers, tiers[1:]):
         look = numbers.look(tier)
         claimed = numbers.claim(look, look.first.decision, look.found)
-        if claimed.decision.verdict in SURE and not (
-            further and _passed_on(numbers.look(further), claimed.decision.named)
-        ):
-            return Finding(looks=(look,), claimed=claimed)
+        if claimed.decision.verdict in SURE:
+            if further is None or not _overruled(numbers.look(further), claimed.decision.named):
+                return Finding(looks=(look,), claimed=_after(overruled, claimed))
+            given = numbers.fitted(look, claimed)
+            overruled = refusals(given.found, given.fit, BY_CIRCUIT)
         looks.append((look, claimed))
     contradicted = any(claimed.contradicted for _, claimed in looks)
     for look, claimed in () if contradicted else looks:
@@ -116,17 +119,21 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
         if suspicion.accounts_for_all:
             held = numbers.claim(look, suspicion.as_named, [suspicion.evidence])
             if held.decision.verdict in SURE:
-                return Finding(looks=(look,), claimed=held)
-        return Finding(looks=(look,), claimed=claimed, suspicion=suspicion)
+                return Finding(looks=(look,), claimed=_after(overruled, held))
+        return Finding(looks=(look,), claimed=_after(overruled, claimed), suspicion=suspicion)
     look, claimed = looks[-1]
-    return Finding(looks=(look,), claimed=claimed)
+    return Finding(looks=(look,), claimed=_after(overruled, claimed))
 
 
-def _passed_on(look: Look, named: Sequence[str]) -> bool:
-    """Whether the orders of the meshes show another circuit, and no longer what is named.
+def _after(overruled: tuple[Refusal, ...], claimed: Claim) -> Claim:
+    return replace(claimed, refused=(*overruled, *claimed.refused))
 
-    A changed circuit passes on otherwise what the healthy teeth excite, which alone looks like other teeth.
-    """
+
+BY_CIRCUIT = "the orders of the meshes show a change of the power circuit instead"
+
+
+def _overruled(look: Look, named: Sequence[str]) -> bool:
+    """Whether the orders of the meshes show a changed circuit, and what is named no longer."""
     circuit = look.criteria.circuit - set(named)
     masses = [mass_of_any(look.first.evidence, look.first.weights, parts) for parts in (circuit, named)]
     return masses[0] >= look.criteria.thresholds.named and masses[1] < NO_LONGER

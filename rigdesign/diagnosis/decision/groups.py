@@ -48,7 +48,10 @@ def changes_of_the_circuit(
 ) -> tuple[str, ...]:
     """Changes of the power circuit that explain, alone, as much as a named one does, to the share that no answer of the
     model is more exact than; itself first, the others by what they explain."""
-    least = (1.0 - thresholds.share_loop) * gain_of({name}, evidence)
+    own = gain_of({name}, evidence)
+    if own <= 0.0:
+        return (name,)
+    least = (1.0 - thresholds.share_loop) * own
     gains = {part: gain_of({part}, evidence) for part in (candidates.circuit & candidates.open) - {name}}
     others = sorted((part for part in gains if gains[part] >= least), key=lambda part: (-gains[part], part))
     return (name, *others)

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from rigdesign.diagnosis.decision.claims import Claim, Traces, claim, withdrawn
+from rigdesign.diagnosis.decision.claims import Claim, claim, withdrawn
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.evaluate import Explanations
 from rigdesign.diagnosis.decision.other_domain import OtherDomain
@@ -14,6 +14,7 @@ from rigdesign.diagnosis.decision.problem import Problem, Tier, of_tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.decision.search import Look, explanations_of, fitted, search
 from rigdesign.diagnosis.decision.suspicion import agreement_in
+from rigdesign.diagnosis.decision.traces import Traces
 from rigdesign.diagnosis.decision.verdict import Decision
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.covariance import Whitened
@@ -64,20 +65,23 @@ class Numbers:
     points: tuple[str, ...]
     calibration: Calibration
     rerun: Rerun | None
+    _looks: dict[Tier, Look] = field(default_factory=dict, repr=False)
     _proofs: dict[Tier, Proof] = field(default_factory=dict, repr=False)
     _spaces: dict[Tier, tuple[ResidualProblem, Whitened]] = field(default_factory=dict, repr=False)
     _explanations: dict[Tier, Explanations] = field(default_factory=dict, repr=False)
 
     def look(self, tier: Tier) -> Look:
-        """The search over the numbers of a tier at the points that are not held out."""
-        return search(
-            self.problem,
-            *self._seen(tier),
-            self._explained(tier),
-            self.calibration,
-            tier,
-            self._heat_beside(tier),
-        )
+        """The search over the numbers of a tier at the points that are not held out; made once."""
+        if tier not in self._looks:
+            self._looks[tier] = search(
+                self.problem,
+                *self._seen(tier),
+                self._explained(tier),
+                self.calibration,
+                tier,
+                self._heat_beside(tier),
+            )
+        return self._looks[tier]
 
     def proof(self, tier: Tier) -> Proof:
         """What names of a tier are held against; made once."""
@@ -142,8 +146,12 @@ class Numbers:
 
     def traces(self, look: Look) -> Traces:
         """What single effects leave in the numbers of a look."""
+        first = look.first
         return Traces(
-            space=look.space, explanations=look.first.evidence, assembly=_assemblies(look.residuals)
+            space=look.space,
+            explanations=first.evidence,
+            contradicted=first.contradicted,
+            assembly=_assemblies(look.residuals),
         )
 
     @property

@@ -5,7 +5,7 @@ bracing that drifts with the oil in the mean torques. The model may answer wrong
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -40,6 +40,10 @@ class OtherDomain:
             own={one.name: one for one in own.single},
             there={one.name: one for one in there.single},
         )
+
+    def seen_from(self, own: Explanations) -> "OtherDomain":
+        """The same beside a space with some causes in the model, in which unmodelled ones have other lengths."""
+        return replace(self, own={one.name: one for one in own.single})
 
     def contradicts(self, one: Evidence) -> bool:
         """Whether the residual there grows by more than what is seen, whatever the factor on the answer."""

@@ -10,6 +10,7 @@ from scipy.linalg import solve_triangular
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.decision import UNNAMED
 from rigdesign.diagnosis.decision.required import RequiredCause, required_causes
+from rigdesign.diagnosis.decision.traces import NAMED
 from rigdesign.diagnosis.decision.unmodelled_words import in_words, place_of
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
@@ -30,7 +31,6 @@ MOST_BEYOND = 3.0
 
 LOCATED = 0.95
 """Posterior mass that the places of a cause in no catalogue have to hold together."""
-NAMEABLE = frozenset({"physical", "sensor"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +51,7 @@ class Leading:
     @property
     def unnamed(self) -> bool:
         """Whether no catalogue has it."""
-        return self.evidence.hypothesis.family not in NAMEABLE
+        return self.evidence.hypothesis.family not in NAMED
 
     @property
     def in_words(self) -> str:
@@ -93,7 +93,7 @@ def leading(found: Diagnosis) -> list[Leading]:
     masses, group = found.evaluations[0].weights.inclusion, found.decision.named
     best = {
         one.hypothesis.parts[0]: Leading(things=one.hypothesis.parts, evidence=one)
-        for one in reversed(_singles(found, NAMEABLE))
+        for one in reversed(_singles(found, NAMED))
     }
     ordered = sorted(best.items(), key=lambda item: (item[0] not in group, -masses.get(item[0], 0.0)))
     return [one for _, one in ordered][:RIVALS]
@@ -110,7 +110,7 @@ def _singles(found: Diagnosis, families: Collection[str]) -> list[Evidence]:
 def _credible(found: Diagnosis, least: float) -> list[Leading]:
     """As many of the likeliest as hold a posterior mass together."""
     weights = found.evaluations[0].weights
-    singles = sorted(_singles(found, NAMEABLE | UNNAMED), key=lambda one: weights.masses[one.hypothesis.name])
+    singles = sorted(_singles(found, NAMED | UNNAMED), key=lambda one: weights.masses[one.hypothesis.name])
     best = {_stands_for(one.hypothesis): one for one in singles}
     masses = {thing: mass_at(found, [thing]) for thing in best}
     chosen: list[Leading] = []
@@ -125,7 +125,7 @@ def _credible(found: Diagnosis, least: float) -> list[Leading]:
 
 def credible_places(found: Diagnosis) -> list[Leading]:
     """The places of a cause in no catalogue, the likeliest first; none where they do not hold `LOCATED` together."""
-    if found.decision.verdict != "unknown_located":
+    if not found.decision.outside:
         return []
     places = _credible(found, LOCATED)
     held = mass_at(found, [thing for one in places for thing in one.things])

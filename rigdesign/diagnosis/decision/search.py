@@ -13,7 +13,7 @@ from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.residual.signature import Signature
-from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN, unmodelled_causes
+from rigdesign.diagnosis.residual.unmodelled_cause import ORDER_CAUSE, UNKNOWN, unmodelled_causes
 from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Whitened
@@ -69,9 +69,7 @@ def search(
         one_oil=losses_of_oils(residuals, explanations),
         signature=signature,
     )
-    if other is not None:
-        criteria = replace(criteria, contradicted=other.contradicts)
-    evaluations = [evaluate(space, explanations, criteria)]
+    evaluations = [evaluate(space, explanations, _beside(criteria, other, explanations))]
     found: list[Evidence] = []
     while evaluations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
         new = _best_of(evaluations[-1])
@@ -88,7 +86,8 @@ def search(
         )
         earlier = Earlier(look=evaluations[0], named=frozenset(claimed))
         explained = max(one.gain for one in found)
-        evaluations.append(evaluate(after, left, criteria, explained=explained, earlier=earlier))
+        beside = _beside(criteria, other, rest)
+        evaluations.append(evaluate(after, left, beside, explained=explained, earlier=earlier))
     return Look(
         tier=tier,
         residuals=residuals,
@@ -98,6 +97,11 @@ def search(
         evaluations=tuple(evaluations),
         found=tuple(found),
     )
+
+
+def _beside(criteria: Criteria, other: OtherDomain | None, own: Explanations) -> Criteria:
+    """The criteria with what the other domain says against explanations."""
+    return criteria if other is None else replace(criteria, contradicted=other.seen_from(own).contradicts)
 
 
 def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tier: Tier) -> frozenset[str]:
@@ -121,10 +125,6 @@ def losses_of_oils(residuals: ResidualProblem, explanations: Explanations) -> di
         start = f"{UNKNOWN}heat at oil:{oil} "
         found |= {one.name: losses for one in explanations.unmodelled if one.name.startswith(start)}
     return found
-
-
-ORDER_CAUSE = f"{UNKNOWN}order "
-"""How the name of an unmodelled cause of an order begins."""
 
 
 def explanations_of(residuals: ResidualProblem, space: Whitened, *, rivals: bool = True) -> Explanations:

@@ -18,12 +18,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rigdesign.diagnosis.decision.agreement import Agreement
-from rigdesign.diagnosis.decision.claims import Traces, too_little
+from rigdesign.diagnosis.decision.claims import too_little
 from rigdesign.diagnosis.decision.decision import UNNAMED
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.posterior import mass_of_any
 from rigdesign.diagnosis.decision.proof import Proof
 from rigdesign.diagnosis.decision.search import Look, fitted
+from rigdesign.diagnosis.decision.traces import Traces
 from rigdesign.diagnosis.decision.verdict import Decision
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import SEEN

@@ -47,9 +47,14 @@ def in_words(cause: str) -> str:
 
 
 def place_of(cause: str) -> str:
-    """Heat at a place, whatever its law and whether the motor pays for it; other causes as they are."""
-    if found := _HEAT.match(cause.removeprefix(UNKNOWN)):
+    """Where a cause is, whatever its law: heat whether the motor pays for it or not, an order of a channel."""
+    bare = cause.removeprefix(UNKNOWN)
+    if found := _HEAT.match(bare):
         return f"{UNKNOWN}heat at {found[2]}:{found[3]}"
+    if found := _NEAR.match(bare):
+        return f"{UNKNOWN}heat near {found[1]}"
+    if found := _ORDER.match(bare):
+        return f"{UNKNOWN}order {found[1]} of {found[2]}"
     return cause
 
 

@@ -57,7 +57,8 @@ class Decision:
 
     named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
         whichever of the group is present; as_well : members of a further group, which one of is present as well
-    elsewhere : what the numbers of the other domain say beyond a healthy rig, in words
+    elsewhere : what the numbers of the other domain say beyond a healthy rig, in words; outside : whether a cause in no
+        catalogue explains the data, and better than the catalogue does
     """
 
     verdict: Verdict
@@ -66,6 +67,7 @@ class Decision:
     apart: tuple[str, ...] = ()
     as_well: tuple[str, ...] = ()
     elsewhere: str = ""
+    outside: bool = False
 
 
 RARE = 3.0
@@ -105,7 +107,7 @@ class Candidates:
     effects : of catalogue and sensors, not the unmodelled causes
     detectable : effect -> whether these sensors could see it within its bounds at all
     orders : causes that show in orders and natural frequencies, unmodelled ones among them
-    sensors : those that are errors of sensors and settings; circuit : those that change what passes through it
+    sensors : those that are errors of sensors and settings; circuit : those that change the power circuit
     """
 
     effects: frozenset[str]

@@ -179,9 +179,11 @@ def _wrong_data(
     weights = posterior(evidence, {**everything.members, "input": len(data)})
     if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
         return None
-    best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
+    wrong = [one for one in evidence if one.hypothesis.family == "input"]
+    best = max(wrong, key=lambda one: weights.masses[one.hypothesis.name])
     return Evaluation(
         evidence=tuple(evidence),
+        contradicted=(),
         weights=weights,
         decision=Decision(
             verdict="input_error_suspected",

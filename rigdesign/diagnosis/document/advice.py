@@ -224,13 +224,16 @@ def _decides(outcome: Outcome) -> str:
     """What the cheapest set tells apart, or what simulating it ended in."""
     if outcome.ahead.causes:
         return f"tells apart {_causes(outcome)}"
-    named = [name for name, right in outcome.ahead.verified if right]
+    named = [outcome.names.title(name) for name, right in outcome.ahead.verified if right]
     count = len(outcome.ahead.verified)
+    names = "names" if outcome.verdict != "unknown_located" else "names or locates"
     if count == 1:
-        shown = "names it" if named else "does not name it yet"
+        shown = f"{names} it" if named else "does not name it yet"
         return f"tells the suspect from a healthy rig; in a simulation with it true the diagnosis {shown}"
     shown = (
-        "names it every time" if len(named) == count else f"names {' and '.join(named) or 'none'} of {count}"
+        f"{names} it every time"
+        if len(named) == count
+        else f"{names} {' and '.join(named) or 'none'} of {count}"
     )
     return f"decides; in a simulation with each of them true the diagnosis {shown}"
 
@@ -291,7 +294,7 @@ def _first(outcome: Outcome) -> list[NextStep]:
             if places := _places(outcome):
                 text = f"inspect the rig for {places}"
                 return [
-                    NextStep(text=text, why="the data locate it, and no effect of the catalogue is there")
+                    NextStep(text=text, why="the data locate it, and no effect of the catalogue explains it")
                 ]
             place = outcome.before[0].group if outcome.before else "the rig"
             return [NextStep(text=f"look at {place}", why="the residual is largest there")]

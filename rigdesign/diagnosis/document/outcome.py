@@ -212,7 +212,8 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
 
 def _best(result: Result, names: Names, name: str) -> Evidence | None:
     """The best explanation by this effect alone, of those with an entry."""
-    for one in result.diagnosis.evaluations[0].evidence:
+    first = result.diagnosis.evaluations[0]
+    for one in (*first.evidence, *first.contradicted):
         alone = one.hypothesis.parts == (name,) or one.hypothesis.name == name
         if alone and names.entry(one.hypothesis.name) is not None:
             return one

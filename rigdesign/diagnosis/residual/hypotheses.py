@@ -15,8 +15,8 @@ from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Feature
 
 SIGMAS = 12.0
-"""Bound of an unmodelled cause in its own standard deviations: its prior reaches as far as that of an effect that is
-seen well."""
+"""Half width of the prior of an unmodelled cause in its own standard deviations: as far as that of an effect that is
+seen well; its size has no bound."""
 
 INVISIBLE = 1e-3
 """Whitened length of an effect at its bound below which these sensors do not answer to it at all."""
@@ -107,7 +107,7 @@ def sensor(covariance: Covariance | None, errors: Sequence[SensorError]) -> list
 
 
 def without_a_name(covariance: Covariance, causes: Iterable[UnmodelledCause]) -> list[Hypothesis]:
-    """Unmodelled causes; each may be as large as something that is seen at `SIGMAS`."""
+    """Unmodelled causes, of any size; the prior of the size is as wide as that of something seen at `SIGMAS`."""
     causes = list(causes)
     found = []
     columns = whitened(covariance, [columns.T for _, _, columns in causes])

@@ -3,10 +3,10 @@
 A cause in the model never leaves exactly the trace it leaves on the rig. An explanation with the answer a is
 therefore evaluated under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
 answer, the same over all points and along the speed, and orders by themselves
-(`rigdesign.diagnosis.statistics.model_error`). Natural frequencies that lie close together may share a change otherwise
-(`rigdesign.diagnosis.statistics.close_modes`). With no cause there is no answer and no such error, so that a small
-effect is not hidden by it; rivals that differ by less than the model error are separated by their priors
-alone.
+(`rigdesign.diagnosis.statistics.model_error`). Natural frequencies that lie close together may divide a change
+between them in another way (`rigdesign.diagnosis.statistics.close_modes`). With no cause there is no answer and no
+such error, so that a small effect is not hidden by it; rivals that differ by less than the model error are separated
+by their priors alone.
 
 C^-1 is known; E is of low rank, so that all products follow from block sums (Woodbury's identity).
 """
@@ -24,7 +24,14 @@ from rigdesign.diagnosis.residual.healthy import TREND
 from rigdesign.diagnosis.statistics.close_modes import CloseModes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.evidence import Evidence, deviations_of, inverse_of, mixed, release_of
+from rigdesign.diagnosis.statistics.evidence import (
+    Evidence,
+    best_within,
+    deviations_of,
+    inverse_of,
+    mixed,
+    release_of,
+)
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.model_error import ModelError
 from rigdesign.prediction.model import Feature
@@ -166,8 +173,9 @@ class Contest:
             return one
         base = one.answer - one.columns @ np.array(one.coordinates)
         products = _Products.of(self, one, base)
-        found = [self._at(products, one, base, share) for share in SHARES]
-        log_bayes = float(logsumexp([other.log_bayes for other in found])) - float(np.log(len(SHARES)))
+        shares = SHARES if products.alone.any() else SHARES[:1]
+        found = [self._at(products, one, base, share) for share in shares]
+        log_bayes = float(logsumexp([other.log_bayes for other in found])) - float(np.log(len(shares)))
         return replace(max(found, key=lambda other: other.log_bayes), log_bayes=log_bayes)
 
     def _at(self, products: "_Products", one: Evidence, base: Array, share: float) -> Evidence:
@@ -177,7 +185,7 @@ class Contest:
         gram, load, square = inner[:count, :count], inner[:count, count], float(inner[count, count])
         fall = self.space.chi_square - square
         inverse = inverse_of(gram)
-        best = np.clip(inverse @ load, *one.hypothesis.bounds)
+        best = best_within(gram, load, inverse @ load, one.hypothesis.bounds)
         gain = fall + float(2.0 * best @ load - best @ gram @ best)
         return replace(
             one,
@@ -193,8 +201,8 @@ class Contest:
 class _Products:
     """What products of columns (m, m) under C - U U' + s E s E' are made of, for any share s of the errors by number.
 
-    own : products with what is released; errors : of the errors of the answer; across : of both, of either with the
-    columns, and of these with each other
+    own, errors, columns : products with themselves: of what is released, of the errors of the answer, of the columns
+    reached : of the errors with what is released; through_own, through_errors : of these with the columns
     alone : (k,) whether an error is of a number by itself
     """
 

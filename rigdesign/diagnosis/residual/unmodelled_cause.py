@@ -21,6 +21,9 @@ from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 UNKNOWN = "unknown: "
 """How the name of an explanation begins that is in no catalogue."""
 
+ORDER_CAUSE = f"{UNKNOWN}order "
+"""How the name of an unmodelled cause of an order begins."""
+
 UnmodelledCause = tuple[Literal["unmodelled", "local"], str, Array]
 """Family, name, (n, k) columns: k = 2 for an order with free phase. Local is what one thermometer alone may feel."""
 

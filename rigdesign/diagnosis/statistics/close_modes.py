@@ -1,6 +1,7 @@
-"""How natural frequencies that lie close together share a change.
+"""How natural frequencies that lie close together divide a change between them.
 
-A model has its modes mixed a little otherwise than the rig: two of them are turned into each other by an angle t with
+The modes of a model are mixed a little differently from those of the rig: two of them are turned into each other by an
+angle t with
 tan 2t = 2 d / g, where g is the relative distance of their frequencies and d how far the model has each of them off.
 Changes a of the eigenvalues by one local stiffness or inertia then become
 
@@ -22,7 +23,7 @@ class CloseModes:
     """Pairs of natural frequencies among n numbers.
 
     first, second : (m,) places of the two; frequencies : (n,) of the model, zero for other numbers
-    mixed, turned : (m,) sine of twice the angle, and its squared sine
+    mixed, turned : (m,) sine of twice the angle t, and squared sine of t
     """
 
     first: NDArray[np.intp]
@@ -33,18 +34,22 @@ class CloseModes:
 
     @classmethod
     def of(cls, frequencies: Array, off: float) -> "CloseModes":
-        """All pairs of natural frequencies (n,), zero for other numbers, of which the model has each off by a share."""
+        """All pairs of natural frequencies (n,), zero for other numbers, of which the model has each off by a share.
+
+        Two readings of one mode, whose frequency the model has once, are no pair.
+        """
         places = np.flatnonzero(frequencies)
         one, other = np.triu_indices(len(places), 1)
-        first, second = places[one], places[other]
+        apart = frequencies[places[one]] != frequencies[places[other]]
+        first, second = places[one[apart]], places[other[apart]]
         distance = np.abs(np.log(frequencies[first] / frequencies[second]))
-        double = np.arctan2(2.0 * off, distance)
+        twice_the_angle = np.arctan2(2.0 * off, distance)
         return cls(
             first=first,
             second=second,
             frequencies=frequencies,
-            mixed=np.sin(double),
-            turned=np.sin(0.5 * double) ** 2,
+            mixed=np.sin(twice_the_angle),
+            turned=np.sin(0.5 * twice_the_angle) ** 2,
         )
 
     def errors(self, answer: Array) -> tuple[Array, Array]:

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Release, Whitened
@@ -193,7 +194,7 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
     before = float(release.product(residual, residual))
     shift = 0.5 * (space.chi_square - before)
     inverse = inverse_of(gram)
-    best = np.clip(inverse @ load, *hypothesis.bounds)
+    best = best_within(gram, load, inverse @ load, hypothesis.bounds)
     gain = space.chi_square - before + float(2.0 * best @ load - best @ gram @ best)
     return Evidence(
         hypothesis=hypothesis,
@@ -239,6 +240,20 @@ def inverse_of(gram: Array) -> Array:
     return np.asarray(scale[:, None] * ((vectors * inverse) @ vectors.T) * scale)
 
 
+def best_within(gram: Array, load: Array, free: Array, bounds: tuple[Array, Array]) -> Array:
+    """Sizes (k,) of the least square within their bounds; ``free``: those without any.
+
+    Where one of them ends at its bound the others make up for it.
+    """
+    if np.all((free >= bounds[0]) & (free <= bounds[1])):
+        return free
+    values, vectors = np.linalg.eigh(gram)
+    seen = values > ALIKE * max(float(values[-1]), 0.0)
+    root = np.sqrt(values[seen])
+    found = lsq_linear(root[:, None] * vectors[:, seen].T, vectors[:, seen].T @ load / root, bounds, "bvls")
+    return np.asarray(found.x)
+
+
 def deviations_of(inverse: Array) -> tuple[float, ...]:
     """Standard deviations of coordinates from their covariance (k, k)."""
     return tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0)))
@@ -271,7 +286,7 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
         np.concatenate([one.hypothesis.bounds[1] for one in (first, second)]),
     )
     inverse = inverse_of(gram)
-    best = np.clip(inverse @ load, *limits)
+    best = best_within(gram, load, inverse @ load, limits)
     after = left - columns @ best
     gain = space.chi_square - float(release.product(after, after))
     hypothesis = Hypothesis(

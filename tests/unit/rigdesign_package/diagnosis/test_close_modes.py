@@ -1,4 +1,4 @@
-"""Natural frequencies that lie close share a change otherwise on the rig than in the model."""
+"""Natural frequencies that lie close divide a change differently on the rig and in the model."""
 
 import numpy as np
 import pytest
@@ -37,3 +37,8 @@ def test_modes_far_apart_keep_their_changes():
     assert near.errors(answer)[0] > 1.0
     assert far.errors(answer)[0] < 0.05
     assert len(CloseModes.of(np.zeros(4), 0.01).errors(np.ones(4))[0]) == 0
+
+
+def test_two_readings_of_one_mode_are_no_pair():
+    modes = CloseModes.of(np.array([100.0, 100.0, 103.0]), 0.01)
+    assert list(zip(modes.first.tolist(), modes.second.tolist(), strict=True)) == [(0, 2), (1, 2)]

@@ -1,9 +1,12 @@
 """From evaluated explanations to a verdict: what a name needs besides its posterior."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rigdesign.diagnosis.decision.decision import decide
+from rigdesign.diagnosis.decision.groups import changes_of_the_circuit
 from rigdesign.diagnosis.decision.posterior import posterior
 from rigdesign.diagnosis.decision.verdict import Candidates, Thresholds, WhitenedSquare
 from rigdesign.diagnosis.statistics.evidence import Evidence
@@ -182,3 +185,33 @@ def test_an_order_beside_a_change_of_the_circuit_may_be_what_the_model_answers_w
     assert verdict(evidence("mesh", 400.0), pair, circuit=CIRCUIT).named == named
     leak = evidence("leak + unknown: order 32", rest, "pair")
     assert verdict(evidence("leak", 400.0), leak).named == ()
+
+
+@pytest.mark.parametrize(
+    "rest", ["unknown: heat at oil:test.gear_oil ~n", "unknown: conductance film:test.a"]
+)
+def test_heat_beside_a_change_of_the_circuit_is_a_cause_of_its_own(rest):
+    pair = evidence(f"mesh + {rest}", 480.0, "pair")
+    assert verdict(evidence("mesh", 400.0), pair, circuit=CIRCUIT).named == ()
+
+
+def test_a_change_of_the_circuit_named_beside_something_else_loses_nothing():
+    both = evidence("ripple + mesh", 450.0, "pair")
+    alone = [evidence("mesh", 400.0), evidence("coupling", 395.0), evidence("spline", 390.0)]
+    found = verdict(both, *alone, circuit=CIRCUIT)
+    assert (found.verdict, set(found.named)) == ("named", {"ripple", "mesh"})
+
+
+def test_what_explains_nothing_has_no_group():
+    none = replace(evidence("mesh", 400.0), gain=-3.0)
+    assert changes_of_the_circuit("mesh", [none], open_to(CIRCUIT), USUAL) == ("mesh",)
+
+
+def test_only_a_cause_outside_the_catalogue_is_said_to_be_outside():
+    assert verdict(evidence("unknown: a", 60.0, "unmodelled"), evidence("leak", 20.0)).outside
+    assert not verdict(evidence("leak", 60.0)).outside
+    assert not verdict(evidence("leak", 60.0), left=400.0).outside
+
+
+def open_to(names):
+    return Candidates(effects=frozenset(names), circuit=frozenset(names), detectable={})

@@ -288,5 +288,42 @@ def test_a_size_beyond_its_bounds_has_the_evidence_of_the_largest_one():
     assert one.coordinates == (1.0,)
     assert one.log_bayes == pytest.approx(0.5 * one.gain)
     both = evaluate_pair(space, one, evaluate_hypothesis(space, other))
-    assert both.coordinates[0] == 1.0
-    assert both.log_bayes == pytest.approx(0.5 * both.gain) and both.gain < one.gain + 60.0
+    along = float(np.sign(column[0, 0]))
+    assert both.coordinates == pytest.approx((1.0, along))
+    assert both.log_bayes == pytest.approx(0.5 * both.gain)
+    assert both.gain == pytest.approx(one.gain + 2.0 * 49.0 * abs(column[0, 0]) - 1.0)
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.95, -0.95, 0.9999])
+def test_beside_a_size_at_its_bound_the_other_one_is_fitted_again(correlation):
+    """Of columns of length 40; both sizes are found by trying all of a grid of the second one."""
+    first = np.array([40.0, 0.0, 0.0])
+    second = 40.0 * np.array([correlation, np.sqrt(1.0 - correlation**2), 0.0])
+    residual = 1.6 * first + 0.1 * second + np.array([0.0, 0.0, 1.0])
+    space = Whitened.of(Covariance(base=np.eye(3), columns=(), amplitudes={}), residual)
+    one, other = (
+        evaluate_hypothesis(
+            space, Hypothesis(name=name, family="physical", parts=(name,), columns=column[:, None], half=1.0)
+        )
+        for name, column in (("a", first), ("b", second))
+    )
+    both = evaluate_pair(space, one, other)
+    tried = np.linspace(-1.0, 1.0, 4001)
+    left = ((residual[:, None] - first[:, None] - second[:, None] * tried) ** 2).sum(axis=0)
+    assert both.coordinates == pytest.approx((1.0, tried[int(np.argmin(left))]), abs=1e-3)
+    assert both.gain == pytest.approx(space.chi_square - float(left.min()), abs=1e-2)
+    assert both.gain >= max(one.gain, other.gain) - 1e-9
+
+
+def test_two_alike_do_not_cancel_at_their_bounds():
+    """Free sizes of 30 and -29 of two nearly equal columns."""
+    first = np.array([40.0, 0.0])
+    second = 40.0 * np.array([np.cos(0.001), np.sin(0.001)])
+    space = Whitened.of(Covariance(base=np.eye(2), columns=(), amplitudes={}), 30.0 * first - 29.0 * second)
+    one, other = (
+        evaluate_hypothesis(
+            space, Hypothesis(name=name, family="physical", parts=(name,), columns=column[:, None], half=1.0)
+        )
+        for name, column in (("a", first), ("b", second))
+    )
+    assert evaluate_pair(space, one, other).gain >= max(one.gain, other.gain) - 1e-9

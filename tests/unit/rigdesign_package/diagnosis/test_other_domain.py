@@ -61,3 +61,14 @@ def test_what_is_not_seen_there_is_not_held_against_it():
     assert not OtherDomain.of(space(np.zeros(COUNT)), own, faint).contradicts(one)
     nothing = Explanations(physical=[], sensor=[], unmodelled=[])
     assert not OtherDomain.of(space(np.zeros(COUNT)), own, nothing).contradicts(one)
+
+
+def test_beside_a_named_effect_columns_of_another_length_keep_their_size():
+    """A wider covariance shortens the columns of this domain; what they leave in the other one stays."""
+    there = Explanations(physical=[], sensor=[], unmodelled=[cause("heat", THERE, "unmodelled")])
+    first = Explanations(physical=[], sensor=[], unmodelled=[cause("heat", HERE, "unmodelled")])
+    later = Explanations(physical=[], sensor=[], unmodelled=[cause("heat", HERE, "unmodelled", 0.05)])
+    one = evaluate_hypothesis(space(10.0 * 0.05 * HERE[:, 0]), later.unmodelled[0])
+    other = OtherDomain.of(space(np.zeros(COUNT)), first, there)
+    assert not other.contradicts(one)
+    assert other.seen_from(later).contradicts(one)

@@ -9,6 +9,8 @@ import pytest
 from rigdesign.diagnosis.decision.rivals import RIVALS, compared, credible_places, leading, mass_at
 from rigdesign.diagnosis.decision.unmodelled_words import place_of
 from rigdesign.diagnosis.decision.workflow import Diagnosis
+from rigdesign.diagnosis.document.advice import headline, steps
+from rigdesign.diagnosis.document.outcome import outcome
 from tests.builders.diagnosis import FRETTING, story
 
 GEAR = "unknown: heat at body:gear"
@@ -17,8 +19,10 @@ GEAR = "unknown: heat at body:gear"
 def test_laws_of_heat_at_one_place_are_one_thing() -> None:
     assert place_of("unknown: heat unpaid at body:test.n2 ~n2") == "unknown: heat at body:test.n2"
     assert place_of("unknown: heat at body:test.n2 ~T n") == "unknown: heat at body:test.n2"
-    order = "unknown: order 1 of M_wheel ~T"
-    assert place_of(order) == order and place_of("mesh_loss:test") == "mesh_loss:test"
+    assert place_of("unknown: order 1 of M_wheel ~T") == "unknown: order 1 of M_wheel"
+    assert place_of("unknown: heat near TC05 ~T above ambient") == "unknown: heat near TC05"
+    link = "unknown: conductance contact:test.a|b"
+    assert place_of(link) == link and place_of("mesh_loss:test") == "mesh_loss:test"
 
 
 def test_one_place_that_holds_all_the_mass_has_nothing_to_be_told_from() -> None:
@@ -95,3 +99,17 @@ def test_it_ends_in_its_place_or_in_its_name() -> None:
     assert not gear.ends(named)
     (loss, *_) = leading(divided(found, {"mesh_loss:test": 1.0}))
     assert loss.ends(named) and not loss.ends(found)
+
+
+def test_what_fits_nothing_is_not_located() -> None:
+    """Whatever holds the posterior mass among explanations of which none fits."""
+    found = story("fretting").diagnosis
+    misfit = replace(found, decision=replace(found.decision, outside=False))
+    assert credible_places(misfit) == [] and len(leading(misfit)) > 1
+
+
+def test_the_page_says_where_it_is_and_what_to_inspect() -> None:
+    said = outcome(story("fretting"))
+    assert "Located: power loss in gear, the same at all operating points." in headline(said)
+    (first, *_) = steps(said)
+    assert first.text == "inspect the rig for power loss in gear, the same at all operating points"
