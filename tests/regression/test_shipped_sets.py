@@ -9,6 +9,7 @@ import json
 import pytest
 
 from rigdesign.case import load_case
+from rigdesign.diagnosis.decision.rivals import credible_places, leading
 from rigdesign.diagnosis.run import diagnose_measurement
 from tests.blind.metrics import canonical
 from tests.builders.paths import ROOT
@@ -34,6 +35,9 @@ WANTED = {
     ("uhcf_prototype", "set_3"): ("within_noise", set()),
     ("uhcf_prototype", "set_4"): ("unknown_located", set()),
     ("uhcf_prototype", "set_5"): ("input_error_suspected", {"swapped_points:P05,P08"}),
+    ("uhcf_prototype", "set_7"): ("within_noise", set()),
+    ("uhcf_prototype", "set_8"): ("unknown_located", set()),
+    ("uhcf_prototype", "set_9"): ("unknown_located", set()),
     ("uhcf_prototype", "set_6"): (
         "alias_group",
         {"bearing_loss:test", "oil_viscosity:test", "one_bearing_loss:test.wheel_front"},
@@ -66,6 +70,18 @@ def test_every_set_ends_as_it_should(rig, name):
     apart = APART.get((rig, name), set())
     assert set(found.decision.apart) == apart
     assert hidden <= names | apart if verdict == "alias_group" else names <= hidden
+
+
+def test_an_effect_outside_the_catalogue_is_located_once_the_measurement_that_decides_is_taken():
+    """Heat through the coupling into the pinion shaft; `set_9` has the thermometer that `set_8` asks for."""
+    case, folder = load_case(CASES / "uhcf_prototype"), CASES / "uhcf_prototype" / "measured"
+    before = diagnose_measurement(case, folder / "set_8")
+    assert len(leading(before.diagnosis)) == 3
+    together = before.next_measurements.together
+    assert together is not None
+    assert together.titles == ("a sensor: temperature test.bearing_bore_test_pinion_rear",)
+    (place,) = credible_places(diagnosed("uhcf_prototype", "set_9"))
+    assert place.things == ("unknown: heat at film:test.pinion_rear",)
 
 
 @pytest.mark.parametrize("name", ["set_1", "set_6"])

@@ -291,6 +291,26 @@ def test_a_set_of_every_kind_is_made_and_loads(kind, blunt, tmp_path):
     assert kind != "single" or measured.baseline is not None
 
 
+def test_a_thermometer_that_is_added_leaves_the_others_as_they_were(blunt, tmp_path):
+    """Against a baseline that was read without it: the same rig with the same errors of its sensors."""
+    spec = {"kind": "none", "sensors": "sparse", "plan": 9, "rig_seed": 5}
+    place = "test.bearing_bore_test_pinion_rear"
+    make_set("fzg", spec, 11, tmp_path / "before")
+    make_set("fzg", spec, 12, tmp_path / "without", tmp_path / "before")
+    make_set("fzg", {**spec, "more": [place]}, 12, tmp_path / "with", tmp_path / "before")
+    case = load_case(ROOT / "cases" / "fzg")
+    without, more = (load_measurement(tmp_path / name, case) for name in ("without", "with"))
+    (added,) = set(more.channels) - set(without.channels)
+    assert more.channels[added].channel.place == place
+    assert more.baseline == without.baseline == tmp_path / "before"
+    tables = [(tmp_path / name / "data.csv").read_text().splitlines() for name in ("without", "with")]
+    first, second = (dict(zip(rows[0].split(","), rows[2].split(","), strict=True)) for rows in tables)
+    walls = [name for name in first if name.startswith("TC")]
+    assert walls
+    for name in walls:
+        assert float(second[name]) == pytest.approx(float(first[name]), abs=6.0 * 0.1)
+
+
 DRAWN = {
     "uhcf_prototype": "b9ef77f6b14eb5af",
     "loop_1to1": "1507af575b5a58b8",

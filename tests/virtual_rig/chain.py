@@ -71,6 +71,13 @@ def draw_chain(
     )
 
 
+def put_on(chain: Chain, sensors: Sequence[Sensor], rng: np.random.Generator) -> None:
+    """Sensors that are added to a measuring system, with errors of their own."""
+    for sensor in sensors:
+        chain.offset[sensor.name] = sensor.offset * rng.standard_normal()
+        chain.scale[sensor.name] = sensor.scale * rng.standard_normal()
+
+
 def put_in(chain: Chain, effects: Sequence[Mapping[str, Any]]) -> None:
     """Hidden errors of sensors and inputs, by their names in the catalogue; others pass through."""
     for effect in effects:

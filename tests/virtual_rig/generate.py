@@ -23,10 +23,19 @@ import numpy as np
 if __package__ in (None, ""):
     sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.virtual_rig.chain import draw_chain, put_in, repeats, systematic, write_set
+from tests.virtual_rig.chain import draw_chain, put_in, put_on, repeats, systematic, write_set
 from tests.virtual_rig.detect import Detector, detector
 from tests.virtual_rig.generate_effects import CHAIN_KINDS, draw_effect, draw_input_error, reach, sized
-from tests.virtual_rig.generate_plans import PLANS, RIGS, Sensor, TruePoint, plan_points, sensors, streams
+from tests.virtual_rig.generate_plans import (
+    PLANS,
+    RIGS,
+    Sensor,
+    TruePoint,
+    plan_points,
+    sensors,
+    streams,
+    thermometer,
+)
 from tests.virtual_rig.generate_truth import Constants, RigTruth, draw_rig, has_loop, readings, true_points
 from tests.virtual_rig.loop_changes import CHANGES
 
@@ -44,7 +53,8 @@ def make_set(
     spec : ``kind``, or ``effects`` given (entries with effect, size, phase, order, tooth; no search for a size); and as
         wished ``sensors`` (rich, usual, sparse), ``plan`` (9, 12, 15), ``baseline`` (bool: the healthy rig is
         measured, too, in ``folder/set_0``, the set itself in ``folder/set_1``), ``shift``, ``reindex`` (teeth by
-        which the test wheel is put on further in every second point), ``noise`` (factor), ``title``
+        which the test wheel is put on further in every second point), ``noise`` (factor), ``title``, ``more`` (places
+        of thermometers inside in addition, which a baseline made before does not have)
     folder : of the set (with ``baseline`` in ``spec`` of both)
     baseline : folder of a healthy set made by an earlier call, of the same rig when both have the same ``rig_seed``,
         ``sensors`` and ``plan`` in ``spec``
@@ -68,6 +78,10 @@ def make_set(
     again = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
     job = _Set(rig, own, constants, points, Detectors.of(rig, level, plan), paired, rng)
     effects = job.effects(spec)
+    if more := [thermometer(place) for place in spec.get("more", ())]:
+        put_on(chain, more, np.random.default_rng([seed, *map(len, spec["more"])]))
+        own = [*own, *more]
+        job = _Set(rig, own, constants, points, job.detectors, paired, rng)
     entry: dict[str, Any] = {
         "rig": rig, "kind": spec.get("kind", "given"), "effects": [_shown(e) for e in effects], "sensors": level,
         "plan": plan, "baseline": paired, "shift": shift, "reindex": int(spec.get("reindex", 0)), "seed": seed,
@@ -115,7 +129,8 @@ class _Set:
         rng: np.random.Generator,
     ) -> None:
         self.rig, self.own, self.constants, self.points = rig, own, constants, points
-        self.detector, self.declared, self.paired, self.rng = found.measured, found.declared, paired, rng
+        self.detectors, self.detector, self.declared = found, found.measured, found.declared
+        self.paired, self.rng = paired, rng
         self.rows = readings(own, points)
         self._base: np.ndarray | None = None
         self._known: dict[str, np.ndarray] = {}

@@ -251,6 +251,11 @@ def loop_orders(rig: str, level: Sensors) -> tuple[float, ...]:
     return tuple(whole) if rig == "fzg" else tuple(round(order, 6) for order in whole)
 
 
+def thermometer(place: str) -> Sensor:
+    """One inside a gearbox, in addition to those that a rig has: ``test.bearing_bore_test_pinion_rear``."""
+    return _inside(f"T_{place.partition('.')[2]}", place)
+
+
 def _inside(name: str, place: str) -> Sensor:
     return Sensor(name=name, quantity="temperature", place=place, noise=0.3, offset=0.8, scale=0.01)
 

@@ -230,11 +230,8 @@ def _decides(outcome: Outcome) -> str:
     if count == 1:
         shown = f"{names} it" if named else "does not name it yet"
         return f"tells the suspect from a healthy rig; in a simulation with it true the diagnosis {shown}"
-    shown = (
-        f"{names} it every time"
-        if len(named) == count
-        else f"{names} {' and '.join(named) or 'none'} of {count}"
-    )
+    which = f" ({'; '.join(named)})" if named else ""
+    shown = f"{names} it every time" if len(named) == count else f"{names} {len(named)} of {count}{which}"
     return f"decides; in a simulation with each of them true the diagnosis {shown}"
 
 
