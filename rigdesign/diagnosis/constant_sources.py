@@ -199,6 +199,7 @@ SOURCES: Mapping[str, Source] = {
     "statistics.detectability.ALIAS": Source("-", "choice", _TRIALS),
     "statistics.evidence.SPREADS": Source("of the bound", "choice", _TRIALS),
     "statistics.evidence.GRID": Source("-", "choice", _NUMERICS),
+    "statistics.evidence.ROUNDS": Source("-", "choice", _NUMERICS),
     "statistics.evidence.ALIKE": Source("-", "choice", _NUMERICS),
     "statistics.heldout.LEAST_POINTS": Source("-", "choice", _JUDGEMENT),
     "statistics.heldout.SHARE": Source("-", "choice", _JUDGEMENT),

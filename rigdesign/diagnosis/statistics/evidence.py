@@ -240,6 +240,10 @@ def inverse_of(gram: Array) -> Array:
     return np.asarray(scale[:, None] * ((vectors * inverse) @ vectors.T) * scale)
 
 
+ROUNDS = 50
+"""Of the search for the sizes that end at a bound; there are four at most."""
+
+
 def best_within(gram: Array, load: Array, free: Array, bounds: tuple[Array, Array]) -> Array:
     """Sizes (k,) of the least square within their bounds; ``free``: those without any.
 
@@ -250,8 +254,10 @@ def best_within(gram: Array, load: Array, free: Array, bounds: tuple[Array, Arra
     values, vectors = np.linalg.eigh(gram)
     seen = values > ALIKE * max(float(values[-1]), 0.0)
     root = np.sqrt(values[seen])
-    found = lsq_linear(root[:, None] * vectors[:, seen].T, vectors[:, seen].T @ load / root, bounds, "bvls")
-    return np.asarray(found.x)
+    columns, target = root[:, None] * vectors[:, seen].T, vectors[:, seen].T @ load / root
+    low, high = bounds
+    high = np.maximum(high, np.nextafter(low, np.inf))  # a size without room stays
+    return np.asarray(lsq_linear(columns, target, (low, high), method="bvls", max_iter=ROUNDS).x)
 
 
 def deviations_of(inverse: Array) -> tuple[float, ...]:
