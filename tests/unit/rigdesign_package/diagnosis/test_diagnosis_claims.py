@@ -411,3 +411,14 @@ def test_the_full_run_is_that_of_a_check():
     found = full(before.features[::-1], {"mesh_loss:test": (log(1.5),)})
     assert found[::-1] == pytest.approx(after.values - before.values, rel=1e-9)
     assert found.min() > 0.0
+
+
+def test_what_the_other_domain_contradicts_has_a_trace_and_is_no_rival():
+    """With a name in the model it may be contradicted no longer, and be the next name."""
+    columns = [[1.0, 0.99, 0.0], [0.0, 0.1, 1.0], [0.0, 0.0, 0.0]]
+    known = traces(columns)
+    first, second, _ = known.explanations
+    assert [name for name, _ in known.like("a", (9.0,))] == ["b"]
+    left = replace(known, explanations=[first], contradicted=[second])
+    assert left.like("a", (9.0,)) == []
+    assert left.of("b") is second and left.like("b", (9.0,)) != []
