@@ -302,8 +302,8 @@ def _shuffle(file: Path, rng: np.random.Generator, settings: int) -> None:
 def _sizes(row: Row, result: Any) -> None:
     """Whether the interval of a single effect that was named rightly holds its true size.
 
-    An interval that ends on a bound of the catalogue is told as open there: the size may be larger. Errors of sensors
-    and settings count by name: what is hidden is what they read, what is found is how to put it right.
+    An interval that ends on a bound of the catalogue is reported as open there: the size may be larger. Errors of
+    sensors and settings count by name: what is hidden is what they read, what is found is how to put it right.
     """
     found = result.diagnosis
     if row["kind"] == "input" or found.fit is None or len(row["effects"]) != 1 or len(found.found) != 1:

@@ -83,7 +83,7 @@ def decide(
 def _named(
     named: tuple[str, ...], evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
 ) -> Decision:
-    """Names; a single one that changes the power circuit stands with all that it cannot be told from."""
+    """Names; a single one that changes the power circuit stands with all that it is not distinguished from."""
     only = named[0] if len(named) == 1 and named[0] in candidates.circuit else ""
     group = changes_of_the_circuit(only, evidence, candidates, thresholds) if only else ()
     if len(group) < 2:

@@ -94,14 +94,13 @@ def next_measurements(
     whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
     mean, matrix = problem.healthy(whole, calibration)
     causes = needed(whole, measured) if insufficient else []
-    ends = compared(whole, found, explanations, matrix)
-    if len(causes) < 2 and len(ends) < least:
-        return NOTHING_NEXT
     if len(causes) > 1:
         rivals, ends = causes, []
     else:
-        rivals, causes = [one.rival for one in ends], []
-        rivals += [nothing(whole)] if alone else []
+        causes, ends = [], compared(whole, found, explanations, matrix)
+        if len(ends) < least:
+            return NOTHING_NEXT
+        rivals = [*(one.rival for one in ends), *([nothing(whole)] if alone else [])]
     foreseen = Foreseen.of(matrix, found.residual, rivals)
     offers = _offers(whole.features[measured:], whole.channels, offer)
     together = smallest_set(foreseen, offers)

@@ -28,14 +28,13 @@ RIVALS = 3
 MOST_BEYOND = 3.0
 """Size over its bound up to which a cause counts as a rival where the data are too few."""
 
-
 LOCATED = 0.95
 """Posterior mass that the places of a cause in no catalogue have to hold together."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Leading:
-    """An explanation that a measurement has to tell from others.
+    """An explanation that a measurement has to distinguish from others.
 
     things : an effect, an error, or the places of a cause in no catalogue, whatever its law; evidence : of the best one
     """
@@ -226,7 +225,7 @@ def _cosine(first: Array, second: Array) -> float:
 
 
 def nothing(whole: ResidualProblem) -> Rival:
-    """That no effect is present: what a single explanation is to be told from."""
+    """That no effect is present: what a single explanation is to be distinguished from."""
     return _at_one_size("none", np.zeros(len(whole.features)))
 
 

@@ -72,8 +72,8 @@ def _interpolation(coordinates: tuple[float, ...]) -> CubicSpline | PPoly:
 class Hypothesis:
     """One explanation of the residual.
 
-    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each; `mean` shifts the
-    residual itself for swaps and wrong units.
+    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each; `residual`
+    replaces it for swaps and wrong units.
     """
 
     name: str
