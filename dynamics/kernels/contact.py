@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources d6830dd0
+# compiled from sources 3e943859
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -253,6 +253,15 @@ def contact_at(table: Array, c: int, stride: int, f: float) -> MeshContact:
         k_1 + f * (2.0 * k_2 + 3.0 * f * k_3),
         table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)),
         e_1 + f * (2.0 * e_2 + 3.0 * f * e_3),
+    )
+
+
+@inlined
+def curvatures_at(table: Array, c: int, stride: int, f: float) -> tuple[float, float]:
+    """Return the second derivatives of stiffness and gap over the fraction of a cell, as of `contact_at`."""
+    return (
+        2.0 * table[c + 2 * stride] + 6.0 * f * table[c + 3 * stride],
+        2.0 * table[c + 6 * stride] + 6.0 * f * table[c + 7 * stride],
     )
 
 

@@ -79,7 +79,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources d6830dd0
+# compiled from sources 3e943859
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -11,6 +11,7 @@ from dynamics.kernels.contact import (
     Flank,
     Pressing,
     contact_at,
+    curvatures_at,
     flank_powers,
     inlined,
     press_flank,
@@ -47,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources d6830dd0
+# compiled from sources 3e943859
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -68,39 +69,50 @@ class MeshStates(NamedTuple):
 def _path_slopes(
     table: Array, flank: Flank, law: Array, pressing: Pressing
 ) -> tuple[float, float, float, float]:
-    """Return (da_1/ds, da_2/ds, dP/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
+    """Return (da_1/ds, da_2/ds, dP/ds, elastic energy) of one flank at fixed reach, rate and speeds."""
     sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
     slope_1, slope_2, slope, energy = 0.0, 0.0, 0.0, 0.0
     f = flank.place
-    damp_time, per_depth = law[DAMP_TIME], law[PER_DEPTH]
+    damp_time, per_depth, derivative = law[DAMP_TIME], law[PER_DEPTH], law[DERIVATIVE]
     path_speed = law[CLOSING] * sign * law[R1] * omega_1
-    rotation = (1.0 - law[CLOSING]) * law[DERIVATIVE]
+    rotation = (1.0 - law[CLOSING]) * derivative
     mu_1, mu_2 = sign * law[MU_1], sign * law[MU_2]
+    slip_slope = (flank.omega_1 + flank.omega_2) * law[PER_REVERSAL]
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
         s, k, stiffness_slope, gap, gap_slope = contact_at(table, first + i, stride, f)
+        bend, curve = curvatures_at(table, first + i, stride, f)
         depth = reach - gap
         depth = depth if depth > 0.0 else 0.0
         k = k if depth > 0.0 else 0.0
         gap_slope *= flank.per_metre
-        stiffness_slope *= flank.per_metre
-        stiffness_slope *= law[DERIVATIVE]
+        curve *= flank.per_metre * flank.per_metre
+        stiffness_slope *= flank.per_metre * derivative
+        bend *= flank.per_metre * flank.per_metre * derivative
         rho_1, rho_2 = flank.roll_1 + s, flank.roll_2 - s
-        sliding = flank.omega_1 * rho_1 - flank.omega_2 * rho_2
-        direction = sliding_direction(sliding * law[PER_REVERSAL])
-        m_1 = 1.0 - gap_slope * law[DERIVATIVE] + mu_1 * direction * rho_1
+        ratio = (flank.omega_1 * rho_1 - flank.omega_2 * rho_2) * law[PER_REVERSAL]
+        direction = sliding_direction(ratio)
+        turning = 1.5 * (1.0 - ratio * ratio) * slip_slope if abs(ratio) < 1.0 else 0.0
+        m_1 = 1.0 - gap_slope * derivative + mu_1 * direction * rho_1
         m_2 = 1.0 + mu_2 * direction * rho_2
+        m_1_s = mu_1 * (direction + turning * rho_1) - curve * derivative
+        m_2_s = mu_2 * (turning * rho_2 - direction)
         closing = damp_time * (rate - gap_slope * path_speed)
         grown = depth * per_depth
         grown_slope = per_depth if grown < 1.0 else 0.0
         grown = grown if grown < 1.0 else 1.0
         pressed = depth + grown * closing
+        touches = depth > 0.0 and pressed > 0.0
+        force = k * pressed if touches else 0.0
         df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
-        df = df if (depth > 0.0 and pressed > 0.0) else 0.0
+        df -= k * grown * damp_time * curve * path_speed
+        df = df if touches else 0.0
         energy += 0.5 * k * depth * depth
         de = stiffness_slope * depth - k * gap_slope
-        slope_1 += df * m_1 + (df - de) * rotation * gap_slope - stiffness_slope * depth * gap_slope
-        slope_2 += df * m_2
+        damped, damped_s = force - k * depth, df - de
+        bent_s = (0.5 * bend * depth - stiffness_slope * gap_slope) * depth
+        slope_1 += df * m_1 + force * m_1_s + rotation * (damped_s * gap_slope + damped * curve) + bent_s
+        slope_2 += df * m_2 + force * m_2_s
         slope += de
     return slope_1, slope_2, slope, energy
 

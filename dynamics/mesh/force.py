@@ -38,7 +38,7 @@ class MeshReaction(NamedTuple):
     """d torque_1 / d (d approach / dt) [N s]."""
     torque_2_per_rate: Array
     torque_1_per_angle: Array
-    """d torque_1 / d theta_1 at fixed approach and rate, friction levers held [N m/rad]."""
+    """d torque_1 / d theta_1 at fixed approach, rate and speeds [N m/rad]."""
     torque_2_per_angle: Array
     friction_power: Array
     """Power lost by sliding, >= 0 [W]."""

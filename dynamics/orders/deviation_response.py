@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
-LEAST_HARMONICS, MARGIN = 12, 8
+LEAST_HARMONICS, MARGIN = 20, 8
 """Mesh harmonics on both sides at least, and beyond the highest order asked for."""
 CYCLE_STEPS = 30
 """Steps at most that correct for what the contacts do beyond first order."""

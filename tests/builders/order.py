@@ -23,8 +23,6 @@ from rigdesign.prediction.model import Channel, PredictionModel
 from rigdesign.prediction.operating import modelled_rig
 from rigdesign.rig.model import Rig
 
-DRAGS = {"test.pinion": 0.4, "reference.wheel": 0.6}
-
 
 @cache
 def shipped(name: str) -> Case:
@@ -49,7 +47,12 @@ class BracedCase:
 
     @property
     def arguments(self):
-        return self.rig, LoadedCircuit(self.point, self.models, DRAGS, self.setting, self.system)
+        return self.rig, LoadedCircuit(self.point, self.models, self.drags, self.setting, self.system)
+
+    @property
+    def drags(self) -> dict[str, float]:
+        first, *_, last = self.rig.case.gearboxes
+        return {f"{first}.pinion": 0.4, f"{last}.wheel": 0.6}
 
 
 def settled(

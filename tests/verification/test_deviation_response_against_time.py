@@ -7,6 +7,9 @@ the complex amplitude, relative to it, the larger of both couplings; those of th
 import numpy as np
 import pytest
 
+from rigdesign.prediction.exact_orders import exact_motion
+from rigdesign.prediction.model import Channel
+from rigdesign.prediction.order_motion import CycleMotion
 from rigdesign.prediction.orders import PointOrders
 from tests.builders.order import changed, channels, settled
 from tests.builders.order_errors import order_errors
@@ -67,6 +70,19 @@ def test_orders_of_both_gears_of_a_hunting_pair(rpm):
             alone, together = single[gear].read(channel), both.read(channel)
             for order in own:
                 assert together[order] == pytest.approx(alone[order], rel=2e-2)
+
+
+@pytest.mark.parametrize(("rpm", "torque"), [(702.0, 183.0), (1002.0, 371.0)])
+def test_slow_rig_turns_as_a_whole_as_over_the_whole_cycle(rpm, torque):
+    """Run-out of a wheel takes 1e-4 of the torque in the mesh from the common rotation, which inertia alone holds; near
+    the resonance of the meshes what the angle does to the tangents is as much."""
+    turned = Channel(name="turn", quantity="angle", place="test_pinion", orders=(2.0 / 3.0,))
+    values = {"gearboxes__slave__gears__wheel__flank__run_out": "5 um"}
+    case = settled(changed("fzg", **values), rpm, torque)
+    fast, exact = PointOrders(*case.arguments, steps=1), PointOrders(*case.arguments)
+    exact.__dict__["solved"] = CycleMotion(exact_motion(case.rig, exact.loop, exact.laws, march=False))
+    (known,), (found,) = exact.read(turned).values(), fast.read(turned).values()
+    assert found == pytest.approx(known, rel=0.03)
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from rigdesign.prediction.model import Channel
 from rigdesign.prediction.operating import like
 from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
-from tests.builders.order import DRAGS, changed, channels, settled
+from tests.builders.order import changed, channels, settled
 from tests.builders.order_errors import order_errors
 
 PINION = "gearboxes__test__gears__pinion__flank__"
@@ -60,7 +60,7 @@ def test_mesh_orders_are_those_that_the_check_reads_of_its_periodic_response(nam
     response = respond(rig, loop)
     laws = periodic_laws(rig, shifted_laws(rig, loop.models, loop.bracing))
     rows = twist_rows_of(rig, loop.point.speed)
-    torques = section_torques(loop.system, laws, rows).over_period(response, DRAGS)
+    torques = section_torques(loop.system, laws, rows).over_period(response, case.drags)
     teeth = laws[0].teeth_1
     read = found(case, (0.0, float(teeth), 2.0 * teeth))
     for i, section in enumerate(rows.sections):

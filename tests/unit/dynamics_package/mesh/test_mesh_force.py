@@ -67,16 +67,25 @@ def test_tangents_are_the_derivatives_of_the_torques(law: MeshLaw, acts_on: Damp
     np.testing.assert_allclose(slope, here.torque_1_per_rate, atol=2e-3 * np.abs(slope).max())
 
 
-@pytest.mark.parametrize(("damping", "w_2"), [(0.0, 0.0), (1e3, -0.3)])
-def test_angle_tangent_without_friction(damping: float, w_2: float) -> None:
-    law = spur_law(**HELIX, damping=damping)
+@RATES
+@pytest.mark.parametrize("friction", [0.0, 0.05])
+@pytest.mark.parametrize(("damping", "off"), [(0.0, 0.0), (1e3, -0.3)])
+def test_angle_tangent_holds_approach_rate_and_speeds(
+    friction: float, damping: float, off: float, acts_on: DampedRate
+) -> None:
+    """The curvature of gap and stiffness is a third of it where gears run together: what turns a loop as a whole."""
+    law = spur_law(**HELIX, damping=damping, friction=friction, damping_acts_on=acts_on)
+    w_1, w_2 = 100.0, 100.0 * BASE_RADIUS_1 / BASE_RADIUS_2 + off
     h = 1e-8
-    here = evaluate_mesh(law, THETA, APPROACH, 0.0, w_2)
-    high = evaluate_mesh(law, THETA + h, APPROACH, 0.0, w_2).torque_2
-    low = evaluate_mesh(law, THETA - h, APPROACH, 0.0, w_2).torque_2
-    slope = (high - low) / (2 * h)
-    difference = np.abs(slope - here.torque_2_per_angle)
-    assert np.mean(difference > 1e-3 * np.abs(slope).max()) < 0.02
+    here, high, low = (evaluate_mesh(law, THETA + d, APPROACH, w_1, w_2) for d in (0.0, h, -h))
+    for torque in ("torque_1", "torque_2"):
+        slope = (getattr(high, torque) - getattr(low, torque)) / (2.0 * h)
+        difference = np.abs(slope - getattr(here, f"{torque}_per_angle"))
+        assert np.mean(difference > 1e-3 * np.abs(slope).max()) < 0.02
+    both = [one.torque_1 / BASE_RADIUS_1 + one.torque_2 / BASE_RADIUS_2 for one in (high, low)]
+    slope = (both[0] - both[1]) / (2.0 * h)
+    tangent = here.torque_1_per_angle / BASE_RADIUS_1 + here.torque_2_per_angle / BASE_RADIUS_2
+    assert np.mean(np.abs(slope - tangent) > 5e-3 * np.abs(slope).max()) < 0.02
 
 
 @RATES

@@ -95,10 +95,10 @@ def test_tangents_are_the_derivatives_of_the_torques(law: MeshLaw) -> None:
     states = THETA, approaches(law)
     here = evaluate_mesh(law, *states, *speeds)
     x, turn, rate = 1e-10, 1e-8, 1e-6
-    # how the slope of the gap turns is left out of torque_1_per_angle
     for gear, step, moved, name in (
         ("torque_1", x, (0.0, x, 0.0), "approach"),
         ("torque_2", x, (0.0, x, 0.0), "approach"),
+        ("torque_1", turn, (turn, 0.0, 0.0), "angle"),
         ("torque_2", turn, (turn, 0.0, 0.0), "angle"),
         ("torque_1", rate, (0.0, 0.0, -rate / BASE_RADIUS_2), "rate"),
         ("torque_2", rate, (0.0, 0.0, -rate / BASE_RADIUS_2), "rate"),

@@ -13,7 +13,7 @@ from rigdesign.prediction.model import Channel
 from rigdesign.prediction.order_motion import ideal_response
 from rigdesign.prediction.orders import PointOrders, shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
-from tests.builders.order import DRAGS, changed, channels, settled
+from tests.builders.order import changed, channels, settled
 
 PINION = "gearboxes__test__gears__pinion__flank__"
 WHEEL = "gearboxes__test__gears__wheel__flank__"
@@ -194,7 +194,6 @@ def test_rig_at_rest():
             value(quantity, place)
     with pytest.raises(UsageError, match="not measured on the rig at rest"):
         value("torque", "wheel_side")
-    assert set(DRAGS) <= set(rig.system.drag_loads)
 
 
 def test_loads_of_a_motion_are_its_fourier_series():
