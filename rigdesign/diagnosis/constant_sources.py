@@ -213,6 +213,7 @@ SOURCES: Mapping[str, Source] = {
     "statistics.outliers.LIMIT": Source("-", "choice", _JUDGEMENT),
     "statistics.outliers.MOST_REJECTED": Source("-", "choice", _JUDGEMENT),
     "statistics.reference_scale.AMBIENT": Source("K", "choice", "room temperature"),
-    "statistics.resonance.BLURRED": Source("-", "choice", _DEVELOPMENT),
+    "statistics.resonance.PLACED": Source("-", "fit", _HEALTHY),
+    "statistics.resonance.DAMPED": Source("-", "choice", "first modes of three rigs: 0.5 to 1 %"),
 }
 """Module and name, as ``decision.defaults.DRIFT`` -> source; a field or key of a constant may have its own entry."""

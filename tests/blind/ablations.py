@@ -7,7 +7,10 @@ Each takes one part away from the calibration that is frozen.
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
+from rigdesign.diagnosis import run
+from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision import claims, kept_numbers, search
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
@@ -26,6 +29,8 @@ MODEL = (
     "series_shaft",
 )
 """Amplitudes of what a model has wrong besides its constants."""
+LOCAL = frozenset({"one_bearing_loss", "one_bearing_oil", "one_bearing_joint", "leak_one_side", "draught"})
+"""Kinds of effects at one place of a gearbox."""
 STATED = ("sensor", "input")
 """Those that the measurement states."""
 
@@ -93,6 +98,18 @@ def no_groups(calibration: Calibration) -> Calibration:
     return replace(calibration, plain=plain, given_baseline=given)
 
 
+def no_local(calibration: Calibration) -> Calibration:
+    """No effects at one place of a gearbox in the catalogue."""
+    module: Any = run
+    whole = module.effects_of
+
+    def effects_of(*args: Any, **keywords: Any) -> tuple[Effect, ...]:
+        return tuple(effect for effect in whole(*args, **keywords) if effect.kind not in LOCAL)
+
+    module.effects_of = effects_of
+    return calibration
+
+
 def virtual_model(calibration: Calibration) -> Calibration:
     """A model alone that is as good as it is on virtual rigs, in place of the wide errors of real ones."""
     return replace(calibration, least_alone={})
@@ -115,6 +132,7 @@ ABLATIONS: dict[str, Callable[[Calibration], Calibration]] = {
     "no_domains": no_domains,
     "no_agreement": no_agreement,
     "no_groups": no_groups,
+    "no_local": no_local,
     "virtual_model": virtual_model,
 }
 """By the name they have on the command line."""

@@ -150,7 +150,7 @@ def signature_of(problem: Problem, residuals: ResidualProblem, calibration: Cali
 
     Without a baseline the residual of a healthy rig is as wide as that by itself.
     """
-    placed = calibration.amplitudes.frequency * residuals.steepness
+    placed = calibration.amplitudes.frequency * residuals.resonances.steepness
     share = np.hypot(placed, np.where(residuals.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
     own = ModelError.of(residuals.features, share, residuals.of_mesh, residuals.values)
     return Signature.of(

@@ -110,7 +110,7 @@ class Change:
             known=covariance + alone,
             shared=both + np.diag(own**2),
             slope=step * amplitudes_of(residuals.features, _by_speed(residuals)),
-            steep=step * residuals.steepness * amplitude,
+            steep=step * residuals.resonances.change(amplitude),
             amplitude=amplitude,
         )
 

@@ -29,7 +29,7 @@ from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.hypothesis import Curve
 from rigdesign.diagnosis.statistics.outliers import Outlier, reject
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
-from rigdesign.diagnosis.statistics.resonance import steepness
+from rigdesign.diagnosis.statistics.resonance import Resonances
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel, Feature
 
@@ -83,9 +83,34 @@ class ResidualProblem:
         return np.where(own, self.library.base, 0.0)
 
     @cached_property
-    def steepness(self) -> Array:
-        """(n,) of the orders (`rigdesign.diagnosis.statistics.resonance`)."""
-        return steepness(self.features, self.library.settings, self.library.modes)
+    def resonances(self) -> Resonances:
+        """That its orders lie near."""
+        quantities = [self.channels[feature.channel].quantity for feature in self.features]
+        return Resonances(
+            features=self.features,
+            settings=self.library.settings,
+            modes=self._modes,
+            turning=np.array([quantity == "angle" for quantity in quantities], dtype=bool),
+            teeth=self.teeth_a_turn,
+        )
+
+    @property
+    def _modes(self) -> Array:
+        """Natural frequencies [rad/s], those that were measured in place of the predicted ones."""
+        modes = self.library.modes.copy()
+        for number in np.flatnonzero(self.natural_frequencies) if modes.size else ():
+            predicted, read = 2.0 * np.pi * np.array([self.library.base[number], self.values[number]])
+            modes[np.argmin(np.abs(modes - predicted))] = read
+        return modes
+
+    @cached_property
+    def tooth_spread(self) -> Array:
+        """(n,) standard deviation that the healthy errors of the teeth give to the orders of shafts and sidebands."""
+        teeth = [column for column in self.columns() if column.kind == "tooth"]
+        spreads = np.array([column.spread * column.values for column in teeth]).reshape(
+            -1, len(self.features)
+        )
+        return np.where(self.of_mesh, 0.0, np.sqrt(np.sum(spreads**2, axis=0)))
 
     @property
     def residual(self) -> Array:
@@ -126,8 +151,13 @@ class ResidualProblem:
         return replace(self, level=np.array(level))
 
     def own_spread(self, amplitudes: Amplitudes) -> Array:
-        """(n,) standard deviation of what each number is off by itself, noise left out."""
-        return own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
+        """(n,) standard deviation of what each number is off by itself, noise left out.
+
+        Near a natural frequency, what the teeth do is off by as much as that makes of it.
+        """
+        own = own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
+        near = amplitudes.frequency * self.resonances.spread(amplitudes.tooth * self.tooth_spread)
+        return np.hypot(own, near)
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:
         """(n, n) covariance of noise, settings read and what each number is off by itself."""

@@ -1,29 +1,80 @@
-"""How steep orders are where they are read: near a natural frequency they follow what a per cent does to it.
+"""How orders follow the speed, or a natural frequency, where they are read near one.
 
-What excites an order passes through the circuit, H ~ 1 / (1 - f/f_i) near the natural frequency f_i; a relative change
-of the speed, or of f_i, changes it by 1 / |1 - f/f_i| times as much. Neither where the rig ran nor where the model has
-its natural frequencies is known better than to a per cent or so.
+What excites an order passes through the circuit, H ~ 1 / (1 - f/f_i + i zeta) near the natural frequency f_i; a
+relative change of the speed, or of f_i, changes it by 1 / |1 - f/f_i + i zeta| times as much. Where the model has its
+natural frequencies is known to a per cent or so, hence the root mean square over that error (a Voigt profile).
+
+Angles follow more: nothing but its inertia holds a loop that turns as a whole, by 1e-4 of the torque in the meshes, and
+that part of the torque comes from the sidebands of the meshes and follows their resonances.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import wofz
 
-from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.columns import Array, amplitudes_of
 from rigdesign.prediction.model import Feature, OperatingCondition
 
-BLURRED = 0.04
-"""Relative distance from a natural frequency below which an order gets no steeper: the model has it that far off."""
+PLACED = 0.017
+"""Relative standard error of a natural frequency of the model."""
+DAMPED = 0.005
+"""Damping ratio of the modes of a power circuit: couplings, films and seats."""
 
 
-def steepness(features: Sequence[Feature], settings: Sequence[OperatingCondition], modes: Array) -> Array:
-    """(n,) relative change of an order by the logarithm of its frequency; zero for means and all other numbers.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Resonances:
+    """Natural frequencies that orders of one set lie near.
 
-    modes : natural frequencies [rad/s]
+    features, settings : numbers and their points; modes : natural frequencies [rad/s]
+    turning : (n,) whether a number is of an angle, which sees the loop turn as a whole
+    teeth : that pass per turn of the reference gear
     """
-    speeds = {setting.name: setting.speed for setting in settings}
-    frequencies = np.array([one.order * speeds.get(one.setting, 0.0) for one in features])
-    if not modes.size:
-        return np.zeros(len(features))
-    away = np.abs(1.0 - frequencies[:, None] / modes).min(axis=1)
-    return np.where(frequencies > 0.0, 1.0 / np.hypot(away, BLURRED), 0.0)
+
+    features: Sequence[Feature]
+    settings: Sequence[OperatingCondition]
+    modes: Array
+    turning: NDArray[np.bool_]
+    teeth: int
+
+    @property
+    def steepness(self) -> Array:
+        """(n,) relative change of an order by the logarithm of its frequency; zero for means and all other numbers."""
+        return self._steepness_at(np.array([one.order for one in self.features], dtype=np.float64))
+
+    def change(self, amplitude: Array) -> Array:
+        """(n,) change of orders of an amplitude by the logarithm of the speed or of the natural frequencies.
+
+        Of an angle at a shaft order, what exceeds the least amplitude over the points is the loop as a whole: what
+        winds up its shafts is there at any speed.
+        """
+        order = np.array([one.order for one in self.features], dtype=np.float64)
+        whole = self.turning & (order > 0.0) & (order < 0.5 * self.teeth)
+        beside = np.maximum(self._steepness_at(self.teeth - order), self._steepness_at(self.teeth + order))
+        common = np.where(whole, amplitude - self._least(amplitude), 0.0)
+        return np.asarray(np.hypot(self.steepness * amplitude, beside * common))
+
+    def spread(self, spread: Array) -> Array:
+        """(n,) the same of real and imaginary parts that are known by their standard deviation alone."""
+        return self.change(amplitudes_of(self.features, spread) / np.sqrt(2.0))
+
+    def _least(self, amplitude: Array) -> Array:
+        """(n,) least amplitude over the points of each channel and order; points without a reading do not count."""
+        least: dict[tuple[str, float], float] = {}
+        keys = [(one.channel, one.order) for one in self.features]
+        for key, value in zip(keys, amplitude.tolist(), strict=True):
+            if value > 0.0:
+                least[key] = min(value, least.get(key, value))
+        return np.array([least.get(key, 0.0) for key in keys])
+
+    def _steepness_at(self, orders: Array) -> Array:
+        """(n,) of these orders at the points of the numbers; zero where no order is read."""
+        speeds = {setting.name: setting.speed for setting in self.settings}
+        read = np.array([speeds.get(one.setting, 0.0) if one.order else 0.0 for one in self.features])
+        if not self.modes.size:
+            return np.zeros(len(read))
+        away = np.abs(1.0 - (orders * read)[:, None] / self.modes).min(axis=1)
+        profile = wofz((away + 1j * DAMPED) / (PLACED * np.sqrt(2.0))).real
+        return np.where(read > 0.0, np.sqrt(np.sqrt(0.5 * np.pi) / (PLACED * DAMPED) * profile), 0.0)

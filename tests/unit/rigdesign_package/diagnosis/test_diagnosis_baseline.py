@@ -11,8 +11,7 @@ from rigdesign.diagnosis.residual.calibration import calibrate_drift
 from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
-from rigdesign.diagnosis.statistics.resonance import steepness
-from rigdesign.prediction.model import Feature, OperatingCondition
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 from tests.builders.diagnosis import story
 
 STEP = 0.01
@@ -54,7 +53,7 @@ def test_orders_follow_the_speed_as_natural_frequencies_near_them_make_them(pair
     residuals, baseline = pair
     more = more_by(pair, replace(STILL, shaft=0.3, mesh=2.0, amplitude=0.05))
     read = dict(zip(baseline.features, baseline.values, strict=True))
-    steep = steepness(residuals.features, residuals.library.settings, residuals.library.modes)
+    steep = residuals.resonances.steepness
     kinds = set()
     for feature, near, variance in zip(residuals.features, steep, np.diag(more), strict=True):
         mesh = feature.order in residuals.mesh_orders
@@ -64,6 +63,20 @@ def test_orders_follow_the_speed_as_natural_frequencies_near_them_make_them(pair
         assert variance == pytest.approx((follows**2 + alone**2) * amplitude(feature, read) ** 2, abs=1e-12)
     assert kinds == {(False, False), (True, False), (True, True)}
     assert more == pytest.approx(np.diag(np.diag(more)), abs=1e-12)
+
+
+def test_orders_lie_near_the_natural_frequencies_that_were_read(pair):
+    plain = pair[0]
+    channel = Channel(name="f_2", quantity="natural_frequency", place="2")
+    read = replace(
+        plain,
+        features=(*plain.features, Feature("f_2", "")),
+        values=np.append(plain.values, 840.0),
+        library=replace(plain.library, base=np.append(plain.library.base, 900.0)),
+        channels={**plain.channels, "f_2": channel},
+    )
+    assert plain.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 900.0]))
+    assert read.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 840.0]))
 
 
 def test_orders_follow_the_speed_by_a_share_of_what_the_model_says(pair):
