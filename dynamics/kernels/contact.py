@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

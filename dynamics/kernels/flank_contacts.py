@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -147,7 +147,7 @@ def list_on_path(
             dk = cells[c, 1] + f * (2.0 * cells[c, 2] + 3.0 * f * cells[c, 3])
             e = cells[c, 4] + f * (cells[c, 5] + f * (cells[c, 6] + f * cells[c, 7]))
             de = cells[c, 5] + f * (2.0 * cells[c, 6] + 3.0 * f * cells[c, 7])
-            bend, curve = cells[c, 2] + 3.0 * f * cells[c, 3], cells[c, 6] + 3.0 * f * cells[c, 7]
+            k_2, e_2 = cells[c, 2] + 3.0 * f * cells[c, 3], cells[c, 6] + 3.0 * f * cells[c, 7]
             pair = int(turn) if sign > 0.0 else -int(turn)
             mate = pair + offset_2
             a = deviation_1 + (pair % counts[m, ROWS_1]) * n_cells + j
@@ -157,7 +157,7 @@ def list_on_path(
             d_3 = deviations[a, 3] + deviations[b, 3]
             e += deviations[a, 0] + deviations[b, 0] + f * (d_1 + f * (d_2 + f * d_3))
             de += d_1 + f * (2.0 * d_2 + 3.0 * f * d_3)
-            curve += d_2 + 3.0 * f * d_3
+            e_2 += d_2 + 3.0 * f * d_3
             scale = scales[counts[m, SCALES_1_AT] + pair % counts[m, SCALES_1]]
             scale *= scales[counts[m, SCALES_2_AT] + mate % counts[m, SCALES_2]]
             to = first + column
@@ -165,10 +165,10 @@ def list_on_path(
                 out[to + blank * stride] = 0.0
             out[to + ROW_K * stride] = k * scale
             out[to + (ROW_K + 1) * stride] = dk * scale * per_step
-            out[to + (ROW_K + 2) * stride] = bend * scale * per_step * per_step
+            out[to + (ROW_K + 2) * stride] = k_2 * scale * per_step * per_step
             out[to + ROW_E * stride] = e
             out[to + (ROW_E + 1) * stride] = de * per_step
-            out[to + (ROW_E + 2) * stride] = curve * per_step * per_step
+            out[to + (ROW_E + 2) * stride] = e_2 * per_step * per_step
             out[to + ROW_S * stride] = space[at + START] + place / per_step
             if pairs.shape[1] > 0:
                 pairs[0, column] = pair

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import sliding_direction
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -23,7 +23,7 @@ from dynamics.kernels.looped_contact import (
     press_phase,
 )
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]

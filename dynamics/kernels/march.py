@@ -79,7 +79,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

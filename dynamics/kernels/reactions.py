@@ -48,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 3e943859
+# compiled from sources 834b7ecd
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -81,22 +81,22 @@ def _path_slopes(
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
         s, k, stiffness_slope, gap, gap_slope = contact_at(table, first + i, stride, f)
-        bend, curve = curvatures_at(table, first + i, stride, f)
+        stiffness_curvature, gap_curvature = curvatures_at(table, first + i, stride, f)
         depth = reach - gap
         depth = depth if depth > 0.0 else 0.0
         k = k if depth > 0.0 else 0.0
         gap_slope *= flank.per_metre
-        curve *= flank.per_metre * flank.per_metre
+        gap_curvature *= flank.per_metre * flank.per_metre
         stiffness_slope *= flank.per_metre * derivative
-        bend *= flank.per_metre * flank.per_metre * derivative
+        stiffness_curvature *= flank.per_metre * flank.per_metre * derivative
         rho_1, rho_2 = flank.roll_1 + s, flank.roll_2 - s
         ratio = (flank.omega_1 * rho_1 - flank.omega_2 * rho_2) * law[PER_REVERSAL]
         direction = sliding_direction(ratio)
-        turning = 1.5 * (1.0 - ratio * ratio) * slip_slope if abs(ratio) < 1.0 else 0.0
+        direction_slope = 1.5 * (1.0 - ratio * ratio) * slip_slope if abs(ratio) < 1.0 else 0.0
         m_1 = 1.0 - gap_slope * derivative + mu_1 * direction * rho_1
         m_2 = 1.0 + mu_2 * direction * rho_2
-        m_1_s = mu_1 * (direction + turning * rho_1) - curve * derivative
-        m_2_s = mu_2 * (turning * rho_2 - direction)
+        m_1_s = mu_1 * (direction + direction_slope * rho_1) - gap_curvature * derivative
+        m_2_s = mu_2 * (direction_slope * rho_2 - direction)
         closing = damp_time * (rate - gap_slope * path_speed)
         grown = depth * per_depth
         grown_slope = per_depth if grown < 1.0 else 0.0
@@ -105,13 +105,15 @@ def _path_slopes(
         touches = depth > 0.0 and pressed > 0.0
         force = k * pressed if touches else 0.0
         df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
-        df -= k * grown * damp_time * curve * path_speed
+        df -= k * grown * damp_time * gap_curvature * path_speed
         df = df if touches else 0.0
         energy += 0.5 * k * depth * depth
         de = stiffness_slope * depth - k * gap_slope
         damped, damped_s = force - k * depth, df - de
-        bent_s = (0.5 * bend * depth - stiffness_slope * gap_slope) * depth
-        slope_1 += df * m_1 + force * m_1_s + rotation * (damped_s * gap_slope + damped * curve) + bent_s
+        bent = (0.5 * stiffness_curvature * depth - stiffness_slope * gap_slope) * depth
+        slope_1 += (
+            df * m_1 + force * m_1_s + rotation * (damped_s * gap_slope + damped * gap_curvature) + bent
+        )
         slope_2 += df * m_2 + force * m_2_s
         slope += de
     return slope_1, slope_2, slope, energy

@@ -33,7 +33,10 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 LEAST_HARMONICS, MARGIN = 20, 8
-"""Mesh harmonics on both sides at least, and beyond the highest order asked for."""
+"""Harmonics of the cell on both sides at least, and beyond the highest order asked for; as its samples hold them.
+
+Angles of a slow loop near the resonance of its meshes are within 3 % of those by 63 harmonics (12: 7 %), torques within
+0.1 %."""
 CYCLE_STEPS = 30
 """Steps at most that correct for what the contacts do beyond first order."""
 

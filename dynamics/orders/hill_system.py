@@ -29,7 +29,8 @@ Integers = NDArray[np.int64]
 SAME_CLASS = 1e-7
 """Difference of two orders, in mesh orders, below which they are of one class."""
 ANGLE_STEPS = 2
-"""Corrections for the angle of the pinion, which moves the tangents along the path: each a per cent of the last."""
+"""Corrections for the angle of the pinion, which moves the tangents along the path: each a per cent of the last, up to
+a fifth where a loop runs slowly enough to turn as a whole."""
 
 
 class MeshPeriodic:

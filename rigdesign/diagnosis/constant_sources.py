@@ -213,7 +213,9 @@ SOURCES: Mapping[str, Source] = {
     "statistics.outliers.LIMIT": Source("-", "choice", _JUDGEMENT),
     "statistics.outliers.MOST_REJECTED": Source("-", "choice", _JUDGEMENT),
     "statistics.reference_scale.AMBIENT": Source("K", "choice", "room temperature"),
-    "statistics.resonance.PLACED": Source("-", "fit", _HEALTHY),
-    "statistics.resonance.DAMPED": Source("-", "choice", "first modes of three rigs: 0.5 to 1 %"),
+    "statistics.resonance.FREQUENCY_ERROR": Source(
+        "-", "fit", "as ``decision.defaults.AMPLITUDES.frequency``"
+    ),
+    "statistics.resonance.DAMPING_RATIO": Source("-", "choice", "least of the first modes of three rigs"),
 }
 """Module and name, as ``decision.defaults.DRIFT`` -> source; a field or key of a constant may have its own entry."""

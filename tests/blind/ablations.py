@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from rigdesign.diagnosis import run
+from rigdesign.diagnosis import catalogue, run
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision import claims, kept_numbers, search
 from rigdesign.diagnosis.decision.defaults import Calibration
@@ -100,12 +100,11 @@ def no_groups(calibration: Calibration) -> Calibration:
 
 def no_local(calibration: Calibration) -> Calibration:
     """No effects at one place of a gearbox in the catalogue."""
-    module: Any = run
-    whole = module.effects_of
 
     def effects_of(*args: Any, **keywords: Any) -> tuple[Effect, ...]:
-        return tuple(effect for effect in whole(*args, **keywords) if effect.kind not in LOCAL)
+        return tuple(effect for effect in catalogue.effects_of(*args, **keywords) if effect.kind not in LOCAL)
 
+    module: Any = run
     module.effects_of = effects_of
     return calibration
 

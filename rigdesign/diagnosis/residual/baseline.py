@@ -15,6 +15,7 @@ from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, amplitudes_of
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.resonance import Resonances
 from rigdesign.prediction.met_again import met_again
 
 TWINS = 10.0
@@ -110,7 +111,7 @@ class Change:
             known=covariance + alone,
             shared=both + np.diag(own**2),
             slope=step * amplitudes_of(residuals.features, _by_speed(residuals)),
-            steep=step * residuals.resonances.change(amplitude),
+            steep=step * _resonances(residuals, baseline).change(amplitude),
             amplitude=amplitude,
         )
 
@@ -163,6 +164,12 @@ def differenced(
     drift are each set's own.
     """
     return Change.of(residuals, baseline, amplitudes).whitened(drift)
+
+
+def _resonances(residuals: ResidualProblem, baseline: ResidualProblem) -> Resonances:
+    """Natural frequencies near the orders of a set, those measured on the healthy rig among them."""
+    own = residuals.resonances
+    return replace(own, modes=np.concatenate([own.modes, baseline.resonances.modes]))
 
 
 def _matched(there: Covariance, here: Covariance) -> Array:

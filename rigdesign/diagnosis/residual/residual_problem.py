@@ -15,7 +15,7 @@ from scipy.linalg import cho_solve
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.directions import Direction, directions
-from rigdesign.diagnosis.residual.healthy import answer_error, healthy_columns, own_spread
+from rigdesign.diagnosis.residual.healthy import answer_error, excited_spread, healthy_columns, own_spread
 from rigdesign.diagnosis.residual.sensors import (
     SensorError,
     Stated,
@@ -84,33 +84,27 @@ class ResidualProblem:
 
     @cached_property
     def resonances(self) -> Resonances:
-        """That its orders lie near."""
+        """Natural frequencies that its orders may lie near."""
         quantities = [self.channels[feature.channel].quantity for feature in self.features]
         return Resonances(
             features=self.features,
             settings=self.library.settings,
             modes=self._modes,
-            turning=np.array([quantity == "angle" for quantity in quantities], dtype=bool),
+            of_angle=np.array([quantity == "angle" for quantity in quantities], dtype=bool),
             teeth=self.teeth_a_turn,
         )
 
     @property
     def _modes(self) -> Array:
-        """Natural frequencies [rad/s], those that were measured in place of the predicted ones."""
-        modes = self.library.modes.copy()
-        for number in np.flatnonzero(self.natural_frequencies) if modes.size else ():
-            predicted, read = 2.0 * np.pi * np.array([self.library.base[number], self.values[number]])
-            modes[np.argmin(np.abs(modes - predicted))] = read
-        return modes
+        """Natural frequencies [rad/s], predicted and as measured: resonances of what is predicted and of what is
+        read."""
+        measured = self.values[(self.natural_frequencies > 0.0) & (self.values > 0.0)]
+        return np.concatenate([self.library.modes, 2.0 * np.pi * measured])
 
     @cached_property
-    def tooth_spread(self) -> Array:
-        """(n,) standard deviation that the healthy errors of the teeth give to the orders of shafts and sidebands."""
-        teeth = [column for column in self.columns() if column.kind == "tooth"]
-        spreads = np.array([column.spread * column.values for column in teeth]).reshape(
-            -1, len(self.features)
-        )
-        return np.where(self.of_mesh, 0.0, np.sqrt(np.sum(spreads**2, axis=0)))
+    def excited_spread(self) -> Array:
+        """(n,) standard deviation that healthy teeth, motor and couplings give to orders of shafts and sidebands."""
+        return np.where(self.of_mesh, 0.0, excited_spread(self.library, self.effects))
 
     @property
     def residual(self) -> Array:
@@ -153,10 +147,10 @@ class ResidualProblem:
     def own_spread(self, amplitudes: Amplitudes) -> Array:
         """(n,) standard deviation of what each number is off by itself, noise left out.
 
-        Near a natural frequency, what the teeth do is off by as much as that makes of it.
+        Near a natural frequency its error changes what the teeth excite.
         """
         own = own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
-        near = amplitudes.frequency * self.resonances.spread(amplitudes.tooth * self.tooth_spread)
+        near = amplitudes.frequency * self.resonances.spread(amplitudes.tooth * self.excited_spread)
         return np.hypot(own, near)
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:

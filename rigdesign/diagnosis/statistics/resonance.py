@@ -18,10 +18,11 @@ from scipy.special import wofz
 from rigdesign.diagnosis.statistics.columns import Array, amplitudes_of
 from rigdesign.prediction.model import Feature, OperatingCondition
 
-PLACED = 0.017
-"""Relative standard error of a natural frequency of the model."""
-DAMPED = 0.005
-"""Damping ratio of the modes of a power circuit: couplings, films and seats."""
+FREQUENCY_ERROR = 0.017
+"""Relative standard error of a natural frequency over which the mean square is taken: that of the fitted amplitudes,
+constant so that the change is in proportion to them."""
+DAMPING_RATIO = 0.005
+"""Of the modes of a power circuit."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,14 +30,14 @@ class Resonances:
     """Natural frequencies that orders of one set lie near.
 
     features, settings : numbers and their points; modes : natural frequencies [rad/s]
-    turning : (n,) whether a number is of an angle, which sees the loop turn as a whole
-    teeth : that pass per turn of the reference gear
+    of_angle : (n,) whether a number is of an angle, which sees the loop turn as a whole
+    teeth : of the reference gear
     """
 
     features: Sequence[Feature]
     settings: Sequence[OperatingCondition]
     modes: Array
-    turning: NDArray[np.bool_]
+    of_angle: NDArray[np.bool_]
     teeth: int
 
     @property
@@ -47,27 +48,28 @@ class Resonances:
     def change(self, amplitude: Array) -> Array:
         """(n,) change of orders of an amplitude by the logarithm of the speed or of the natural frequencies.
 
-        Of an angle at a shaft order, what exceeds the least amplitude over the points is the loop as a whole: what
-        winds up its shafts is there at any speed.
+        Of an angle at a shaft order, what exceeds the least amplitude over the points is the loop as a whole, which
+        follows the sidebands of the mesh of the reference gear: what winds up the shafts is there at any speed.
         """
         order = np.array([one.order for one in self.features], dtype=np.float64)
-        whole = self.turning & (order > 0.0) & (order < 0.5 * self.teeth)
+        whole = self.of_angle & (order > 0.0) & (order < 0.5 * self.teeth)
         beside = np.maximum(self._steepness_at(self.teeth - order), self._steepness_at(self.teeth + order))
-        common = np.where(whole, amplitude - self._least(amplitude), 0.0)
+        common = np.where(whole, amplitude - self._windup(amplitude), 0.0)
         return np.asarray(np.hypot(self.steepness * amplitude, beside * common))
 
     def spread(self, spread: Array) -> Array:
-        """(n,) the same of real and imaginary parts that are known by their standard deviation alone."""
-        return self.change(amplitudes_of(self.features, spread) / np.sqrt(2.0))
+        """(n,) the same of real and imaginary parts of which the standard deviation alone is known."""
+        parts = np.maximum(amplitudes_of(self.features, np.ones(len(spread))), 1.0)
+        return self.change(amplitudes_of(self.features, spread) / parts)
 
-    def _least(self, amplitude: Array) -> Array:
-        """(n,) least amplitude over the points of each channel and order; points without a reading do not count."""
-        least: dict[tuple[str, float], float] = {}
-        keys = [(one.channel, one.order) for one in self.features]
-        for key, value in zip(keys, amplitude.tolist(), strict=True):
+    def _windup(self, amplitude: Array) -> Array:
+        """(n,) least amplitude over the points of each channel and order; zero where it was read at one point alone."""
+        read: dict[tuple[str, float], dict[str, float]] = {}
+        for one, value in zip(self.features, amplitude.tolist(), strict=True):
             if value > 0.0:
-                least[key] = min(value, least.get(key, value))
-        return np.array([least.get(key, 0.0) for key in keys])
+                read.setdefault((one.channel, one.order), {})[one.setting] = value
+        least = {series: min(values.values()) for series, values in read.items() if len(values) > 1}
+        return np.array([least.get((one.channel, one.order), 0.0) for one in self.features])
 
     def _steepness_at(self, orders: Array) -> Array:
         """(n,) of these orders at the points of the numbers; zero where no order is read."""
@@ -76,5 +78,7 @@ class Resonances:
         if not self.modes.size:
             return np.zeros(len(read))
         away = np.abs(1.0 - (orders * read)[:, None] / self.modes).min(axis=1)
-        profile = wofz((away + 1j * DAMPED) / (PLACED * np.sqrt(2.0))).real
-        return np.where(read > 0.0, np.sqrt(np.sqrt(0.5 * np.pi) / (PLACED * DAMPED) * profile), 0.0)
+        profile = wofz((away + 1j * DAMPING_RATIO) / (FREQUENCY_ERROR * np.sqrt(2.0))).real
+        return np.where(
+            read > 0.0, np.sqrt(np.sqrt(0.5 * np.pi) / (FREQUENCY_ERROR * DAMPING_RATIO) * profile), 0.0
+        )

@@ -65,7 +65,7 @@ def test_orders_follow_the_speed_as_natural_frequencies_near_them_make_them(pair
     assert more == pytest.approx(np.diag(np.diag(more)), abs=1e-12)
 
 
-def test_orders_lie_near_the_natural_frequencies_that_were_read(pair):
+def test_orders_lie_near_the_natural_frequencies_predicted_and_read(pair):
     plain = pair[0]
     channel = Channel(name="f_2", quantity="natural_frequency", place="2")
     read = replace(
@@ -75,8 +75,36 @@ def test_orders_lie_near_the_natural_frequencies_that_were_read(pair):
         library=replace(plain.library, base=np.append(plain.library.base, 900.0)),
         channels={**plain.channels, "f_2": channel},
     )
+    unread = replace(read, values=np.append(plain.values, 0.0))
     assert plain.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 900.0]))
-    assert read.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 840.0]))
+    assert unread.resonances.modes == pytest.approx(plain.resonances.modes)
+    assert read.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 900.0, 840.0]))
+
+
+def test_what_teeth_excite_is_off_by_the_error_of_the_natural_frequency_nearby(pair):
+    residuals = pair[0]
+    placed = replace(Amplitudes(), frequency=0.02)
+    square = {
+        share: residuals.own_spread(replace(placed, frequency=share * 0.02)) ** 2 for share in (0.0, 1.0, 2.0)
+    }
+    more = square[1.0] - square[0.0]
+    shaft = np.array([bool(one.order) for one in residuals.features]) & ~residuals.of_mesh
+    assert (more[shaft] > 0.0).any()
+    assert not more[~shaft].any()
+    assert square[2.0] - square[0.0] == pytest.approx(4.0 * more, rel=1e-6)
+    near = replace(residuals.library, modes=np.array([1.01 * one for one in _frequencies(residuals, shaft)]))
+    assert np.all(
+        replace(residuals, library=near).own_spread(placed)[more > 0.0] ** 2
+        > (square[0.0] + more)[more > 0.0]
+    )
+
+
+def _frequencies(residuals: ResidualProblem, some: np.ndarray) -> list[float]:
+    """Of some orders at their points [rad/s]."""
+    speeds = {setting.name: setting.speed for setting in residuals.library.settings}
+    return [
+        one.order * speeds[one.setting] for one, taken in zip(residuals.features, some, strict=True) if taken
+    ]
 
 
 def test_orders_follow_the_speed_by_a_share_of_what_the_model_says(pair):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis.statistics.columns import amplitudes_of
-from rigdesign.diagnosis.statistics.resonance import DAMPED, PLACED, Resonances
+from rigdesign.diagnosis.statistics.resonance import DAMPING_RATIO, FREQUENCY_ERROR, Resonances
 from rigdesign.prediction.model import Feature, OperatingCondition
 
 SETTINGS = (
@@ -20,8 +20,8 @@ def number(setting: str, order: float, part: str = "real", channel: str = "M") -
 
 def resonances(features, modes=MODES) -> Resonances:
     """Of a rig with 28 teeth on the reference gear, ``phi`` an angle."""
-    turning = np.array([one.channel == "phi" for one in features])
-    return Resonances(features=features, settings=SETTINGS, modes=modes, turning=turning, teeth=28)
+    of_angle = np.array([one.channel == "phi" for one in features])
+    return Resonances(features=features, settings=SETTINGS, modes=modes, of_angle=of_angle, teeth=28)
 
 
 def test_an_order_follows_its_frequency_as_the_circuit_does():
@@ -39,8 +39,8 @@ def test_steepness_is_the_mean_square_over_where_the_natural_frequency_may_be():
     share = np.linspace(-12.0, 12.0, 400_001)
     weight = np.exp(-0.5 * share**2)
     for one, feature in zip(found, features, strict=True):
-        away = 1.0 - feature.order / 10.0 + PLACED * share
-        square = np.sum(weight / (away**2 + DAMPED**2)) / np.sum(weight)
+        away = 1.0 - feature.order / 10.0 + FREQUENCY_ERROR * share
+        square = np.sum(weight / (away**2 + DAMPING_RATIO**2)) / np.sum(weight)
         assert one == pytest.approx(np.sqrt(square), rel=1e-3)
 
 
@@ -72,10 +72,19 @@ def test_a_loop_that_turns_as_a_whole_follows_the_sidebands_of_the_meshes():
     assert both.change(amplitude[:2]) == pytest.approx(both.steepness * amplitude[:2])
 
 
-def test_parts_known_by_their_spread_follow_each_for_itself():
-    features = [number("slow", 2.0), number("slow", 2.0, "imaginary")]
+def test_at_one_point_all_of_an_angle_may_be_the_loop_as_a_whole():
+    (found,) = resonances([number("slow", 1.0, channel="phi")], np.array([4000.0])).change(np.array([6.0]))
+    assert found == pytest.approx(np.hypot(6.0 / (1.0 - 0.025), 6.0 / (1.0 - 0.725)), rel=0.01)
+
+
+@pytest.mark.parametrize("parts", [("real",), ("real", "imaginary")])
+def test_parts_known_by_their_spread_follow_each_for_itself(parts):
+    features = [number("slow", 2.0, part, "phi") for part in parts]
     found = resonances(features)
-    assert found.spread(np.array([3.0, 3.0])) == pytest.approx(3.0 * found.steepness)
+    spread = np.full(len(parts), 3.0)
+    assert found.spread(spread) == pytest.approx(found.change(spread))
+    torque = resonances([number("slow", 2.0, part) for part in parts])
+    assert torque.spread(spread) == pytest.approx(3.0 * torque.steepness)
 
 
 def test_both_parts_of_an_order_have_its_amplitude():
