@@ -31,7 +31,7 @@ CASE = CASES / "loop_1to1"
 RPM = np.pi / 30.0
 SPEEDS = (800.0, 1800.0, 3500.0)
 TORQUES = (80.0, 200.0, 350.0)
-MODES = 2.0 * np.pi * np.array([60.0, 900.0])
+MODES = 2.0 * np.pi * np.array([480.0, 900.0])
 """Natural frequencies [rad/s]."""
 ORDERS = (0.0, 1.0, 2.0, 27.0, 28.0, 29.0)
 HEAD = """

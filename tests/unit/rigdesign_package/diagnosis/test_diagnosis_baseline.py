@@ -76,9 +76,9 @@ def test_orders_lie_near_the_natural_frequencies_predicted_and_read(pair):
         channels={**plain.channels, "f_2": channel},
     )
     unread = replace(read, values=np.append(plain.values, 0.0))
-    assert plain.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 900.0]))
+    assert plain.resonances.modes == pytest.approx(2.0 * np.pi * np.array([480.0, 900.0]))
     assert unread.resonances.modes == pytest.approx(plain.resonances.modes)
-    assert read.resonances.modes == pytest.approx(2.0 * np.pi * np.array([60.0, 900.0, 840.0]))
+    assert read.resonances.modes == pytest.approx(2.0 * np.pi * np.array([480.0, 900.0, 840.0]))
 
 
 def test_what_teeth_excite_is_off_by_the_error_of_the_natural_frequency_nearby(pair):
