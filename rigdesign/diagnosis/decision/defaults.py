@@ -135,9 +135,9 @@ DRIFT = Drift(
     },
 )
 """Fitted to 80 pairs of healthy sets, those with up to 900 numbers: 36 of the prototype, 28 of the 1:1 loop, 16 of the
-loop with a hunting ratio; the inflation to 108 pairs, 36 of each rig. All that orders take part in was fitted while they
-were 25 times as steep as their frequency at most (`rigdesign.diagnosis.statistics.resonance`: 110 now) and has not been
-fitted again."""
+loop with a hunting ratio; the inflation to 108 pairs, 36 of each rig. All that orders take part in was fitted while
+they were 25 times as steep as their frequency at most (`rigdesign.diagnosis.statistics.resonance`: 110 now) and has not
+been fitted again."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -39,7 +39,7 @@ def group_of(
         values = column.spread * column.values
         parts[column.kind] = parts.get(column.kind, 0.0) + np.outer(values, values)
     parts["answer"] = first.answer_error
-    nothing = amplitudes.with_values(dict.fromkeys((*OWN_KINDS, "answer"), 0.0))
+    nothing = Amplitudes(**dict.fromkeys((*OWN_KINDS, "answer"), 0.0))
     for kind in OWN_KINDS:
         alone = nothing.with_values({kind: 1.0})
         own = first.own_spread(alone)

@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.catalogue.families import TOOTH
 from rigdesign.diagnosis.library.library import NEAR_SENSOR, Library
 from rigdesign.diagnosis.residual.gauge_modes import mode_columns
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
@@ -77,15 +76,6 @@ def _constants(library: Library, effects: Sequence[Effect]) -> list[Column]:
         for effect in wanted
         for number, values in enumerate(library.responses[effect.name].sensitivity().T)
     ]
-
-
-def excited_spread(library: Library, effects: Sequence[Effect]) -> Array:
-    """(n,) standard deviation by what excites vibration in a healthy rig, at an amplitude of one."""
-    columns = (column for column in _constants(library, effects) if column.kind == TOOTH.amplitude)
-    square = sum(
-        ((column.spread * column.values) ** 2 for column in columns), np.zeros(len(library.features))
-    )
-    return np.asarray(np.sqrt(square))
 
 
 def _exponents(library: Library, effects: Sequence[Effect]) -> list[Column]:

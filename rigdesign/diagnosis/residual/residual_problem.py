@@ -15,7 +15,7 @@ from scipy.linalg import cho_solve
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.directions import Direction, directions
-from rigdesign.diagnosis.residual.healthy import answer_error, excited_spread, healthy_columns, own_spread
+from rigdesign.diagnosis.residual.healthy import answer_error, healthy_columns, own_spread
 from rigdesign.diagnosis.residual.sensors import (
     SensorError,
     Stated,
@@ -24,7 +24,7 @@ from rigdesign.diagnosis.residual.sensors import (
     setting_scatter,
 )
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
-from rigdesign.diagnosis.statistics.columns import Array, Column
+from rigdesign.diagnosis.statistics.columns import Array, Column, amplitudes_of
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.hypothesis import Curve
 from rigdesign.diagnosis.statistics.outliers import Outlier, reject
@@ -101,11 +101,6 @@ class ResidualProblem:
         measured = self.values[(self.natural_frequencies > 0.0) & (self.values > 0.0)]
         return np.concatenate([self.library.modes, 2.0 * np.pi * measured])
 
-    @cached_property
-    def excited_spread(self) -> Array:
-        """(n,) standard deviation that healthy teeth, motor and couplings give to orders of shafts and sidebands."""
-        return np.where(self.of_mesh, 0.0, excited_spread(self.library, self.effects))
-
     @property
     def residual(self) -> Array:
         """Readings less prediction."""
@@ -145,18 +140,18 @@ class ResidualProblem:
         return replace(self, level=np.array(level))
 
     def own_spread(self, amplitudes: Amplitudes) -> Array:
-        """(n,) standard deviation of what each number is off by itself, noise left out.
-
-        Near a natural frequency its error changes what the teeth excite.
-        """
-        own = own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
-        near = amplitudes.frequency * self.resonances.spread(amplitudes.tooth * self.excited_spread)
-        return np.hypot(own, near)
+        """(n,) standard deviation of what each number is off by itself, noise left out."""
+        return own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:
-        """(n, n) covariance of noise, settings read and what each number is off by itself."""
+        """(n, n) covariance of noise, settings read and what each number is off by itself.
+
+        Near a natural frequency its error changes orders of shafts and sidebands, whatever excites them.
+        """
         own = self.own_spread(amplitudes)
-        alone = np.diag(self.noise**2 + own**2 + self.library.error**2 * self._thermal)
+        read = np.where(self.of_mesh, 0.0, amplitudes_of(self.features, self.values))
+        near = amplitudes.frequency * self.resonances.change(read)
+        alone = np.diag(self.noise**2 + own**2 + near**2 + self.library.error**2 * self._thermal)
         return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
 
     @cached_property

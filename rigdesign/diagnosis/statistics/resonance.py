@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import wofz
 
-from rigdesign.diagnosis.statistics.columns import Array, amplitudes_of
+from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.prediction.model import Feature, OperatingCondition
 
 FREQUENCY_ERROR = 0.017
@@ -56,11 +56,6 @@ class Resonances:
         beside = np.maximum(self._steepness_at(self.teeth - order), self._steepness_at(self.teeth + order))
         common = np.where(whole, amplitude - self._windup(amplitude), 0.0)
         return np.asarray(np.hypot(self.steepness * amplitude, beside * common))
-
-    def spread(self, spread: Array) -> Array:
-        """(n,) the same of real and imaginary parts of which the standard deviation alone is known."""
-        parts = np.maximum(amplitudes_of(self.features, np.ones(len(spread))), 1.0)
-        return self.change(amplitudes_of(self.features, spread) / parts)
 
     def _windup(self, amplitude: Array) -> Array:
         """(n,) least amplitude over the points of each channel and order; zero where it was read at one point alone."""

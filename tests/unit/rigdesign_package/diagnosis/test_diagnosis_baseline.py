@@ -81,22 +81,19 @@ def test_orders_lie_near_the_natural_frequencies_predicted_and_read(pair):
     assert read.resonances.modes == pytest.approx(2.0 * np.pi * np.array([480.0, 900.0, 840.0]))
 
 
-def test_what_teeth_excite_is_off_by_the_error_of_the_natural_frequency_nearby(pair):
+def test_shaft_orders_are_off_by_the_error_of_the_natural_frequency_nearby(pair):
     residuals = pair[0]
-    placed = replace(Amplitudes(), frequency=0.02)
-    square = {
-        share: residuals.own_spread(replace(placed, frequency=share * 0.02)) ** 2 for share in (0.0, 1.0, 2.0)
-    }
-    more = square[1.0] - square[0.0]
+
+    def variance(of: ResidualProblem, frequency: float) -> np.ndarray:
+        return np.diag(of.base_noise(replace(Amplitudes(), frequency=frequency)))
+
+    more = variance(residuals, 0.02) - variance(residuals, 0.0)
     shaft = np.array([bool(one.order) for one in residuals.features]) & ~residuals.of_mesh
-    assert (more[shaft] > 0.0).any()
-    assert not more[~shaft].any()
-    assert square[2.0] - square[0.0] == pytest.approx(4.0 * more, rel=1e-6)
-    near = replace(residuals.library, modes=np.array([1.01 * one for one in _frequencies(residuals, shaft)]))
-    assert np.all(
-        replace(residuals, library=near).own_spread(placed)[more > 0.0] ** 2
-        > (square[0.0] + more)[more > 0.0]
-    )
+    assert np.all(more[shaft] > 0.0) and not more[~shaft].any()
+    assert variance(residuals, 0.04) - variance(residuals, 0.0) == pytest.approx(4.0 * more, rel=1e-6)
+    library = replace(residuals.library, modes=np.array(_frequencies(residuals, shaft)))
+    nearer = replace(residuals, library=library)
+    assert np.all(variance(nearer, 0.02)[shaft] > variance(residuals, 0.02)[shaft])
 
 
 def _frequencies(residuals: ResidualProblem, some: np.ndarray) -> list[float]:
@@ -203,9 +200,9 @@ def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
 
 
 def test_what_both_sets_share_is_all_that_is_no_noise(pair):
-    """A healthy rig's covariance less noise, scatter and what its answers have wrong: the part that may drift."""
+    """A healthy rig's covariance less noise, scatter and what its answers and resonances have wrong may drift."""
     residuals = pair[0]
-    amplitudes = replace(Amplitudes(), answer=0.0)
+    amplitudes = replace(Amplitudes(), answer=0.0, frequency=0.0)
     shared = Change.of(*pair, amplitudes).shared
     scale = residuals.on_the_scale_of(pair[1])
     alone = np.diag(residuals.noise**2) + residuals.scatter

@@ -77,16 +77,6 @@ def test_at_one_point_all_of_an_angle_may_be_the_loop_as_a_whole():
     assert found == pytest.approx(np.hypot(6.0 / (1.0 - 0.025), 6.0 / (1.0 - 0.725)), rel=0.01)
 
 
-@pytest.mark.parametrize("parts", [("real",), ("real", "imaginary")])
-def test_parts_known_by_their_spread_follow_each_for_itself(parts):
-    features = [number("slow", 2.0, part, "phi") for part in parts]
-    found = resonances(features)
-    spread = np.full(len(parts), 3.0)
-    assert found.spread(spread) == pytest.approx(found.change(spread))
-    torque = resonances([number("slow", 2.0, part) for part in parts])
-    assert torque.spread(spread) == pytest.approx(3.0 * torque.steepness)
-
-
 def test_both_parts_of_an_order_have_its_amplitude():
     features = [
         number("slow", 2.0),
