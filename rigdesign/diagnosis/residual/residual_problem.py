@@ -150,7 +150,7 @@ class ResidualProblem:
         """
         own = self.own_spread(amplitudes)
         read = np.where(self.of_mesh, 0.0, amplitudes_of(self.features, self.values))
-        near = amplitudes.frequency * self.resonances.change(read)
+        near = amplitudes.frequency * self.resonances.shift(read)
         alone = np.diag(self.noise**2 + own**2 + near**2 + self.library.error**2 * self._thermal)
         return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
 

@@ -8,7 +8,7 @@ Angles follow more: nothing but its inertia holds a loop that turns as a whole, 
 that part of the torque comes from the sidebands of the meshes and follows their resonances.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,19 +43,30 @@ class Resonances:
     @property
     def steepness(self) -> Array:
         """(n,) relative change of an order by the logarithm of its frequency; zero for means and all other numbers."""
-        return self._steepness_at(np.array([one.order for one in self.features], dtype=np.float64))
+        return self._steepness_at(self._orders)
 
     def change(self, amplitude: Array) -> Array:
-        """(n,) change of orders of an amplitude by the logarithm of the speed or of the natural frequencies.
+        """(n,) change of orders of an amplitude by the logarithm of the speed.
 
         Of an angle at a shaft order, what exceeds the least amplitude over the points is the loop as a whole, which
         follows the sidebands of the mesh of the reference gear: what winds up the shafts is there at any speed.
         """
-        order = np.array([one.order for one in self.features], dtype=np.float64)
-        whole = self.of_angle & (order > 0.0) & (order < 0.5 * self.teeth)
-        beside = np.maximum(self._steepness_at(self.teeth - order), self._steepness_at(self.teeth + order))
+        return self._with_sidebands(amplitude, self._steepness_at)
+
+    def shift(self, amplitude: Array) -> Array:
+        """(n,) the same by the logarithm of the natural frequencies, which orders far below them hardly notice."""
+        return self._with_sidebands(amplitude, self._passed_at)
+
+    def _with_sidebands(self, amplitude: Array, factor_at: Callable[[Array], Array]) -> Array:
+        orders = self._orders
+        whole = self.of_angle & (orders > 0.0) & (orders < 0.5 * self.teeth)
+        beside = np.maximum(factor_at(self.teeth - orders), factor_at(self.teeth + orders))
         common = np.where(whole, amplitude - self._windup(amplitude), 0.0)
-        return np.asarray(np.hypot(self.steepness * amplitude, beside * common))
+        return np.asarray(np.hypot(factor_at(orders) * amplitude, beside * common))
+
+    @property
+    def _orders(self) -> Array:
+        return np.array([one.order for one in self.features], dtype=np.float64)
 
     def _windup(self, amplitude: Array) -> Array:
         """(n,) least amplitude over the points of each channel and order; zero where it was read at one point alone."""
@@ -68,12 +79,20 @@ class Resonances:
 
     def _steepness_at(self, orders: Array) -> Array:
         """(n,) of these orders at the points of the numbers; zero where no order is read."""
+        ratio = self._nearest(orders)
+        profile = wofz((np.abs(1.0 - ratio) + 1j * DAMPING_RATIO) / (FREQUENCY_ERROR * np.sqrt(2.0))).real
+        square = np.sqrt(0.5 * np.pi) / (FREQUENCY_ERROR * DAMPING_RATIO) * profile
+        return np.where(ratio > 0.0, np.sqrt(square), 0.0)
+
+    def _passed_at(self, orders: Array) -> Array:
+        """(n,) the same by the natural frequencies."""
+        return self._nearest(orders) ** 2 * self._steepness_at(orders)
+
+    def _nearest(self, orders: Array) -> Array:
+        """(n,) frequency over the natural frequency nearest to it; zero where no order is read."""
         speeds = {setting.name: setting.speed for setting in self.settings}
         read = np.array([speeds.get(one.setting, 0.0) if one.order else 0.0 for one in self.features])
         if not self.modes.size:
             return np.zeros(len(read))
-        away = np.abs(1.0 - (orders * read)[:, None] / self.modes).min(axis=1)
-        profile = wofz((away + 1j * DAMPING_RATIO) / (FREQUENCY_ERROR * np.sqrt(2.0))).real
-        return np.where(
-            read > 0.0, np.sqrt(np.sqrt(0.5 * np.pi) / (FREQUENCY_ERROR * DAMPING_RATIO) * profile), 0.0
-        )
+        ratios = (orders * read)[:, None] / self.modes
+        return np.asarray(ratios[np.arange(len(read)), np.abs(1.0 - ratios).argmin(axis=1)])

@@ -52,6 +52,15 @@ def test_the_nearest_natural_frequency_counts():
     assert mean == 0.0
 
 
+def test_orders_far_below_a_natural_frequency_hardly_notice_where_it_is():
+    """Of H = 1 / (1 - (f/f_i)^2), by a difference."""
+    features = [number("slow", order) for order in (0.1, 2.0, 8.5, 12.0)]
+    found = resonances(features, MODES[:1]).shift(np.ones(4))
+    for one, feature in zip(found, features, strict=True):
+        gain = [1.0 / (1.0 - (100.0 * feature.order / f) ** 2) for f in (999.0, 1001.0)]
+        assert one == pytest.approx(abs(np.log(gain[1] / gain[0])) / 0.002, rel=0.5)
+
+
 def test_numbers_of_no_order_and_rigs_without_natural_frequencies_are_not_steep():
     assert not resonances([Feature("T", "slow")]).steepness.any()
     assert not resonances([number("slow", 10.0)], np.zeros(0)).steepness.any()

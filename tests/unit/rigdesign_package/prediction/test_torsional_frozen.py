@@ -70,8 +70,7 @@ FULL = (
     477.3774898892821,
     903.9928532120248,
 )
-"""Of the case with a run-out of 10 um, by the full model; orders of the run-out frozen again with the whole tangent over
-the angle."""
+"""Of the case with a run-out of 10 um, by the full model; its orders with the whole tangent over the angle."""
 STIFFER = (
     349.6115662526778,
     0.0,
