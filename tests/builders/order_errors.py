@@ -3,18 +3,24 @@
 from rigdesign.prediction.exact_orders import exact_motion
 from rigdesign.prediction.order_motion import CycleMotion, ideal_response
 from rigdesign.prediction.orders import PointOrders
-from tests.builders.order import changed, channels, settled
+from tests.builders.order import BracedCase, changed, channels, settled
 
 TABLES = 3e-5
 """Error of an order by the contact tables of the march, per torque."""
 
 
-def order_errors(name, values, rpm, torque, orders, *, march, steps=(0, 30), shafts="torsional"):
-    """Error by order of each number of corrections at most."""
-    case = settled(changed(name, **values), rpm, torque, shafts)
+def followed(case: BracedCase, *, march: bool) -> PointOrders:
+    """Orders with all contacts followed over the hunting cycle."""
     exact = PointOrders(*case.arguments)
     motion = exact_motion(case.rig, exact.loop, exact.laws, march=march)
     exact.__dict__["solved"] = CycleMotion(motion)
+    return exact
+
+
+def order_errors(name, values, rpm, torque, orders, *, march, steps=(0, 30), shafts="torsional"):
+    """Error by order of each number of corrections at most."""
+    case = settled(changed(name, **values), rpm, torque, shafts)
+    exact = followed(case, march=march)
     places = [channel for channel in channels(*orders) if channel.quantity == "torque"]
     known = {channel.name: exact.read(channel) for channel in places}
     base = ideal_response(*case.arguments)

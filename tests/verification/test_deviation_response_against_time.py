@@ -7,12 +7,10 @@ the complex amplitude, relative to it, the larger of both couplings; those of th
 import numpy as np
 import pytest
 
-from rigdesign.prediction.exact_orders import exact_motion
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.order_motion import CycleMotion
 from rigdesign.prediction.orders import PointOrders
 from tests.builders.order import changed, channels, settled
-from tests.builders.order_errors import order_errors
+from tests.builders.order_errors import followed, order_errors
 
 PINION = "gearboxes__test__gears__pinion__flank__"
 WHEEL = "gearboxes__test__gears__wheel__flank__"
@@ -79,8 +77,7 @@ def test_slow_rig_turns_as_a_whole_as_over_the_whole_cycle(rpm, torque):
     turned = Channel(name="turn", quantity="angle", place="test_pinion", orders=(2.0 / 3.0,))
     values = {"gearboxes__slave__gears__wheel__flank__run_out": "5 um"}
     case = settled(changed("fzg", **values), rpm, torque)
-    fast, exact = PointOrders(*case.arguments, steps=1), PointOrders(*case.arguments)
-    exact.__dict__["solved"] = CycleMotion(exact_motion(case.rig, exact.loop, exact.laws, march=False))
+    fast, exact = PointOrders(*case.arguments, steps=1), followed(case, march=False)
     (known,), (found,) = exact.read(turned).values(), fast.read(turned).values()
     assert found == pytest.approx(known, rel=0.03)
 

@@ -94,6 +94,12 @@ class ResidualProblem:
             teeth=self.teeth_a_turn,
         )
 
+    @cached_property
+    def shift(self) -> Array:
+        """(n,) change of orders of shafts and sidebands, as read, by the logarithm of the natural frequencies."""
+        read = np.where(self.of_mesh, 0.0, amplitudes_of(self.features, self.values))
+        return self.resonances.shift(read)
+
     @property
     def _modes(self) -> Array:
         """Natural frequencies [rad/s], predicted and as measured: resonances of what is predicted and of what is
@@ -144,13 +150,9 @@ class ResidualProblem:
         return own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:
-        """(n, n) covariance of noise, settings read and what each number is off by itself.
-
-        Near a natural frequency its error changes orders of shafts and sidebands, whatever excites them.
-        """
+        """(n, n) covariance of noise, settings read and what each number is off by itself."""
         own = self.own_spread(amplitudes)
-        read = np.where(self.of_mesh, 0.0, amplitudes_of(self.features, self.values))
-        near = amplitudes.frequency * self.resonances.shift(read)
+        near = amplitudes.frequency * self.shift
         alone = np.diag(self.noise**2 + own**2 + near**2 + self.library.error**2 * self._thermal)
         return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
 

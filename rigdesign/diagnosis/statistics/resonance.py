@@ -8,7 +8,7 @@ Angles follow more: nothing but its inertia holds a loop that turns as a whole, 
 that part of the torque comes from the sidebands of the meshes and follows their resonances.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,7 +43,7 @@ class Resonances:
     @property
     def steepness(self) -> Array:
         """(n,) relative change of an order by the logarithm of its frequency; zero for means and all other numbers."""
-        return self._steepness_at(self._orders)
+        return self._factor_at(self._orders)
 
     def change(self, amplitude: Array) -> Array:
         """(n,) change of orders of an amplitude by the logarithm of the speed.
@@ -51,18 +51,20 @@ class Resonances:
         Of an angle at a shaft order, what exceeds the least amplitude over the points is the loop as a whole, which
         follows the sidebands of the mesh of the reference gear: what winds up the shafts is there at any speed.
         """
-        return self._with_sidebands(amplitude, self._steepness_at)
+        return self._with_sidebands(amplitude)
 
     def shift(self, amplitude: Array) -> Array:
         """(n,) the same by the logarithm of the natural frequencies, which orders far below them hardly notice."""
-        return self._with_sidebands(amplitude, self._passed_at)
+        return self._with_sidebands(amplitude, power=2)
 
-    def _with_sidebands(self, amplitude: Array, factor_at: Callable[[Array], Array]) -> Array:
+    def _with_sidebands(self, amplitude: Array, power: int = 0) -> Array:
         orders = self._orders
         whole = self.of_angle & (orders > 0.0) & (orders < 0.5 * self.teeth)
-        beside = np.maximum(factor_at(self.teeth - orders), factor_at(self.teeth + orders))
+        beside = np.maximum(
+            self._factor_at(self.teeth - orders, power), self._factor_at(self.teeth + orders, power)
+        )
         common = np.where(whole, amplitude - self._windup(amplitude), 0.0)
-        return np.asarray(np.hypot(factor_at(orders) * amplitude, beside * common))
+        return np.asarray(np.hypot(self._factor_at(orders, power) * amplitude, beside * common))
 
     @property
     def _orders(self) -> Array:
@@ -77,16 +79,13 @@ class Resonances:
         least = {series: min(values.values()) for series, values in read.items() if len(values) > 1}
         return np.array([least.get((one.channel, one.order), 0.0) for one in self.features])
 
-    def _steepness_at(self, orders: Array) -> Array:
-        """(n,) of these orders at the points of the numbers; zero where no order is read."""
+    def _factor_at(self, orders: Array, power: int = 0) -> Array:
+        """(n,) relative change of these orders at the points of the numbers, times a power of their frequency over the
+        natural frequency nearest to it; zero where no order is read."""
         ratio = self._nearest(orders)
         profile = wofz((np.abs(1.0 - ratio) + 1j * DAMPING_RATIO) / (FREQUENCY_ERROR * np.sqrt(2.0))).real
         square = np.sqrt(0.5 * np.pi) / (FREQUENCY_ERROR * DAMPING_RATIO) * profile
-        return np.where(ratio > 0.0, np.sqrt(square), 0.0)
-
-    def _passed_at(self, orders: Array) -> Array:
-        """(n,) the same by the natural frequencies."""
-        return self._nearest(orders) ** 2 * self._steepness_at(orders)
+        return np.where(ratio > 0.0, ratio**power * np.sqrt(square), 0.0)
 
     def _nearest(self, orders: Array) -> Array:
         """(n,) frequency over the natural frequency nearest to it; zero where no order is read."""

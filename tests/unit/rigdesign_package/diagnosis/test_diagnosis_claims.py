@@ -160,7 +160,9 @@ def test_too_few_points_to_keep_one_aside_give_no_name(tmp_path):
     )
 
 
-@pytest.mark.parametrize(("size", "verdict"), [(6.4e-6, "too_small"), (10e-6, "named")])
+@pytest.mark.parametrize(
+    ("size", "verdict"), [(5e-6, "within_noise"), (6.4e-6, "too_small"), (10e-6, "named")]
+)
 def test_a_pitch_within_the_tolerance_of_its_grade_is_not_named(tmp_path, size, verdict):
     """f_pT of the pinion is 6.5 um (ISO 1328-1, its grade)."""
     found = result_of(write_set(tmp_path, Rig({"single_pitch:test.pinion/5": (size,)}))).diagnosis

@@ -177,7 +177,8 @@ def test_deviations_do_not_move_the_braced_torque():
 
 
 def test_rig_at_rest():
-    rig = settled(changed("loop_1to1"), 1500.0, 200.0).rig
+    case = settled(changed("loop_1to1"), 1500.0, 200.0)
+    rig = case.rig
     modes = [mode.frequency for mode in standing_modes(rig)]
     assert modes == sorted(modes) and modes[0] > 100.0
 
@@ -194,6 +195,7 @@ def test_rig_at_rest():
             value(quantity, place)
     with pytest.raises(UsageError, match="not measured on the rig at rest"):
         value("torque", "wheel_side")
+    assert set(case.drags) <= set(rig.system.drag_loads)
 
 
 def test_loads_of_a_motion_are_its_fourier_series():
