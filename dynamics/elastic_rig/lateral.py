@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
+from dynamics.elastic_rig.damped_modes import DampedModes, damped_modes, mode_character
 from dynamics.elastic_rig.freedoms import FAMILIES
 from dynamics.elastic_rig.orbits import Orbit, orbit
 from dynamics.elastic_rig.reduction import ReducedElasticRig
@@ -30,6 +30,7 @@ class RigMode:
 
     frequency : damped [Hz]; logarithmic_decrement : [-], negative is unstable; family : of `FAMILIES`, with most of its
     kinetic energy; shaft : that moves most, empty for the housing; whirl : of that shaft, -1 backward to 1 forward
+    elastic_share : strain energy in shafts and couplings over the kinetic energy, 0 where shafts move as rigid bodies
     """
 
     name: str
@@ -38,6 +39,7 @@ class RigMode:
     frequency: float
     logarithmic_decrement: float
     whirl: float
+    elastic_share: float = 1.0
 
     @property
     def damping_ratio(self) -> float:
@@ -57,6 +59,7 @@ def rig_modes(rig: ReducedElasticRig, state: RunningState, highest: float) -> tu
     """
     modes = damped_modes(rig, state, highest)
     character = mode_character(rig, modes.shapes)
+    elastic = _elastic_shares(rig, modes)
     shafts = [shaft.name for shaft in rig.model.rig.drivetrain.shafts]
     slowest = AT_REST * abs(state.speed) / (2.0 * math.pi)
     found = []
@@ -73,9 +76,21 @@ def rig_modes(rig: ReducedElasticRig, state: RunningState, highest: float) -> tu
                 frequency=float(modes.frequency[i]),
                 logarithmic_decrement=float(modes.logarithmic_decrement[i]),
                 whirl=float(character.whirl[i, body]) if on_shaft else 0.0,
+                elastic_share=float(elastic[i]),
             )
         )
     return tuple(found)
+
+
+def _elastic_shares(rig: ReducedElasticRig, modes: DampedModes) -> Array:
+    """(m,) as `RigMode.elastic_share`; bearings, meshes and housings are no part of the strain."""
+    model = rig.model
+    shapes = rig.basis @ modes.shapes
+    on_shafts = np.flatnonzero(np.array(model.freedoms.shaft_of) >= 0)
+    moved = shapes[on_shafts]
+    strain = np.real(np.sum(np.conj(moved) * (model.stiffness[on_shafts][:, on_shafts] @ moved), axis=0))
+    kinetic = np.real(np.sum(np.conj(shapes) * (model.mass @ shapes), axis=0)) * np.abs(modes.poles) ** 2
+    return np.asarray(np.maximum(strain, 0.0) / kinetic)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from dynamics.standards.api617_2014 import AF_CRITICAL
 from rigdesign.checks.registry import REGISTRY, Need, RigRule, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.lateral import LateralVibration, Separation, StageLateral, Torque
+from rigdesign.results.lateral import SWAYING, LateralVibration, Separation, StageLateral, Torque
 from rigdesign.results.units import NUMBER, RPM
 
 GROUP = "lateral vibration"
@@ -45,10 +45,10 @@ def _orbits(solved: SolvedRig) -> Values:
 def _separations(solved: SolvedRig) -> Values:
     """Margin over the required one of every lateral mode that needs one."""
     for stage in _lateral(solved).of("held"):
-        if all(one.required == 0.0 for one in stage.separations):
+        if all(one.required == 0.0 or stage.as_rigid_body(one.mode) for one in stage.separations):
             yield FAR, f"stage {stage.stage}: no lateral mode with AF >= {AF_CRITICAL:g} among those listed"
         for one in stage.separations:
-            if one.required > 0.0:
+            if one.required > 0.0 and not stage.as_rigid_body(one.mode):
                 yield abs(one.margin) / one.required, f"stage {stage.stage}: {_words(one)}"
 
 
@@ -68,14 +68,16 @@ def _decrements(torque: Torque, solved: SolvedRig) -> Values:
 
 def _of_stage(stage: StageLateral) -> Values:
     """Lateral modes up to the speed of the fastest shaft, where films and internal damping can drive them, and all that
-    grow."""
+    grow; rigid bodies that sway in their bearings have to grow to count."""
+    rigid = [mode.frequency for mode in stage.modes if stage.as_rigid_body(mode)]
+    apart = f"; {len(rigid)} rigid-body modes from {min(rigid):.2g} Hz do not grow" if rigid else ""
     for mode in stage.modes:
         slow = mode.family == "lateral" and mode.frequency <= stage.highest_turn
-        if slow or mode.logarithmic_decrement < 0.0:
+        if (slow and not stage.as_rigid_body(mode)) or mode.logarithmic_decrement < 0.0:
             yield (
                 mode.logarithmic_decrement,
                 f"stage {stage.stage}: {mode.name}, {mode.frequency:.1f} Hz, "
-                f"{mode.frequency / stage.highest_turn:.2f} of the fastest shaft",
+                f"{mode.frequency / stage.highest_turn:.2f} of the fastest shaft{apart}",
             )
 
 
@@ -122,7 +124,9 @@ RULES = (
         procedure=(
             "Eigenvalues of the closed loop at the held stages, films linearised at their load, speed and"
             " temperature, damping that turns with the shafts included. Lateral modes up to the speed of the fastest"
-            " shaft count, and every mode that grows."
+            f" shaft count, and every mode that grows. Shafts that sway as rigid bodies below {SWAYING:g} of that speed,"
+            " in bearings without load, have a stiffness near zero and so a decrement near zero: they have to die away,"
+            " no more."
         ),
         source="limits.dynamics.logarithmic_decrement_minimum; API 617",
         comparison=">=",

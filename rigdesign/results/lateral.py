@@ -7,6 +7,9 @@ from typing import Literal
 
 from dynamics.elastic_rig.lateral import RigMode
 
+RIGID, SWAYING = 0.05, 0.1
+"""Strain energy over kinetic energy, and frequency over that of the fastest shaft, below which a mode is no vibration
+of shafts: films whirl at 0.4 to 0.5 of the speed, unbalance at once, teeth above."""
 Torque = Literal["held", "lost"]
 """Whether the bearings carry the torque of the stage, or the weight alone after the loop has lost it at speed."""
 
@@ -99,6 +102,10 @@ class StageLateral:
     """Torsional modes against once and twice a turn, the nearest first."""
     highest_turn: float = 0.0
     """Of the fastest shaft [Hz]."""
+
+    def as_rigid_body(self, mode: RigMode) -> bool:
+        """Whether shafts sway undeformed in the play of unloaded bearings, slower than anything that turns drives."""
+        return mode.elastic_share < RIGID and mode.frequency < SWAYING * self.highest_turn
 
 
 @dataclass(frozen=True, kw_only=True)

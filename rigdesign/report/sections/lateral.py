@@ -67,6 +67,7 @@ def _modes(stage: dict[str, Any]) -> list[dict[str, Any]]:
             "amplification": mode["amplification"],
             "margin": mode["margin"],
             "required_margin": mode["required_margin"],
+            "rigid_body": mode["rigid_body"],
         }
         for mode in shown
     ]

@@ -56,7 +56,10 @@ def _stage(stage: StageLateral) -> dict[str, Any]:
             for mesh in stage.meshes
             for line, force in mesh.forces.items()
         ],
-        "modes": [_mode(mode, margins.get(id(mode))) for mode in stage.modes],
+        "modes": [
+            _mode(mode, margins.get(id(mode))) | {"rigid_body": stage.as_rigid_body(mode)}
+            for mode in stage.modes
+        ],
         "bearings": [_bearing(bearing) for bearing in stage.bearings],
         "seals": [
             {"seal": seal.seal, "shaft": seal.shaft, "orbit_um": UM * seal.amplitude} for seal in stage.seals

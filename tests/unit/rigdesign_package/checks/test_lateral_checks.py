@@ -1,5 +1,6 @@
 """Checks of lateral vibration on made-up modes and orbits."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -70,6 +71,19 @@ def test_slow_lateral_modes_and_all_that_grow_count_for_stability() -> None:
     check = grown["lateral.stability_without_torque"]
     assert (check.value, check.verdict) == (-0.01, "fail")
     assert found()["lateral.stability"].verdict == "not applicable"
+
+
+def test_rigid_bodies_that_sway_in_unloaded_bearings_are_no_decrement_and_no_critical_speed() -> None:
+    """Shafts in the play of rolling bearings at 1.2 Hz; a whirl at half the speed counts, though as rigid."""
+    swaying = replace(mode(0.0003, 1.2), elastic_share=1e-5)
+    whirling = replace(mode(0.2, 95.0), elastic_share=0.003)
+    near = Separation(mode=swaying, speed=7.6, harmonic=1, margin=0.01, required=0.16)
+    calm = found(held=(swaying, whirling), separations=(near,))
+    check = calm["lateral.stability"]
+    assert (check.value, check.verdict) == (0.2, "pass")
+    assert "1 rigid-body modes from 1.2 Hz do not grow" in check.reason
+    assert calm["lateral.separation"].verdict == "pass"
+    assert found(held=(replace(swaying, logarithmic_decrement=-0.001),))["lateral.stability"].verdict == "fail"
 
 
 def test_a_critical_speed_keeps_the_distance_that_its_amplification_asks_for() -> None:
