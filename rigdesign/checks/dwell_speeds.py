@@ -1,28 +1,16 @@
 """Check of the speeds at which the rig dwells against resonances of meshes, shafts and joints."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule
 from rigdesign.records.loop_states import dwell_stages
 from rigdesign.records.near_dwell import SHAFT_SHARE
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER, RPM
 
-
-@dataclass(frozen=True, kw_only=True)
-class DwellRule(RuleFamily):
-    """A rule of good practice: it warns."""
-
-    def rule(self, limit: float | None, place: str = "") -> Rule:
-        """The rule with its limit."""
-        return replace(super().rule(limit, place), warn_only=True)
-
-
-DWELL = DwellRule(
+DWELL = RuleFamily(
     key="dynamics.dwell_speed",
     title="distance of dwell speeds from resonances of meshes, shafts and joints",
     procedure=(
@@ -36,6 +24,7 @@ DWELL = DwellRule(
     group="dynamics",
     source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
     comparison=">=",
+    advisory=True,
     needs=LOADS,
     leaves_out=(long_periods,),
     absent="no stage dwells at a speed whose response is computed",

@@ -176,7 +176,7 @@ def _input(row: InputChange) -> dict[str, Any]:
 
 
 def _check(row: CheckChange) -> dict[str, Any]:
-    keys = ("verdict", "value", "limit", "margin", "utilisation", "reason")
+    keys = ("verdict", "value", "limit", "margin", "distance", "reason")
 
     def side(check: Any) -> dict[str, Any] | None:
         return None if check is None else {key: getattr(check, key) for key in keys}
@@ -188,7 +188,7 @@ def _check(row: CheckChange) -> dict[str, Any]:
         "change": row.change,
         "before": side(row.before),
         "after": side(row.after),
-        "utilisation_change": row.utilisation_change,
+        "distance_change": row.distance_change,
     }
 
 

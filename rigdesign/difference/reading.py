@@ -9,6 +9,7 @@ from typing import Any
 
 from rigdesign.base.errors import WIDEST_PLACE, UsageError, shortened
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
+from rigdesign.results.check import status
 
 RESULTS = "results.json"
 TAKES = "diff takes two folders that `rigdesign check --out` wrote, or their results.json"
@@ -47,7 +48,7 @@ class CheckValue:
     value: float | None
     limit: float | None
     margin: float | None
-    utilisation: float | None
+    distance: float | None
     reason: str
 
 
@@ -164,11 +165,11 @@ def _check(row: Mapping[str, Any]) -> CheckValue:
         title=_text(row["title"]),
         group=_text(row["group"]),
         unit=_text(row["unit"]),
-        verdict=_text(row["verdict"]),
+        verdict=status(row["verdict"], row["flags"]),
         value=_number_or_none(row["value"]),
         limit=_number_or_none(row["limit"]),
         margin=_number_or_none(row["margin"]),
-        utilisation=_number_or_none(row["utilisation"]),
+        distance=_number_or_none(row["distance"]),
         reason=_text(row["reason"]),
     )
 

@@ -82,7 +82,7 @@ def _stated_number(found: re.Match[str]) -> str:
 def percent_text(share: float) -> str:
     """A share in per cent: three digits above 1 %, one decimal below, nothing finer than 0.1 %."""
     percent = 100.0 * share
-    if 0.0 < abs(percent) < 0.1:
+    if 0.0 < percent < 0.1:
         return "< 0.1 %"
     return f"{number_text(percent, 3) if abs(percent) >= 1.0 else f'{percent:.1g}'} %"
 

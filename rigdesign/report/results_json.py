@@ -41,6 +41,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "not_modelled": result.not_modelled,
         "warnings": result.warnings,
         "flips": result.flips,
+        "flip_search": result.flip_search,
         "timings_s": result.timings_s,
     }
     if result.events:

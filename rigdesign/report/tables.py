@@ -29,7 +29,7 @@ def _checks(result: RunResult) -> str:
         "upper_limit",
         "unit",
         "margin",
-        "utilisation",
+        "distance",
         "verdict",
         "reason",
         "source",

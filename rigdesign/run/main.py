@@ -18,7 +18,6 @@ from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
 from rigdesign.checks import all_checks
-from rigdesign.checks.rules import overall
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
@@ -33,7 +32,7 @@ from rigdesign.records.housing import compared_temperatures, fields_of
 from rigdesign.records.rolling_bearings import rolling_bearings
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.records.undamped import held_crossings, require_damping
-from rigdesign.results.check import Check, Checks
+from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.events import event_row
@@ -49,7 +48,7 @@ from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
 from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
-from rigdesign.run.warnings import not_modelled, unanswered, warnings_of
+from rigdesign.run.warnings import not_modelled, warnings_of
 from thermal.fe.kernels import one_thread
 
 Progress = Callable[[str], None]
@@ -190,7 +189,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(solved),
-        warnings=[*_doubts(case), *warnings_of(solved, losses), *unanswered(checks)],
+        warnings=[*_doubts(case), *warnings_of(solved, losses)],
         timings_s=clock.laps,
         fields=[field for p in points for field in fields_of(rig, p)],
     )

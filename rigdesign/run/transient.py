@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.checks import all_checks
-from rigdesign.checks.rules import overall
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.check import Check, Checks
+from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.extremes import Extreme, HistoryExtremes
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.history import UNITS, worst_moment_row

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rigdesign.case import Case
 
 CHECK_KEYS = (
-    "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
-    "by_definition",
+    "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "distance", "verdict",
+    "flags", "by_definition",
 )  # fmt: skip
 NO_MEMORY = "the worker has no memory left; give it more, or start fewer workers"
 

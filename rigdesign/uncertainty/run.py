@@ -13,9 +13,8 @@ from functools import partial
 
 from rigdesign.base.worker_pool import DIED, compute_all, worker_count
 from rigdesign.case.model import Case
-from rigdesign.checks.rules import overall
 from rigdesign.reanalysis.reference import Reference
-from rigdesign.results.check import Checks
+from rigdesign.results.check import Checks, overall
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
 from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
@@ -43,7 +42,7 @@ def with_ranges(
 ) -> RunResult:
     """The result of a run with its verdicts over the ranges of the assumed inputs.
 
-    A check passes only if it holds at both ends of every range, else it warns and says which assumption decides
+    A check passes only if it holds at both ends of every range, else it is open and says which assumption decides
     it. An end without a result (an invalid case, an iteration that does not converge) makes the checks that depend on
     its input warn.
 

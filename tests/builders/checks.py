@@ -2,8 +2,7 @@
 
 import json
 
-from rigdesign.results.check import Check
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Check, Verdict
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"

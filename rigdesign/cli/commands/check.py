@@ -25,7 +25,7 @@ def check(
     pdf: Annotated[bool, Parameter(negative=())] = False,
     author: str | None = None,
     json: bool = False,
-    fail_on: Literal["fail", "warn"] = "fail",
+    fail_on: Literal["advisory", "close"] | None = None,
 ) -> int:
     """Compute loads, losses, temperatures and clearances of a rig and hold them against its limits.
 
@@ -50,7 +50,7 @@ def check(
     json
         Print results.json on stdout; everything else goes to stderr.
     fail_on
-        Verdict from which the exit status is 1.
+        Exit status 1 for a missed advisory limit too; with close also for a check with less than 5 % of its limit left.
     """
     if everything and verbosity.get() == "quiet":
         raise UsageError(
@@ -96,5 +96,6 @@ def check(
         print_json(results_document(result))
     else:
         print_checks(result, out, everything=everything)
-    failing = {"fail"} if fail_on == "fail" else {"fail", "warn"}
-    return 1 if result.verdict in failing else 0
+    flags = {None: (), "advisory": ("advisory",), "close": ("advisory", "close")}[fail_on]
+    flagged = any(flag in check.flags for check in result.checks for flag in flags)
+    return 1 if result.verdict != "pass" or flagged else 0

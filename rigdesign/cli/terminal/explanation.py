@@ -13,7 +13,7 @@ from rigdesign.explanation.check import CheckExplanation
 from rigdesign.explanation.keys import KeyEntry
 from rigdesign.explanation.overview import Overview
 from rigdesign.explanation.path import PathExplanation, StatedValue
-from rigdesign.report.numbers import number_text, quantity_text, unit_text
+from rigdesign.report.numbers import number_text, percent_text, quantity_text, unit_text
 
 HEAD = 11
 """Columns of the word before an answer."""
@@ -91,14 +91,14 @@ def print_check(found: CheckExplanation, case: Path) -> None:
         _answer(console, "so", "the check does not apply to this case")
     done = found.finished
     if done is not None:
-        used = "" if done.utilisation is None else f", {100.0 * done.utilisation:.0f} % used"
+        distance = "" if done.distance is None else f", distance {percent_text(done.distance)}"
         margin = (
             "" if done.margin is None else f", margin {quantity_text(done.margin, _difference(done.unit))}"
         )
         _answer(
             console,
             "result",
-            f"{done.verdict}: {quantity_text(done.value, done.unit)}{margin}{used}; {done.reason}",
+            f"{done.verdict}: {quantity_text(done.value, done.unit)}{margin}{distance}; {done.reason}",
         )
         if not done.same_case:
             _answer(console, "note", f"{done.folder} holds results of another state of the case")

@@ -63,7 +63,7 @@ def test_doubt_turns_a_pass_into_a_warning_and_leaves_a_fail() -> None:
 
 
 def test_a_rule_of_good_practice_warns() -> None:
-    assert hold(rule(warn_only=True), 3.0).verdict == "warn"
+    assert hold(rule(advisory=True), 3.0).verdict == "warn"
 
 
 def test_overall_is_the_worst_applicable_verdict() -> None:

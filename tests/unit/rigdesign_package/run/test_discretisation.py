@@ -6,8 +6,7 @@ from typing import cast
 import pytest
 
 from rigdesign.checks.rules import with_error
-from rigdesign.results.check import Check
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Check, Verdict
 from rigdesign.run.mesh_convergence import EDGE_ORDER, richardson
 
 NODES = (1_000, 3_000, 24_000)
