@@ -84,7 +84,7 @@ def percent_text(share: float) -> str:
     percent = 100.0 * share
     if 0.0 < percent < 0.1:
         return "< 0.1 %"
-    return f"{number_text(percent, 3) if abs(percent) >= 1.0 else f'{percent:.1g}'} %"
+    return f"{number_text(percent, 3 if abs(percent) >= 1.0 else 1)} %"
 
 
 def counted(number: int, noun: str) -> str:

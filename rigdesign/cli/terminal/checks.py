@@ -86,7 +86,11 @@ def _print_reasons(console: Console, checks: Iterable[Check]) -> None:
 
 def _print_nearest(console: Console, checks: Sequence[Check]) -> None:
     """The checks that hold with the least left; those that hold by definition predict nothing and are left out."""
-    held = [check for check in sorted_checks(checks) if check.distance is not None and not check.missed]
+    held = [
+        c
+        for c in sorted_checks(checks)
+        if c.distance is not None and c.status in ("pass", "open") and not c.missed
+    ]
     stated = sum(check.by_definition for check in held)
     predicted = [check for check in held if not check.by_definition]
     nearest = sorted(predicted, key=lambda check: check.distance or 0.0)[:NEAREST]

@@ -49,8 +49,8 @@ def second(first):
     document["inputs"][2]["basis"] = "measured: torque flange"
     document["inputs"][3] = {"path": "drivetrain.motor.inertia", "value": "0.01 kg m2", "basis": ""}
     tip, outlet, root, flow = document["checks"]
-    tip.update(value=0.09, margin=-0.01, utilisation=0.1 / 0.09, verdict="fail")
-    outlet.update(value=145.5, margin=14.5, utilisation=145.5 / 160.0)
+    tip.update(value=0.09, margin=-0.01, distance=-0.1, verdict="fail")
+    outlet.update(value=145.5, margin=14.5, distance=14.5 / 160.0)
     root.update(value=900.0 * (1 + 1e-9))
     document["checks"][3] = {**flow, "id": "oil.other", "title": "other flow"}
     document["thermal"][0]["max_temperature_degC"] += 14.0
@@ -115,7 +115,7 @@ def test_names_and_titles_are_no_inputs(first, tmp_path):
 def test_a_check_that_applies_to_one_result_only_is_no_flip(first, tmp_path):
     other = copy.deepcopy(first)
     for check in other["checks"][:2]:
-        check.update(verdict="not applicable", value=None, margin=None, utilisation=None, reason="no housing")
+        check.update(verdict="not applicable", value=None, margin=None, distance=None, reason="no housing")
     a, b = written(first, tmp_path / "a"), written(other, tmp_path / "b")
     found = results_difference(a, b)
     assert not found.flipped and not any(row.worse for row in found.checks)
@@ -162,7 +162,7 @@ def test_verdicts_that_flipped_come_first_and_round_off_moves_nothing(pair):
         ("clearance.tip", "flipped"), ("temperature.outlet", "moved"), ("oil.other", "added"), ("oil.flow", "removed"),
     ]  # fmt: skip
     assert found.checks[0].worse
-    assert found.checks[0].utilisation_change == pytest.approx(0.1 / 0.09 - 0.1 / 0.106)
+    assert found.checks[0].distance_change == pytest.approx(-0.1 - (1.0 - 0.1 / 0.106))
     assert headline(found) == (
         "pass → fail: 3 inputs changed, 1 verdict flipped, 1 other check moved, 2 checks in one result only"
     )
@@ -210,7 +210,7 @@ def without(key):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (damaged(schema_version="2"), "schema_version 2, this version reads 1; run `rigdesign check` again"),
+        (damaged(schema_version="1"), "schema_version 1, this version reads 2; run `rigdesign check` again"),
         (
             without("inputs"),
             rf"lists no inputs \(written by rigdesign {__version__}\); run `rigdesign check` again",
@@ -277,7 +277,7 @@ def test_the_terminal_keeps_to_80_columns(pair, capsys):
     assert "pass → fail: 3 inputs changed" in text
     assert "140 degC → 160 degC" in text
     flip = next(n for n, line in enumerate(lines) if "clearance.tip" in line)
-    assert lines[flip - 1].endswith("share of the limit used") and lines[flip].endswith("94.3 → 111 %")
+    assert lines[flip - 1].endswith("distance to the limit") and lines[flip].endswith("5.66 → −10 %")
     assert "hot tip clearance: 0.106 → 0.09" in lines[flip + 1] and "limit 0.1" in lines[flip + 1]
     assert text.index("verdicts flipped (1)") < text.index("inputs changed (3)") < text.index("checks moved")
     assert "+ tip meets fillet" in text and str(Path("out") / "diff.html") in text

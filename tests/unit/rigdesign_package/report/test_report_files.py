@@ -28,11 +28,11 @@ def written(tmp_path_factory):
 
 def test_results_json_keeps_the_contract(written):
     document = json.loads((written[0] / "results.json").read_text(encoding="utf-8"))
-    assert document["schema_version"] == "1"
+    assert document["schema_version"] == "2"
     assert set(document["case"]) >= {"name", "path", "hash"}
     assert document["verdict"] == "fail"
     assert set(document["checks"][0]) >= {
-        "id", "title", "value", "limit", "unit", "margin", "utilisation", "verdict", "source",
+        "id", "title", "value", "limit", "unit", "margin", "distance", "verdict", "flags", "error", "source",
     }  # fmt: skip
     gearbox = document["dynamics"]["gearboxes"]["test"]
     assert set(gearbox["dynamic_factor"][0]) >= {
@@ -107,7 +107,7 @@ def test_junit_has_a_testcase_per_check(written):
     assert "2180 N/mm², limit ≤ 950 N/mm², margin −1230 N/mm²" in failure.get("message")
     assert "ISO 6336-3" in failure.text
     assert cases["bought_part_coupling"].find("skipped").get("message") == "no coupling is fitted"
-    assert "warning: holds" in cases["axial_play"].find("system-out").text
+    assert "close: holds" in cases["axial_play"].find("system-out").text
     assert cases["axial_play"].find("failure") is None
     assert root.get("failures") == "1"
     assert root.get("skipped") == "1"

@@ -170,7 +170,7 @@ def test_study_page_and_plot(study):
     page = (out / "study.html").read_text(encoding="utf-8")
     assert "Example &lt;rig&gt;" in page
     assert "Example <rig>" not in page
-    assert "margin, 1 − utilisation" in page
+    assert "distance to the limit" in page
     assert (out / "study.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert not list(out.glob(".rigdesign-*"))
 
