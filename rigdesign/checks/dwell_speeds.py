@@ -25,6 +25,7 @@ DWELL = RuleFamily(
     source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
     comparison=">=",
     advisory=True,
+    resonant=True,
     needs=LOADS,
     leaves_out=(long_periods,),
     absent="no stage dwells at a speed whose response is computed",

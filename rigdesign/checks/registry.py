@@ -64,6 +64,8 @@ class RuleFamily:
     needs: Need | None = None
     absent: str | Callable[[SolvedRig], str] = NO_HOUSING
     """Why there is no value where there is none: the rule does not apply, but for want of a housing it is open."""
+    resonant: bool = False
+    """The value jumps with a resonance or a loss of contact: a reduced model cannot tell it."""
     advisory: bool = False
     """A missed limit does not bind (`rules.Rule`)."""
     housed: bool = False

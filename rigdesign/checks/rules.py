@@ -176,8 +176,11 @@ def with_omissions(check: Check, omissions: Sequence[Omission]) -> Check:
     )
 
 
-def with_error(check: Check, error: float | None) -> Check:
-    """A check with the error of its value: one whose margin is smaller than it is open, held or missed."""
+def with_error(check: Check, error: float | None, cause: str = "the discretisation") -> Check:
+    """A check with the error of its value: one whose margin is smaller than it is open, held or missed.
+
+    cause : what leaves the error, in words
+    """
     if error is None or check.margin is None:
         return check
     finite(f"error of check {check.id}", error)
@@ -185,15 +188,13 @@ def with_error(check: Check, error: float | None) -> Check:
     if abs(check.margin) >= error:
         return known
     unit = "K" if check.unit == "degC" else check.unit
-    doubt = f"the discretisation leaves {error:.2g} {unit} open, more than the margin: refine it"
+    return unjudged(known, f"{cause} leaves {error:.2g} {unit} open, more than the margin")
+
+
+def unjudged(check: Check, cause: str) -> Check:
+    """A check that has a value and cannot be judged for a cause outside it, held or missed."""
     flags = tuple(flag for flag in check.flags if flag != "advisory")
-    return replace(known, verdict="open", flags=flags, reason=joined(check.reason, doubt))
-
-
-def without_judgement(check: Check, cause: str) -> Check:
-    """A check whose value cannot be trusted for a cause outside it: open if it held."""
-    verdict = "open" if check.verdict == "pass" else check.verdict
-    return replace(check, verdict=verdict, reason=joined(check.reason, cause))
+    return replace(check, verdict="open", flags=flags, reason=joined(check.reason, cause))
 
 
 def with_doubt(check: Check, cause: str) -> Check:

@@ -10,7 +10,7 @@ from rigdesign.case.paths import known_paths
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.registry import LOADS, REGISTRY, Registry, RigRule, RuleFamily, Topic
 from rigdesign.checks.rules import hold
-from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig
+from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import KELVIN, MICROMETRE, DisplayUnit
 from rigdesign.rig.model import build_rig
@@ -57,7 +57,6 @@ def test_value_and_limit_are_shown_in_the_unit_of_the_rule(solved: SolvedRig) ->
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"needs": LOADS}, NO_LOADS),
         ({"limit": lambda limits: None}, NO_LIMIT),
         ({"values": lambda solved: (), "absent": "no such place"}, "no such place"),
         ({"values": lambda solved: (), "absent": lambda solved: solved.case.name}, "uhcf_prototype"),
@@ -68,6 +67,15 @@ def test_what_is_missing_is_the_reason_why_a_rule_does_not_apply(
 ) -> None:
     check = rule(**changes).check(solved)
     assert (check.verdict, check.reason) == ("not applicable", reason)
+
+
+@pytest.mark.parametrize("changes", [{"needs": LOADS}, {"values": lambda solved: ()}])
+def test_a_limit_whose_value_this_run_has_not_computed_is_open(
+    solved: SolvedRig, changes: dict[str, object]
+) -> None:
+    """No loads, though the case has a drivetrain; no housing, though the limit is on one."""
+    check = rule(**changes).check(solved)
+    assert check.verdict == "open" and check.reason in (NO_LOADS, NO_HOUSING)
 
 
 def test_a_key_is_registered_once() -> None:
