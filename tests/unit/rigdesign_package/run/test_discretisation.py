@@ -62,10 +62,7 @@ def test_a_margin_within_the_error_warns_and_says_so() -> None:
     found = with_error(check(0.01, reason="front at 90 deg"), 0.02)
     assert found.verdict == "open"
     assert found.error == 0.02
-    assert (
-        found.reason
-        == "front at 90 deg; the discretisation leaves 0.02 mm open, more than the margin"
-    )
+    assert found.reason == "front at 90 deg; the discretisation leaves 0.02 mm open, more than the margin"
 
 
 @pytest.mark.parametrize(("margin", "verdict"), [(0.05, "pass"), (0.05, "open"), (-0.05, "fail")])
