@@ -83,6 +83,7 @@ SCUFFING = RuleFamily(
     places=meshes,
     comparison=">=",
     needs=LOADS,
+    unconfirmed="X_Gamma, X_J, mu_m and S_B of ISO/TS 6336-20 are from memory, not compared with a copy",
     leaves_out=(_mean_of_gear, long_periods, *HEAT),
     moved_by=frozenset({"gear rating", "flank rating", "housing"}),
 )
@@ -98,6 +99,7 @@ FILM = RuleFamily(
     places=meshes,
     comparison=">=",
     needs=LOADS,
+    unconfirmed="ISO/TS 6336-22 is from memory of ISO/TR 15144-1, not compared with a copy",
     leaves_out=(_mean_of_gear, long_periods, *HEAT),
     moved_by=frozenset({"gear rating", "housing"}),
 )

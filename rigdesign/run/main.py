@@ -160,7 +160,8 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
     case, rig, points = solved.case, solved.rig, list(solved.points)
     _ = solved.lateral
     clock.lap("lateral")
-    checks = all_checks(solved)
+    hand = hand_checks(solved)
+    checks = all_checks(solved, hand)
     clock.lap("checks")
     losses = losses_by_stage(rig, points)
     result = RunResult(
@@ -184,7 +185,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         coupling=[coupling_row(p) for p in points],
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),
-        hand_checks=hand_checks(solved),
+        hand_checks=hand,
         inputs=list(case.inputs),
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),

@@ -49,7 +49,7 @@ def with_transient(
         return replace(result, warnings=[*result.warnings, Finding(id="transient", text=text)])
     run = run_transient(solved.rig, solved.points, say)
     history = history_extremes(solved, run)
-    checks: list[Check] = all_checks(replace(solved, history=history))
+    checks: list[Check] = all_checks(replace(solved, history=history), result.hand_checks)
     return replace(
         result,
         transient=transient_result(solved, run, history),
