@@ -162,8 +162,9 @@ def test_a_failing_check_names_what_makes_its_value_doubtful(
 
 @pytest.mark.parametrize(
     ("key", "value", "verdict"),
-    [("flank.pitting_safety", 1.4, "open"), ("flank.pitting_safety", 3.0, "pass"), ("flank.pitting_safety", 0.9, "open"),
-     ("flank.pitting_safety", 0.3, "fail"), ("dynamics.resonance_distance", 5.0, "open"), ("oil.flow", 1.4, "pass")],
+    [("flank.pitting_safety", 1.4, "open"), ("flank.pitting_safety", 3.0, "pass"),
+     ("flank.pitting_safety", 0.9, "open"), ("flank.pitting_safety", 0.3, "fail"),
+     ("dynamics.resonance_distance", 5.0, "open"), ("oil.flow", 1.4, "pass")],
 )  # fmt: skip
 def test_quick_judges_tooth_loads_only_beyond_the_error_of_its_model(
     key: str, value: float, verdict: str, monkeypatch: pytest.MonkeyPatch, solved: SolvedRig
