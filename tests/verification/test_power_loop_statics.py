@@ -1,6 +1,7 @@
 """Static closure of the power loop: twist times loop stiffness is the torque, stiffness by series sum."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
 from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_static
+from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import wound_state
@@ -139,3 +141,53 @@ def test_drag_torques_wind_the_loop_as_every_line_balances() -> None:
     ]
     assert torque[0] == pytest.approx(180.0, rel=1e-9)
     assert sum(torque) == pytest.approx(-0.7, rel=1e-7)
+
+
+def stiff(system: LinearSystem, n_hidden: int, order: int) -> LinearSystem:
+    """The same loop with freedoms that nothing loads, of 1e8 to 1e14 N m/rad, all freedoms in another order."""
+    random = np.random.default_rng(order)
+    n = len(system.inertia)
+    follow = (
+        random.normal(size=(n_hidden, n))
+        * (np.abs(system.stiffness) > 0.0)[random.integers(n, size=n_hidden)]
+    )
+    own = np.geomspace(1e8, 1e14, n_hidden)
+    follow = np.sqrt(1e9 / own)[:, None] * (follow - follow @ system.rigid @ np.linalg.pinv(system.rigid))
+    tie = own[:, None] * follow
+    stiffness = np.block([[system.stiffness + follow.T @ tie, -tie.T], [-tie, np.diag(own)]])
+    place = random.permutation(n + n_hidden)
+    back = np.argsort(place)
+
+    def longer(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([values, np.zeros((n_hidden, *values.shape[1:]))])[place]
+
+    every = np.ix_(place, place)
+    return replace(
+        system,
+        inertia=np.diag(np.ones(n + n_hidden)),
+        damping=np.zeros((n + n_hidden, n + n_hidden)),
+        stiffness=stiffness[every],
+        dofs=tuple(str(i) for i in place),
+        mesh_ports=back[system.mesh_ports],
+        rigid=longer(system.rigid),
+        drive_dof=int(back[system.drive_dof]),
+        twist_load=longer(system.twist_load),
+        drag_loads={name: longer(load) for name, load in system.drag_loads.items()},
+    )
+
+
+@pytest.mark.parametrize("torque", [1e-3, 1.0, 180.0, 180e3])
+def test_static_state_does_not_depend_on_the_order_of_sums(torque: float) -> None:
+    """With springs over twelve decades, whose round-off is above 1e-9 of the tooth force at small torques."""
+    system, laws = assemble(prototype()), prototype_laws(friction=0.0)
+    expected = wound_state(system, laws, 0.0, LoopLoad(torque=torque))
+    for order in range(8):
+        wound = wound_state(stiff(system, 300, order), laws, 0.0, LoopLoad(torque=torque))
+        assert wound.state.twist == pytest.approx(expected.state.twist, rel=1e-8)
+        assert wound.loop_stiffness == pytest.approx(expected.loop_stiffness, rel=1e-6)
+
+
+def test_bracing_that_winds_nothing_is_refused() -> None:
+    system, laws = rig()
+    with pytest.raises(DynamicsInputError, match="twist does not load the first mesh"):
+        wound_state(replace(system, twist_load=0.0 * system.twist_load), laws, 0.0, LoopLoad(torque=180.0))
