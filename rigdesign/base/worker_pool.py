@@ -4,8 +4,6 @@ The pool of this module: processes of one thread each, none outlives its parent,
 """
 
 import os
-import signal
-import threading
 from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -19,13 +17,12 @@ from concurrent.futures import (
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import islice
-from multiprocessing import connection, get_context
-from multiprocessing.connection import Connection
+from multiprocessing import get_context
 from types import TracebackType
 from typing import Self, TypeVar
 
 from rigdesign.base.errors import UsageError
-from rigdesign.base.parallel import granted_cores
+from rigdesign.base.parallel import begin_child, granted_cores, stops_held
 
 Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
@@ -235,7 +232,7 @@ class ProcessWorkers(Workers):
 
     @contextmanager
     def _starting(self) -> Iterator[None]:
-        with _one_thread_each(), _interrupts_held():
+        with _one_thread_each(), stops_held():
             yield
 
 
@@ -246,7 +243,7 @@ class _ProcessPool:
         context = get_context("spawn")
         self._end_of_workers, self._end_of_parent = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(
-            count, mp_context=context, initializer=_begin_worker, initargs=(self._end_of_workers,)
+            count, mp_context=context, initializer=begin_child, initargs=(self._end_of_workers,)
         )
 
     def end(self, *, at_once: bool) -> None:
@@ -254,9 +251,11 @@ class _ProcessPool:
 
         An interrupt waits until it is done.
         """
-        with _interrupts_held():
+        with stops_held():
             if not at_once:
                 self.executor.shutdown()
+            for process in dict(self.executor._processes or {}).values():
+                process.kill()  # compiled code would not let it see the end of the lifeline
             self._end_of_parent.close()
             self._end_of_workers.close()
             self.executor.shutdown(cancel_futures=True)
@@ -268,28 +267,6 @@ def compute_all(
     """Compute every task in processes of this machine, as `ProcessWorkers.compute`."""
     with ProcessWorkers(min(workers, max(1, len(tasks)))) as pool:
         yield from pool.compute(work, tasks)
-
-
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Interrupts wait, and processes started meanwhile never see one: they would print a traceback while they load.
-
-    The mask is for the processes, which inherit it. Here it holds for one thread only: another one, of a linear
-    algebra library, may take the signal, and Python then runs its handler in the main thread all the same.
-    """
-    if not hasattr(signal, "pthread_sigmask") or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    held: list[int] = []
-    handler = signal.signal(signal.SIGINT, lambda number, frame: held.append(number))
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        signal.signal(signal.SIGINT, signal.SIG_DFL if handler is None else handler)
-        if held:
-            signal.raise_signal(signal.SIGINT)
 
 
 @contextmanager
@@ -305,14 +282,3 @@ def _one_thread_each() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
-
-
-def _begin_worker(lifeline: Connection) -> None:
-    """Leave interrupts to the parent, and end when the lifeline does: closed, or its holder dead by SIGKILL."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
-
-
-def _end_with(lifeline: Connection) -> None:
-    connection.wait([lifeline])
-    os._exit(1)

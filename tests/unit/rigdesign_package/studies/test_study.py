@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.base import worker_pool as study_pool
 from rigdesign.base.errors import CaseError, OutputError, UsageError
+from rigdesign.base.parallel import stops_held
 from rigdesign.studies import ledger as study_ledger
 from rigdesign.studies.grid import Variation, combinations, parse_variation
 from rigdesign.studies.ledger import Ledger, point_key
@@ -306,7 +306,7 @@ def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_sta
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         thread.start()
-        with pytest.raises(KeyboardInterrupt), study_pool._interrupts_held():
+        with pytest.raises(KeyboardInterrupt), stops_held():
             starting.set()
             thread.join()
             reached.append("all started")
