@@ -1,9 +1,12 @@
 """Work on other cores and machines, through any `concurrent.futures.Executor`.
 
-The pool of this module: processes of one thread each, none outlives its parent, a dying one costs one task.
+The pool of this module: processes of one thread each, none outlives its parent, a dying one costs one task. Where they
+cannot start or cannot load what they are to compute, it is computed in this process.
 """
 
 import os
+import pickle
+import sys
 from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -17,8 +20,8 @@ from concurrent.futures import (
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import islice
-from multiprocessing import get_context
-from types import TracebackType
+from multiprocessing import current_process, get_context
+from types import ModuleType, TracebackType
 from typing import Self, TypeVar
 
 from rigdesign.base.errors import UsageError
@@ -58,6 +61,10 @@ def worker_count(workers: int | None) -> int:
     return workers
 
 
+class _NoWorkersError(LostWorkersError):
+    """Processes of this machine that do not start, or cannot load what they are to compute."""
+
+
 class Workers:
     """Computes tasks on an executor. A context manager.
 
@@ -81,8 +88,8 @@ class Workers:
     def __str__(self) -> str:
         return f"workers of {type(self._executor).__name__}"
 
-    def open(self) -> None:
-        """Reach the workers; called before the first task, and again before others."""
+    def open(self, work: Callable[[Task], Outcome], tasks: Sequence[Task]) -> None:
+        """Reach the workers for these tasks; called before they are computed."""
 
     @property
     def remark(self) -> str:
@@ -176,6 +183,7 @@ def _lost_worker(executor: Executor) -> tuple[type[BaseException], ...]:
 class ProcessWorkers(Workers):
     """Processes on this machine, one thread each, started when they are needed and kept from call to call.
 
+    They prove that they start and load the tasks before they get one; where they do not, this process computes.
     Tasks start in their order, so when a process dies (killed, out of memory, crash in a compiled library) one of
     the first ``count`` unfinished ones did it: they are computed again alone, one by one, and new processes go on
     with the rest.
@@ -184,11 +192,26 @@ class ProcessWorkers(Workers):
     _lost = ()
 
     def __init__(self, count: int) -> None:
+        if getattr(current_process(), "_inheriting", False):
+            sys.exit(1)  # in a worker that runs the user's script to load a task, which leads here once more
         self.size = count
         self._pool: _ProcessPool | None = None
+        self._refused = ""
 
     def __str__(self) -> str:
         return f"{self.size} worker process{'es' if self.size > 1 else ''}"
+
+    @property
+    def remark(self) -> str:
+        """Why this process computes, if it does."""
+        return self._refused and f"{self._refused}; all is computed in this process, one after the other"
+
+    def open(self, work: Callable[[Task], Outcome], tasks: Sequence[Task]) -> None:
+        """Start the processes and let each load a task."""
+        try:
+            self._pool, self._refused = self._proven(self._pool, self.size, work, tasks[0]), ""
+        except _NoWorkersError as error:
+            self._pool, self._refused = None, str(error)
 
     def close(self, *, at_once: bool = False) -> None:
         """End the processes."""
@@ -199,10 +222,21 @@ class ProcessWorkers(Workers):
     def compute(
         self, work: Callable[[Task], Outcome], tasks: Sequence[Task]
     ) -> Generator[tuple[int, Outcome | None], None, None]:
-        """As of `Workers`; the outcome is None only for a task that kills a process of its own."""
+        """As of `Workers`; the outcome is None only for a task that kills a process of its own.
+
+        Raises
+        ------
+        LostWorkersError
+            If processes that could start cannot any more.
+        """
         unfinished = list(range(len(tasks)))
+        if unfinished and self._pool is None:
+            self.open(work, tasks)
+        if self._refused:
+            yield from ((index, work(task)) for index, task in enumerate(tasks))
+            return
         while unfinished:
-            self._pool = self._pool or _ProcessPool(self.size)
+            self._pool = self._pool or self._proven(None, self.size, work, tasks[0])
             try:
                 for index, outcome in self._submitted(self._pool.executor, work, tasks, tuple(unfinished)):
                     unfinished.remove(index)
@@ -213,6 +247,35 @@ class ProcessWorkers(Workers):
                 for index in under_way:
                     yield index, self._alone(work, tasks, index)
 
+    def _proven(
+        self, pool: "_ProcessPool | None", count: int, work: Callable[[Task], Outcome], task: Task
+    ) -> "_ProcessPool":
+        """The pool, or a new one, after an empty task for each of its processes that loads ``work`` and ``task``."""
+        if current_process().daemon:
+            raise _NoWorkersError("this process is a worker of a pool that allows it none of its own")
+        try:
+            sent = pickle.dumps((work, task))
+        except Exception as error:  # whatever the classes of the user raise
+            raise _NoWorkersError(f"worker processes cannot compute this ({error})") from error
+        try:
+            pool = pool or _ProcessPool(count)
+            with self._starting(), nullcontext() if b"__main__" in sent else _script_hidden():
+                loading = [pool.executor.submit(_fault, sent) for _ in range(count)]
+            fault = next(filter(None, [future.result() for future in loading]), "")
+        except BrokenProcessPool:
+            fault = "they end while they start; does the script call this below if __name__ == '__main__'?"
+        except (OSError, ImportError, NotImplementedError) as error:  # no process, semaphore or memory left
+            fault = str(error)
+        except BaseException:
+            if pool is not None:
+                pool.end(at_once=True)
+            raise
+        if not fault:
+            return pool
+        if pool is not None:
+            pool.end(at_once=True)
+        raise _NoWorkersError(f"worker processes cannot compute this ({fault})")
+
     def _withdraw(self, pending: Collection[Future[Outcome]]) -> None:
         """End the processes with their tasks.
 
@@ -222,7 +285,7 @@ class ProcessWorkers(Workers):
             self.close(at_once=True)
 
     def _alone(self, work: Callable[[Task], Outcome], tasks: Sequence[Task], index: int) -> Outcome | None:
-        pool = _ProcessPool(1)
+        pool = self._proven(None, 1, work, tasks[index])
         try:
             return next(outcome for _, outcome in self._submitted(pool.executor, work, tasks, [index]))
         except BrokenProcessPool:
@@ -262,11 +325,35 @@ class _ProcessPool:
 
 
 def compute_all(
-    work: Callable[[Task], Outcome], tasks: Sequence[Task], workers: int
+    work: Callable[[Task], Outcome], tasks: Sequence[Task], workers: int, remark: Callable[[str], None]
 ) -> Generator[tuple[int, Outcome | None], None, None]:
-    """Compute every task in processes of this machine, as `ProcessWorkers.compute`."""
+    """Compute every task in processes of this machine, as `ProcessWorkers.compute`; ``remark``: see `Workers`."""
     with ProcessWorkers(min(workers, max(1, len(tasks)))) as pool:
+        if tasks:
+            pool.open(work, tasks)
+            if pool.remark:
+                remark(pool.remark)
         yield from pool.compute(work, tasks)
+
+
+def _fault(sent: bytes) -> str:
+    """In a worker: why it cannot load work and task; empty if it can."""
+    try:
+        pickle.loads(sent)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return ""
+
+
+@contextmanager
+def _script_hidden() -> Iterator[None]:
+    """Processes started meanwhile do not run the user's script again, of which they need nothing."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 @contextmanager

@@ -139,12 +139,13 @@ class PointSolver:
         named = self._name_checks(tasks, listeners)
         if not missing:
             return
-        self.workers.open()
+        work = partial(compute_point, setup=self._setup.packed(), loaded=self._setup.functions)
+        changes = [dict(task.point.changes) for task in missing]
+        self.workers.open(work, changes)
         if self.workers.remark and not self.computed:
             listeners.remark(self.workers.remark)
-        work = partial(compute_point, setup=self._setup.packed())
         whole = len(self.computed) + len(missing) + left
-        with closing(self.workers.compute(work, [dict(task.point.changes) for task in missing])) as finished:
+        with closing(self.workers.compute(work, changes)) as finished:
             for index, outcome in finished:
                 task = missing[index]
                 failed, record = _entry(task, outcome)

@@ -63,23 +63,27 @@ def with_ranges(
     processes, began = worker_count(workers), time.perf_counter()
     ends, left = plan(case, result.checks)
     wanted = [end for end in ends if end.case is not None and not end.same]
-    if progress is not None:
-        progress(f"stated rig at {FIDELITY} fidelity")
+    say = progress or (lambda line: None)
+    say(f"stated rig at {FIDELITY} fidelity")
     reference, stated = solve_stated(case)
-    solved = _solve(wanted, reference, processes, count or (lambda done, whole, path: None))
+    solved = _solve(wanted, reference, processes, count or (lambda done, whole, path: None), say)
     outcomes = [_outcome(end, stated, solved) for end in ends]
     found = joined(result, stated, list(zip(ends, outcomes, strict=True)), left)
     return replace(found, timings_s={**result.timings_s, "ranges": round(time.perf_counter() - began, 3)})
 
 
 def _solve(
-    ends: Sequence[RangeEnd], reference: Reference, workers: int, count: Count
+    ends: Sequence[RangeEnd],
+    reference: Reference,
+    workers: int,
+    count: Count,
+    say: Callable[[str], None],
 ) -> dict[tuple[str, str], EndResult]:
     """Results by path and end; the longest ones first, so that no worker waits for another at the end."""
     order = sorted(ends, key=lambda end: -len(end.parts))
     found: dict[tuple[str, str], EndResult] = {}
     work = partial(solve_end, reference=reference)
-    for index, outcome in compute_all(work, order, workers):
+    for index, outcome in compute_all(work, order, workers, say):
         end = order[index]
         found[end.path, end.end] = outcome or EndResult(checks={}, max_temperature=None, error=DIED)
         count(len(found), len(order), f"{end.path} = {end.value}")
