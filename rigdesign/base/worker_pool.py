@@ -262,6 +262,8 @@ class ProcessWorkers(Workers):
             with self._starting(), nullcontext() if b"__main__" in sent else _script_hidden():
                 loading = [pool.executor.submit(_fault, sent) for _ in range(count)]
             fault = next(filter(None, [future.result() for future in loading]), "")
+            if not fault:
+                return pool
         except BrokenProcessPool:
             fault = "they end while they start; does the script call this below if __name__ == '__main__'?"
         except (OSError, ImportError, NotImplementedError) as error:  # no process, semaphore or memory left
@@ -270,8 +272,6 @@ class ProcessWorkers(Workers):
             if pool is not None:
                 pool.end(at_once=True)
             raise
-        if not fault:
-            return pool
         if pool is not None:
             pool.end(at_once=True)
         raise _NoWorkersError(f"worker processes cannot compute this ({fault})")

@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -63,7 +64,8 @@ def _launch(
     try:
         from rigdesign.cli.terminal.verbose import cache_use
 
-        with cache_use():
+        asked = tokens[:1] and not tokens[0].startswith("-")
+        with cache_use() if asked else nullcontext():
             return app(tokens, result_action="return_value")
     finally:
         verbosity.reset(before)

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from dynamics.influence.build import influence_numbers
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers, RootFillet
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.base.file_lock import FileLock, HeldError
+from thermal.fe.kernel_cache import cache_folder
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]

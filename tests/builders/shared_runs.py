@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import TypeVar
 
 from rigdesign import load_case
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.reanalysis.flips import with_flips
 from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.solved_rig import SolvedRig
@@ -23,6 +22,7 @@ from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
+from thermal.fe.kernel_cache import cache_folder
 
 VARIABLE = "RIGDESIGN_TEST_RUN_FOLDER"
 """Environment variable with the folder of the test run."""

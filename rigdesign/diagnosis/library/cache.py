@@ -17,12 +17,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.base.version import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.prediction.model import Channel, OperatingCondition, PredictionModel, measured_against
+from thermal.fe.kernel_cache import cache_folder
 
 SCHEMA = 5
 """Of the stored libraries; raise it with any change of what they hold."""
