@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
+
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case import Case
 from rigdesign.diagnosis.catalogue import effects_of
@@ -106,7 +108,8 @@ def study(
     if not isinstance(design, StudyDesign):
         design = StudyDesign(vary=(design,) if isinstance(design, str) else tuple(design))
     write = partial(_write_study, tables=tables)
-    return run_study(case, design, Path(out), write=write, fidelity=fidelity, execution=execution)
+    with threadpool_limits(limits=1):
+        return run_study(case, design, Path(out), write=write, fidelity=fidelity, execution=execution)
 
 
 def _write_study(study: StudyResult, out: Path, tables: Sequence[TableFormat]) -> None:
@@ -128,7 +131,8 @@ def compare(
     CaseError, NotConvergedError, MissingLibraryError
         As :func:`run_case`.
     """
-    return compare_measurement(case, Path(measurement), model=model, fidelity=fidelity)
+    with threadpool_limits(limits=1):
+        return compare_measurement(case, Path(measurement), model=model, fidelity=fidelity)
 
 
 def diagnose(
@@ -155,5 +159,5 @@ def diagnose(
     if name is not None:
         check_pick(effects_of(case, channels=None), name)
     used = DEFAULT if calibration is None else load_rig_calibration(Path(calibration), case)
-    found = diagnose_measurement(case, Path(measurement), calibration=used)
-    return outcome(found, pick=name)
+    with threadpool_limits(limits=1):
+        return outcome(diagnose_measurement(case, Path(measurement), calibration=used), pick=name)

@@ -26,6 +26,8 @@ STOPS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )  # Windows knows no hang-up
 """Signals that ask a command to end."""
+BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")
+"""Environment variables of the threads of linear algebra, read when numpy loads."""
 LENGTH = 8
 """Bytes of the length that a copy sends before its results: a copy that dies may have sent a part."""
 _PR_SET_PDEATHSIG = 1
@@ -34,6 +36,14 @@ _taken = False
 """Whether the other cores have work of their own, see `one_core`."""
 _lifeline: tuple[int, int] | None = None
 """Pipe to which nobody writes: it closes in the copies of this process when this process ends."""
+
+
+def one_blas_thread() -> dict[str, str]:
+    """Environment for a process of our own before numpy loads; empty where the user has said how many threads.
+
+    The matrices are small: more threads wait for each other. In a process of the user each call limits them instead.
+    """
+    return {} if any(name in os.environ for name in BLAS_THREADS) else dict.fromkeys(BLAS_THREADS, "1")
 
 
 @contextmanager

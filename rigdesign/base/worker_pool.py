@@ -25,15 +25,12 @@ from types import ModuleType, TracebackType
 from typing import Self, TypeVar
 
 from rigdesign.base.errors import UsageError
-from rigdesign.base.parallel import begin_child, granted_cores, stops_held
+from rigdesign.base.parallel import BLAS_THREADS, begin_child, granted_cores, stops_held
 
 Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
 
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "BLIS_NUM_THREADS"),
-    "1",
-)
+ONE_THREAD = dict.fromkeys((*BLAS_THREADS, "NUMBA_NUM_THREADS"), "1")
 IN_FLIGHT = 256
 """Tasks handed to an executor and not finished: enough for its workers, little in the memory of a scheduler."""
 DIED = "the worker process died; look for a lack of memory"

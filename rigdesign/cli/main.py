@@ -9,9 +9,10 @@ library is missing, 5 measured data cannot be used, 70 a defect of the tool, 128
 Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
+import os
 import sys
 
-from rigdesign.base.parallel import leave_interrupts
+from rigdesign.base.parallel import leave_interrupts, one_blas_thread
 from rigdesign.cli.application import app, run
 from rigdesign.cli.commands import (
     calibrate,
@@ -55,6 +56,7 @@ __all__ = [
 
 def main() -> None:
     """Entry point of the `rigdesign` command."""
+    os.environ.update(one_blas_thread())
     plain_streams()
     first_stop_counts()
     status = exit_status(lambda: run(sys.argv[1:]))

@@ -19,7 +19,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from threadpoolctl import threadpool_info
 
+from rigdesign.base.parallel import BLAS_THREADS
 from rigdesign.base.system import APT_LINE
 from rigdesign.cli import main as cli
 from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write
@@ -137,6 +139,29 @@ def test_a_case_error_loads_no_solver(write: Write) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["2"], done.stderr
+
+
+THREADS = (
+    "import os\nfrom rigdesign.cli import main as cli\nfrom rigdesign.base.parallel import BLAS_THREADS\n"
+    "cli.run = lambda _: print(*[os.environ.get(name) for name in BLAS_THREADS])\ncli.main()\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("stated", "threads"), [({}, "1 1 1 1"), ({"OMP_NUM_THREADS": "3"}, "3 None None None")]
+)
+def test_a_command_sets_the_threads_of_linear_algebra_itself(stated: dict[str, str], threads: str) -> None:
+    others = {name: value for name, value in os.environ.items() if name not in BLAS_THREADS}
+    done = subprocess.run(
+        [sys.executable, "-c", THREADS], env=others | stated, capture_output=True, text=True
+    )
+    assert done.stdout.strip() == threads, done.stderr
+
+
+def test_tests_run_with_the_threads_of_a_command() -> None:
+    """The command that the README prints sets none."""
+    stated = {os.environ[name] for name in BLAS_THREADS if name in os.environ}
+    assert {str(library["num_threads"]) for library in threadpool_info()} <= stated
 
 
 @pytest.mark.performance
