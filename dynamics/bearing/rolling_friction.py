@@ -146,5 +146,5 @@ def _skf_drag(bearing: CatalogueBearing, conditions: FrictionConditions) -> floa
     jet = conditions.lubrication == "oil_jet"
     size = skf.Size(bearing.bore * 1e3, bearing.outside_diameter * 1e3, bearing.width * 1e3)
     level = 0.5 * bearing.elements.diameter if jet else conditions.oil_level
-    drag = skf.M_drag(bearing.kind, size, level * 1e3, conditions.speed / RPM, conditions.viscosity * 1e6)
+    drag = skf.M_drag(bearing.kind, size, level * 1e3, conditions.speed / RPM)
     return JET_DRAG_FACTOR * drag if jet else drag

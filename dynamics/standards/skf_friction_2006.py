@@ -1,10 +1,10 @@
 """SKF model of the frictional moment: four sources M = phi_ish phi_rs M_rr + M_sl + M_seal + M_drag.
 
 Symbols and units as printed (N, mm, mm2/s, 1/min), moments in N mm. Sources: SKF General Catalogue 6000, pp. 87-105
-(equations, tables 2a, 3, 3a, 3c, 3d, 4, 5 and the worked example were read); the drag of the later edition
-(SKF 17000-B5), whose coefficients were found in two public programs. The curve of V_M exists as a diagram only: the
-points below are from memory of it, +-30 %, tied to the two values that are printed or quoted (roller 0.3e-4 at
-H/d_m = 0.041; ball 0.0012 when submerged).
+(equations, tables 2a, 3, 3a, 3c, 3d, 4, 5 and the worked example were read), this edition alone: later ones (10000,
+17000) have 0.4 of its drag plus a turbulent term, mu_bl = 0.12 in motion and other constants. The curve of V_M exists
+as a diagram only: the points below are from memory of it, +-30 %, tied to the two values that are printed or quoted
+(roller 0.3e-4 at H/d_m = 0.041; ball 0.0012 when submerged).
 """
 
 import math
@@ -12,7 +12,7 @@ from bisect import bisect_right
 from typing import NamedTuple
 
 MU_BL = 0.15
-"""Sliding friction coefficient of mixed lubrication, by additive package; also at the start."""
+"""Sliding friction coefficient of mixed lubrication, by additive package (p. 100: about 0.15); also at the start."""
 MU_EHL = {"mineral": 0.05, "synthetic": 0.04, "transmission": 0.1}
 """Sliding friction coefficient in full film by lubricant; cylindrical and tapered bearings have their own."""
 MU_EHL_KIND = {"cylindrical_roller": 0.02, "tapered_roller": 0.002}
@@ -20,8 +20,14 @@ MU_EHL_KIND = {"cylindrical_roller": 0.02, "tapered_roller": 0.002}
 K_RS = {"oil_bath": 3e-8, "oil_jet": 3e-8, "oil_spot": 6e-8, "grease": 6e-8}
 """Starvation constant; in an oil bath only below the centre of the lowest rolling element, above it none."""
 
-K_Z = {"deep_groove_ball": 3.1, "angular_contact_ball": 4.4, "cylindrical_roller": 5.1, "tapered_roller": 6.0}
-K_L = {"cylindrical_roller": 0.65, "tapered_roller": 0.7}
+K_Z = {
+    "deep_groove_ball": 3.1,
+    "angular_contact_ball": 4.4,
+    "cylindrical_roller": 5.1,
+    "tapered_roller": 6.0,
+    "spherical_roller": 5.5,
+}
+K_L = {"cylindrical_roller": 0.65, "tapered_roller": 0.7, "spherical_roller": 0.8}
 """Geometric constants of table 5, single row, with cage."""
 
 
@@ -191,25 +197,13 @@ def V_M(level: float, roller: bool) -> float:
     return values[right - 1] + max(share, 0.0) * (values[right] - values[right - 1])
 
 
-def M_drag(kind: str, size: Size, H: float, n: float, nu: float) -> float:
+def M_drag(kind: str, size: Size, H: float, n: float) -> float:
     """Drag moment of a bearing in an oil bath whose level stands H [mm] above the lowest point of the outer raceway.
 
-    Balls   0.4 V_M K_ball d_m^5 n^2 + T ,  rollers  4 V_M K_roll C_w B d_m^4 n^2 + T ,
-    T = 1.093e-7 n^2 d_m^3 (n d_m^2 f_t / nu)^-1.379 R_s
+    Balls V_M K_ball d_m^5 n^2, rollers 10 V_M K_roll B d_m^4 n^2 (pp. 98-100).
     """
     d_m = size.d_m
-    if H <= 0.0 or n <= 0.0:
-        return 0.0
-    ratio = (size.d + size.D) / (size.D - size.d)
-    K_z = K_Z[kind]
-    t = 2.0 * math.acos((0.6 * d_m - min(H, 1.2 * d_m)) / (0.6 * d_m))
-    f_t = math.sin(0.5 * t) if t < math.pi else 1.0
-    R_s = 0.36 * d_m**2 * (t - math.sin(t)) * 0.05 * K_z * ratio
-    turbulent: float = 1.093e-7 * n**2 * d_m**3 * (n * d_m**2 * f_t / nu) ** -1.379 * R_s
-    roller = kind in K_L
-    variable = V_M(H / d_m, roller)
-    if not roller:
-        return 0.4 * variable * K_z * ratio * 1e-12 * d_m**5 * n**2 + turbulent
-    l_D = 5.0 * K_L[kind] * size.B / d_m
-    C_w = 2.789e-10 * l_D**3 - 2.786e-4 * l_D**2 + 0.0195 * l_D + 0.6439
-    return 4.0 * variable * K_L[kind] * K_z * ratio * 1e-12 * C_w * size.B * d_m**4 * n**2 + turbulent
+    K_ball = K_Z[kind] * (size.d + size.D) / (size.D - size.d) * 1e-12
+    if kind not in K_L:
+        return V_M(H / d_m, roller=False) * K_ball * d_m**5 * n**2
+    return 10.0 * V_M(H / d_m, roller=True) * K_L[kind] * K_ball * size.B * d_m**4 * n**2
