@@ -320,8 +320,18 @@ def _state(
         source=SOURCES[bearing.law],
         warnings=(),
     )
-    bath = bearing.law == "skf" and bearing.lubrication == "oil_bath"
-    return replace(state, warnings=tuple(limit_warnings(state, data, drag_in_bath=bath)))
+    bath = bearing.lubrication == "oil_bath"
+    warnings = tuple(limit_warnings(state, data, drag_in_bath=bath and bearing.law == "skf"))
+    if bath and bearing.law == "iso_tr_14179_2" and bearing.bath_level > data.elements.diameter:
+        warnings += (_level_not_counted(bearing.bath_level, 0.5 * data.elements.diameter),)
+    return replace(state, warnings=warnings)
+
+
+def _level_not_counted(level: float, tabled: float) -> str:
+    return (
+        f"oil level = {level * 1e3:.1f} mm: ISO/TR 14179-2 has f_0 for a bath up to the middle of the lowest rolling "
+        f'element, {tabled * 1e3:.1f} mm, what stands higher is not counted; take friction_law = "skf"'
+    )
 
 
 def _ring(bearing: float, seat: float, path: HeatPath, conductance: float) -> float:

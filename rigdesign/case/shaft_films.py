@@ -6,12 +6,12 @@ from typing import Literal
 from rigdesign.base.errors import Fault
 from rigdesign.case.films import Fluid, PublishedFilm
 from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
-from thermal.films import convection
+from thermal.films import bath, convection
 from thermal.films.law import FilmLaw
 
-Medium = Literal["air", "mist"]
-"""What a surface of the chamber turns in: dry air at the film temperature, or the mist whose density
-``losses.chamber_density`` gives for windage."""
+Medium = Literal["air", "mist", "bath"]
+"""What a surface of the chamber turns in: dry air at the film temperature, the mist whose density
+``losses.chamber_density`` gives for windage, or the sump up to its level and air above."""
 
 
 class TurningFilm(PublishedFilm):
@@ -55,7 +55,8 @@ class RotatingCylinder(TurningFilm):
     """Fluid whose temperature counts: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
     ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
     medium: Medium = "air"
-    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
+    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``); bath: oil up to the level of
+    the sump (Eisenberg, Tobias and Wilke) and air above."""
 
     @property
     def wetted_by(self) -> str:
@@ -65,6 +66,11 @@ class RotatingCylinder(TurningFilm):
     def correlation_at(self, place: SurfacePlace) -> FilmLaw:
         """The law as published, in the medium of the entry."""
         shaft = place.turning
+        if self.medium == "bath":
+            sump = place.sump
+            wet = bath.dipped_shaft_film(shaft.speed, shaft.diameter, sump.rim_share, sump.oil)
+            dry = convection.rotating_cylinder_becker(shaft.speed, shaft.diameter)
+            return bath.above_bath(wet, dry, sump.rim_share)
         if self.correlation == "jungnickel":
             return convection.rotating_cylinder_jungnickel(shaft.speed, shaft.diameter)
         laws = {
@@ -88,7 +94,8 @@ class RotatingDisc(TurningFilm):
     """Fluid whose temperature counts: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
     ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
     medium: Medium = "air"
-    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
+    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``); bath: boundary layer of a
+    disc in oil up to the level of the sump (Levich) and air above."""
 
     @property
     def wetted_by(self) -> str:
@@ -98,6 +105,10 @@ class RotatingDisc(TurningFilm):
     def correlation_at(self, place: SurfacePlace) -> FilmLaw:
         """The law as published, in the medium of the entry."""
         speed, radius = place.turning.speed, 0.5 * place.turning.diameter
+        if self.medium == "bath":
+            sump = place.sump
+            wet = bath.dipped_face_film(speed, radius, sump.face_share, sump.oil)
+            return bath.above_bath(wet, convection.rotating_disc(speed, radius), sump.face_share)
         if self.correlation == "jungnickel":
             return convection.rotating_disc_jungnickel(speed, radius)
         return convection.rotating_disc(speed, radius, place.mist_density if self.medium == "mist" else None)

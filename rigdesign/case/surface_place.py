@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from thermal.films.flank import FilmOil
+
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceSite:
@@ -33,6 +35,17 @@ class ShaftPlace:
 
 
 @dataclass(frozen=True, kw_only=True)
+class BathPlace:
+    """The sump that a shaft or gear surface dips into, by its level at rest."""
+
+    oil: FilmOil
+    face_share: float
+    """Part of the circle of the surface below the level [-]."""
+    rim_share: float
+    """Part of its circumference below the level [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class SurfacePlace:
     """Numbers of one surface at one operating point, from which a condition makes its film law."""
 
@@ -42,6 +55,8 @@ class SurfacePlace:
     """Of the housing [W/(m K)]; grey iron where no housing is stated."""
     shaft: ShaftPlace | None = None
     """None for a surface that does not turn."""
+    bath: BathPlace | None = None
+    """None where no sump is or nothing turns."""
     mist_density: float | None = None
     """Density of the oil mist in the chamber [kg/m3]; None where the case gives none."""
     wetted_share: float = 1.0
@@ -54,3 +69,9 @@ class SurfacePlace:
         """The shaft; the rules of the case keep films of shafts off other surfaces."""
         assert self.shaft is not None
         return self.shaft
+
+    @property
+    def sump(self) -> BathPlace:
+        """The sump; the rules of the case keep baths out of boxes without one."""
+        assert self.bath is not None
+        return self.bath

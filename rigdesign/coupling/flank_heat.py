@@ -23,11 +23,10 @@ from rigdesign.coupling.dip import DippedFlanks, flank_law
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import ChamberOil, OilFeed, gear_feed, gear_oil, wetted_width, wetting_flow
+from rigdesign.rig.oil_supply import ChamberOil, OilFeed, film_oil, gear_feed, wetted_width, wetting_flow
 from thermal.conditions.boundary import Film
 from thermal.films.convection import constant
 from thermal.films.flank import (
-    FilmOil,
     ToothRing,
     Wetting,
     fin_efficiency,
@@ -109,14 +108,7 @@ def gear_flanks(
     pair = rig.pairs[f"{name}.{mesh_name}"]
     material = rig.materials[box.gears[gear].material]
     ring = tooth_ring(pair, index, box.body_width(gear), material.conductivity)
-    oil = gear_oil(rig, name)
-    properties = FilmOil(
-        conductivity=oil.conductivity,
-        density=oil.density,
-        heat_capacity=oil.heat_capacity,
-        kinematic_viscosity=oil.kinematic_viscosity,
-        highest_temperature=oil.highest_temperature,
-    )
+    properties = film_oil(rig, name)
     factor = wetted_width(box) * condition.film_factor
     temperature = chamber.leaving
     if box.jets is not None:

@@ -1,5 +1,6 @@
 """One housing at one iteration: its fluids with their temperatures, and the shaft that a surface belongs to."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -7,7 +8,8 @@ from dynamics.bearing.protocol import BearingState
 from rigdesign.case.films import SurfaceCondition
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.housing import Housing
-from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
+from rigdesign.case.surface_place import BathPlace, ShaftPlace, SurfacePlace
+from rigdesign.coupling.dip import AXES
 from rigdesign.coupling.flank_heat import rim_surfaces
 from rigdesign.coupling.housing_fluids import LinkEnd
 from rigdesign.coupling.state import CouplingState, OperatingPoint
@@ -15,6 +17,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import (
     bearing_feed,
     conducting_share,
+    film_oil,
     gear_feed,
     wetted_width,
 )
@@ -96,19 +99,30 @@ class HousingContext:
 
     def place(self, condition: SurfaceCondition, surface: str) -> SurfacePlace:
         """Numbers of a surface for the law of its condition."""
-        shaft = None
+        shaft = bath = None
         if self._shafts_of(surface):
             gap = self.shaft(surface).seal_gap
             shaft = ShaftPlace(speed=self.speed(surface), diameter=self.diameter(surface), seal_gap=gap)
+            bath = self._bath(0.5 * shaft.diameter)
         fluid = condition.wetted_by
         return SurfacePlace(
             height=self.housing.height,
             wall_conductivity=self.rig.materials[self.housing.material].conductivity,
             shaft=shaft,
+            bath=bath,
             mist_density=self.rig.case.losses.chamber_density,
             wetted_share=1.0 if fluid is None else self.wetting(fluid, surface),
             source=self.source(condition),
         )
+
+    def _bath(self, radius: float) -> BathPlace | None:
+        """The sump as a circle round the axis of a shaft dips into it; none in a box without."""
+        sump = self.box.sump
+        if sump is None:
+            return None
+        half = math.acos(max(-1.0, min(1.0, (AXES - sump.level) / radius)))
+        face = (half - 0.5 * math.sin(2.0 * half)) / math.pi
+        return BathPlace(oil=film_oil(self.rig, self.name), face_share=face, rim_share=half / math.pi)
 
     def shaft(self, surface: str) -> ShaftGeometry:
         """The shaft a surface belongs to, from its name."""

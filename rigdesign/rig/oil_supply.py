@@ -8,6 +8,7 @@ from rigdesign.case.jets import injected_flow
 from rigdesign.case.lubrication import JetOil
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
+from thermal.films.flank import FilmOil
 
 
 def gear_oil(rig: Rig, name: str) -> Oil:
@@ -20,6 +21,18 @@ def bearing_oil(rig: Rig, name: str) -> Oil:
     """Oil of the bearings of the gearbox ``name``, in its state there."""
     box = rig.case.gearboxes[name]
     return _in_state(rig.oils[box.bearing_oil_name], box)
+
+
+def film_oil(rig: Rig, name: str) -> FilmOil:
+    """The oil of the gears of the gearbox ``name`` as films see it."""
+    oil = gear_oil(rig, name)
+    return FilmOil(
+        conductivity=oil.conductivity,
+        density=oil.density,
+        heat_capacity=oil.heat_capacity,
+        kinematic_viscosity=oil.kinematic_viscosity,
+        highest_temperature=oil.highest_temperature,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

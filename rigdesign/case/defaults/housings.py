@@ -19,6 +19,9 @@ SEAL_WIDTH = 7e-3
 LEAST_WALL = 8e-3
 """Least wall of a cast box [m]."""
 
+CARRIED_OFF = "less where running gears hold the level down, more by the oil that they carry above it"
+"""Why the film of parts that dip is known to a third and the double only: no measurement of it was found."""
+
 
 def has_partitions(tree: RawTree, box: str) -> bool:
     """Whether a housing has cold sections between its chamber and its end walls."""
@@ -200,13 +203,17 @@ def _boundary(tree: RawTree, box: str) -> Filling:
     inside = ["partition_*", "cold_*"] if has_partitions(tree, box) else ["end_wall_*"]
     turning = ["shaft_*_warm", "shaft_*_seal_*", *(["shaft_*_cold_*"] if has_partitions(tree, box) else [])]
     oil = "gear_oil_mean"
+    walls = ["chamber_*", *inside, "seal_bore_*"]
+    dips = tree.text(f"gearboxes.{box}.oil.lubrication") == "dip"
     outside = _any_overhang(tree, box)
     return {
         "air": _film(["outer_*"], "niemann_winter", "box in still room air", film_factor=(1.0, 0.7, 1.3)),
         "field": _film(["field_top", "field_sides"], "recknagel_plate", "plate in still room air"),
         "bottom": _film(["field_bottom"], "insulated", "the bed stands on its foundation"),
-        "oil": {
-            "surfaces": ["chamber_*", *inside, "seal_bore_*"],
+        "oil": _film(walls, "bath", "walls over a sump")
+        if dips
+        else {
+            "surfaces": walls,
             "law": follows("constant_film", "walls that are wetted by thrown oil"),
             "heat_transfer_coefficient": around(300.0, "W/(m2 K)", "walls wetted by thrown oil", (1 / 3, 10 / 3)),
             "fluid": follows(oil, "oil of the gears"),
@@ -214,12 +221,12 @@ def _boundary(tree: RawTree, box: str) -> Filling:
         "bearings": _film(
             ["bearing_bore_*", "shaft_*_journal_*"], "bearing_film", "film of the bearing", film_factor=(1.0, 0.5, 2.0)
         ),
-        "shafts": _turning(turning, "rotating_cylinder", oil, "shafts turning in the chamber"),
+        "shafts": _turning(turning, "rotating_cylinder", oil, "shafts turning in the chamber", dips=dips),
         "outside": _turning(["shaft_*_outside_*"], "rotating_cylinder", "ambient", "shafts outside")
         if outside
         else None,
         "ends": _turning(["shaft_*_end_*"], "rotating_disc", "ambient", "ends of the shafts"),
-        "sides": _turning(["gear_*_side_*"], "rotating_disc", oil, "faces of the gears in the chamber"),
+        "sides": _turning(["gear_*_side_*"], "rotating_disc", oil, "faces of the gears in the chamber", dips=dips),
         "rims": _film(
             ["gear_*_rim"], "flank_film", "oil film on the flanks, tooth as a fin", film_factor=(1.0, 0.5, 2.0)
         ),
@@ -246,6 +253,11 @@ def _film(
     return film
 
 
-def _turning(surfaces: list[str], law: str, fluid: str, reason: str) -> dict[str, object]:
-    film = _film(surfaces, law, reason, (1.0, 0.5, 2.0))
+def _turning(
+    surfaces: list[str], law: str, fluid: str, reason: str, *, dips: bool = False
+) -> dict[str, object]:
+    scatter = (1.0, 0.3, 2.0) if dips else (1.0, 0.5, 2.0)
+    film = _film(surfaces, law, f"{reason}, {CARRIED_OFF}" if dips else reason, scatter)
+    if dips:
+        film["medium"] = follows("bath", "wet up to the level of the sump at rest")
     return {**film, "fluid": follows(fluid, f"standard set: {reason}")}

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import Fault
 from rigdesign.case.faults import unknown
+from rigdesign.case.shaft_films import RotatingCylinder, RotatingDisc
 
 if TYPE_CHECKING:
     from rigdesign.case.gearbox import Gearbox
@@ -41,7 +42,7 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
             "losses.friction.doleschel", "", "Doleschel's law needs the constants of the oil",
             "add [losses.friction.doleschel], or take the law schlenk or michaelis",
         )  # fmt: skip
-    yield from _mist(case)
+    yield from _media(case)
     for name, loss in losses.given.items():
         at = f"losses.given.{name}"
         if loss.gearbox not in case.gearboxes:
@@ -71,22 +72,34 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
                     )  # fmt: skip
 
 
-def _mist(case: "Case") -> Iterator[Fault]:
-    """Films in the mist of the chamber need its density, and the fluid of the chamber."""
+def _media(case: "Case") -> Iterator[Fault]:
+    """Films in the mist of the chamber need its density, those in a bath a sump; both the oil of the gears."""
     for box_name, box in case.gearboxes.items():
         films = {} if box.housing is None else box.housing.boundary
         for name, film in films.items():
-            if getattr(film, "medium", "air") == "air":
+            if not isinstance(film, RotatingCylinder | RotatingDisc) or film.medium == "air":
                 continue
-            at = f"gearboxes.{box_name}.housing.boundary.{name}.medium"
-            if case.losses.chamber_density is None:
+            entry = f"gearboxes.{box_name}.housing.boundary.{name}"
+            at, written = f"{entry}.medium", f'"{film.medium}"'
+            if film.medium == "mist" and case.losses.chamber_density is None:
                 yield Fault(
-                    at, '"mist"', "losses.chamber_density is not given", 'add it or write medium = "air"'
+                    at, written, "losses.chamber_density is not given", 'add it or write medium = "air"'
                 )
-            if not getattr(film, "fluid", "").startswith("gear_oil"):
+            if film.medium == "bath" and box.sump is None:
                 yield Fault(
-                    at, '"mist"', "the mist is that of the chamber of the gears, the fluid is not its oil",
+                    at, written, "the gearbox has no sump", 'write oil.lubrication = "dip" or medium = "air"'
+                )
+            if not film.fluid.startswith("gear_oil"):
+                yield Fault(
+                    at, written, f"the {film.medium} is that of the chamber of the gears, the fluid is not its oil",
                     'write fluid = "gear_oil_mean" or medium = "air"',
+                )  # fmt: skip
+            if film.correlation == "jungnickel" or (
+                film.medium == "bath" and "correlation" in film.model_fields_set
+            ):
+                yield Fault(
+                    f"{entry}.correlation", f'"{film.correlation}"', f"is not used: medium = {written}",
+                    'leave it out or write medium = "air"',
                 )  # fmt: skip
 
 

@@ -269,6 +269,16 @@ def test_what_lies_outside_is_told(designation: str, point: dict[str, float], wa
     assert any(warning in found for found in state.warnings), state.warnings
 
 
+def test_the_law_that_knows_one_oil_level_says_so() -> None:
+    low, high = (
+        bearing(law="iso_tr_14179_2", lubrication="oil_bath", oil_level=level).operating_state(operation())
+        for level in (None, 0.04)
+    )
+    assert low.friction.drag == pytest.approx(high.friction.drag, rel=1e-2)
+    assert low.warnings == ()
+    assert "oil level = 40.0 mm: ISO/TR 14179-2 has f_0" in high.warnings[0]
+
+
 def test_a_bearing_within_its_limits_says_nothing() -> None:
     for designation in ("6208", "NU 208", "7208 B"):
         assert (

@@ -61,7 +61,10 @@ def test_rotating_films_take_air_at_the_film_temperature(case: Case) -> None:
 
 
 def test_room_air_constants_are_a_choice_that_warns(case: Case) -> None:
-    chosen = case.with_value(f"{BOUNDARY}.gear_sides.correlation", "jungnickel")
+    with pytest.raises(CaseError, match='"jungnickel": is not used: medium = "mist"'):
+        case.with_value(f"{BOUNDARY}.gear_sides.correlation", "jungnickel")
+    in_air = case.with_value(f"{BOUNDARY}.gear_sides.medium", "air")
+    chosen = in_air.with_value(f"{BOUNDARY}.gear_sides.correlation", "jungnickel")
     film = films(chosen)["gear_test_pinion_side_front"]
     assert film.formula == "rotating_disc_jungnickel"
     assert "film temperature" in film.warnings[0]
@@ -188,8 +191,9 @@ def test_end_seals_warm_the_oil_of_the_bearings(case: Case) -> None:
     [
         (f"{BOUNDARY}.shaft_outside.medium", "mist", "the fluid is not its oil"),
         (f"{BOUNDARY}.shaft_cold.medium", "mist", "the fluid is not its oil"),
+        (f"{BOUNDARY}.gear_sides.medium", "bath", "the gearbox has no sump"),
     ],
 )
-def test_the_mist_is_that_of_the_gears(case: Case, path: str, value: str, words: str) -> None:
+def test_the_medium_is_that_of_the_gears(case: Case, path: str, value: str, words: str) -> None:
     with pytest.raises(CaseError, match=words):
         case.with_value(path, value)

@@ -4,7 +4,15 @@ import math
 
 import pytest
 
-from thermal.films.bath import dipped_face_film, dipped_rim_film, falling_film, wetted_wall_film
+from thermal.films.bath import (
+    above_bath,
+    dipped_face_film,
+    dipped_rim_film,
+    dipped_shaft_film,
+    falling_film,
+    wetted_wall_film,
+)
+from thermal.films.convection import constant
 from thermal.films.flank import FilmOil, ToothRing, Wetting, fling_off
 from thermal.films.inputs import FilmError
 
@@ -59,6 +67,26 @@ def test_dipped_face_by_hand_and_limits() -> None:
     assert "Reynolds number of the face" in dipped_face_film(3000.0, 41e-3, 0.5, OIL)(WALL, SUMP).warnings[0]
     with pytest.raises(FilmError, match=r"wetted share of the face = 1\.2"):
         dipped_face_film(227.0, 41e-3, 1.2, OIL)
+
+
+def test_dipped_shaft_by_hand_and_against_becker_in_water() -> None:
+    """Re = 227 x 0.03^2/2/14e-6 = 7296: Nu = 0.0791 x 506.0 x 6.364; in water Becker's 0.133 Re^(2/3) Pr^(1/3)."""
+    film = dipped_shaft_film(227.0, 30e-3, 0.5, OIL)(WALL, SUMP)
+    assert film.value == pytest.approx(0.5 * 0.0791 * 506.0 * 6.364 * 0.13 / 30e-3, rel=1e-3)
+    assert film.warnings == ()
+    reynolds, prandtl = film.inputs["reynolds"], film.inputs["prandtl"]
+    becker = 0.133 * reynolds ** (2.0 / 3.0) * prandtl ** (1.0 / 3.0) * 0.13 / 30e-3
+    assert film.value == pytest.approx(0.5 * becker, rel=0.15)
+    assert "Reynolds number of the shaft" in dipped_shaft_film(10.0, 30e-3, 0.5, OIL)(WALL, SUMP).warnings[0]
+    with pytest.raises(FilmError, match=r"wetted share of the shaft = -0\.1"):
+        dipped_shaft_film(227.0, 30e-3, -0.1, OIL)
+
+
+def test_a_part_half_in_oil_has_air_on_its_other_half() -> None:
+    wet, dry = dipped_face_film(227.0, 41e-3, 0.5, OIL), constant(30.0, "air")
+    half = above_bath(wet, dry, 0.5)(WALL, SUMP)
+    assert half.value == pytest.approx(wet(WALL, SUMP).value + 15.0)
+    assert above_bath(wet, dry, 0.0)(WALL, SUMP).value == 30.0
 
 
 def test_dipped_rim_is_one_flooding_a_turn() -> None:
