@@ -29,6 +29,7 @@ from rigdesign.studies.design import StudyDesign
 from rigdesign.studies.result import StudyResult
 from rigdesign.studies.run import DEFAULT as ONE_PROCESS_A_CORE
 from rigdesign.studies.run import Execution, StudyOutcome, run_study
+from rigdesign.studies.selection import CheckSelection
 from rigdesign.uncertainty.run import with_ranges
 
 Progress = Callable[[str], None]
@@ -41,6 +42,7 @@ def run_case(
     *,
     transient: bool = False,
     ranges: bool = False,
+    checks: Sequence[str] = (),
 ) -> RunResult:
     """Compute a case and hold it against its limits, as ``rigdesign check`` does.
 
@@ -51,9 +53,12 @@ def run_case(
     progress : called with what is being computed
     transient : follow temperatures and clearances over the schedule and its events as well
     ranges : move every assumed input to both ends of its range; a check passes only if it holds there too
+    checks : patterns on the ids of the checks to judge, as `CheckSelection` takes them; the others do not apply
 
     Raises
     ------
+    UsageError
+        A pattern that matches no check.
     CaseError
         A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
     NotConvergedError
@@ -61,7 +66,10 @@ def run_case(
     MissingLibraryError
         A system library that gmsh needs.
     """
-    result = main.run_case(case, fidelity, progress, transient=transient, follow_ups={"flips": with_flips})
+    selection = CheckSelection(checks)
+    selection.require(case, transient=transient)
+    follow_ups = {"checks": selection.applied, "flips": with_flips}
+    result = main.run_case(case, fidelity, progress, transient=transient, follow_ups=follow_ups)
     return with_ranges(case, result, progress=progress) if ranges else result
 
 

@@ -23,9 +23,10 @@ class Part(BaseModel):
     )
 
 
-def fault(problem: str, remedy: str) -> PydanticCustomError:
-    """A validation error with a remedy, collected by the loader."""
-    return PydanticCustomError(FAULT, "{problem}; {remedy}", {"problem": problem, "remedy": remedy})
+def fault(problem: str, remedy: str, *, impossible: bool = False) -> PydanticCustomError:
+    """A validation error with a remedy, collected by the loader; ``impossible`` as in `base.errors.Fault`."""
+    context = {"problem": problem, "remedy": remedy, "impossible": impossible}
+    return PydanticCustomError(FAULT, "{problem}; {remedy}", context)
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Quantity:
         try:
             value = units.parse(text, self.kind, self.example)
         except units.QuantityError as error:
-            raise fault(error.problem, error.remedy) from None
+            raise fault(error.problem, error.remedy, impossible=True) from None
         for limit, words, holds in (
             (self.above, "is not above", float.__gt__),
             (self.at_least, "is below", float.__ge__),

@@ -60,7 +60,7 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
                 left_out.append((keys, new))
     for keys, new in left_out:
         stated = _replaced(_with_default(stated, keys), keys, new)
-    return _build(stated, case.path, EqualParts({}, {}, {}))
+    return _build(stated, case.path, EqualParts({}, {}, {}), origin=case.origin.equal)
 
 
 def _stands(tree: Any, keys: Sequence[str]) -> bool:
@@ -115,7 +115,10 @@ def _node(tree: Any, keys: Sequence[str]) -> Any:
     return tree
 
 
-def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:
+def _build(
+    stated: Mapping[str, Any], file: Path, equal: EqualParts, *, origin: EqualParts | None = None
+) -> Case:
+    """The validated case; faults stand where ``equal`` has them, ``origin`` is what the file says of equal parts."""
     tree = with_defaults(stated)
     plain, marks, wrong_marks = take_off(dict(tree))
     faults = [Fault(wrong.path, wrong.given, wrong.problem, wrong.remedy) for wrong in wrong_marks]
@@ -128,7 +131,7 @@ def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:
     faults += broken_rules(case)
     if faults:
         raise CaseError(equal.as_written(faults), str(file))
-    case._origin = Origin(file, stated, tree, marks, changed_together)
+    case._origin = Origin(file, stated, tree, marks, changed_together, origin or equal)
     return case
 
 

@@ -82,6 +82,8 @@ def _out_folder(_: Any, tokens: Sequence[Token]) -> Path:
     return Path(token.value)
 
 
+Several = Parameter(negative=())
+"""An option that may stand several times."""
 OutFolder = Annotated[Path, Parameter(converter=_out_folder)]
 """Folder that a command writes to."""
 OptionalOutFolder = Annotated[Path | None, Parameter(converter=_out_folder)]

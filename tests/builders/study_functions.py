@@ -45,6 +45,9 @@ class NumberCase:
             return None
         return "other" if path in self.names else "whole number" if path in self.whole else "number"
 
+    def copies_of(self, path):
+        return ()
+
     def number(self, path):
         return float(self.values[path].split()[0])
 

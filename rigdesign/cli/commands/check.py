@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import OptionalOutFolder, app, loaded_case, print_json
+from rigdesign.cli.application import OptionalOutFolder, Several, app, loaded_case, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
 from rigdesign.cli.terminal.console import verbosity
 
@@ -21,6 +21,7 @@ def check(
     fidelity: Fidelity = "standard",
     transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,
+    checks: Annotated[list[str] | None, Several] = None,
     everything: Annotated[bool, Parameter(name="--all", negative=())] = False,
     pdf: Annotated[bool, Parameter(negative=())] = False,
     author: str | None = None,
@@ -41,6 +42,9 @@ def check(
         Follow temperatures and clearances over warm-up, schedule, stops and soak-back as well.
     ranges
         Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
+    checks
+        Patterns on the ids of the checks to judge: `temperature.*` takes, `!specimen.root_stress*` leaves out. What is
+        not selected does not count for the verdict.
     everything
         Print every check and every note, not only what decides.
     pdf
@@ -64,7 +68,10 @@ def check(
     from rigdesign.reanalysis.flips import with_flips
     from rigdesign.report import Issue, prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
+    from rigdesign.studies.selection import CheckSelection
 
+    selection = CheckSelection(checks or ())
+    selection.require(loaded, transient=transient)
     if out is not None:
         prepare_output(out)
     elif pdf or author is not None:
@@ -82,7 +89,7 @@ def check(
             fidelity=fidelity,
             progress=progress,
             transient=transient,
-            follow_ups={"flips": with_flips},
+            follow_ups={"checks": selection.applied, "flips": with_flips},
         )
         if ranges:
             from rigdesign.uncertainty.run import with_ranges

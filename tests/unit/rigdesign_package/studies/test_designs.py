@@ -327,11 +327,11 @@ def test_a_tornado_moves_one_input_at_a_time_from_the_stated_case(tmp_path):
     ]  # fmt: skip
 
 
-def test_a_pattern_that_matches_no_check_stops_after_the_first_point_which_stays(tmp_path):
+def test_a_pattern_that_matches_no_check_of_another_run_is_refused_and_its_points_stay(tmp_path):
     vary = ("oil.inlet=80:130:10 degC",)
     with pytest.raises(UsageError, match="no check matches 'risin'; the nearest are rising"):
         found(CURVES, tmp_path, vary=vary, checks=("risin",))
     outcome = run_study(
         CURVES, StudyDesign(vary=vary), tmp_path, write=quiet, run=curves, executor=InProcess()
     )
-    assert (outcome.completed, outcome.reused) == (5, 1)
+    assert (outcome.completed, outcome.reused) == (0, 6)
