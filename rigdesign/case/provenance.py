@@ -36,7 +36,7 @@ class Mark:
     path: str
     value: Any
     assumed: str | None = None
-    range: tuple[str, str] | None = None
+    range: tuple[str | int | float, str | int | float] | None = None
     source: str | None = None
     measured: str | None = None
 

@@ -1,12 +1,12 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, calibrate, diff, validate, explain, new, import, mesh, schema,
-    doctor, completion; ``--verbose`` and ``--quiet`` go with each.
+Commands: check, report, study, compare, diagnose, calibrate, diff, validate, explain, list, new, import, mesh,
+    schema, doctor, completion; ``--verbose`` and ``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
-validate: no gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system
-library is missing, 5 measured data cannot be used, 70 a defect of the tool, 128 + n stopped by signal n (130: Ctrl-C).
-Heavy imports happen inside the commands, so that `--help` answers at once.
+report: the result can be read; validate: no gate missed), 1 a check fails or is open, or a gate is missed, 2 usage or
+case error, 3 no convergence, 4 a system library is missing, 5 measured data cannot be used, 70 a defect of the tool,
+128 + n stopped by signal n (130: Ctrl-C). Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
 import os
@@ -26,6 +26,7 @@ from rigdesign.cli.commands import (
     import_rexs,
     mesh,
     new,
+    report,
     schema,
     study,
     validate,
@@ -47,6 +48,7 @@ __all__ = [
     "main",
     "mesh",
     "new",
+    "report",
     "run",
     "schema",
     "study",
