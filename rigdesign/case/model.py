@@ -14,10 +14,10 @@ from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
+from rigdesign.case.equal_parts import EqualParts
 from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.equal_parts import EqualParts
 from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses

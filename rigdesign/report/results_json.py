@@ -14,6 +14,8 @@ from rigdesign.results.result import CouplingHistory, RunResult
 WITHOUT_DYNAMICS: Mapping[str, Any] = {"gearboxes": {}}
 """What stands for the dynamics of a rig without drivetrain."""
 
+TAKES = "report takes a folder that `rigdesign check --out` wrote, or its results.json"
+
 
 def results_document(result: RunResult) -> dict[str, Any]:
     """Content of results.json as plain dicts, lists, strings and finite numbers.
@@ -95,7 +97,9 @@ def read_result(path: Path) -> tuple[RunResult, Path]:
 
     from rigdesign.report.fields import read_fields
 
-    file, document = read_document(path, "report takes a folder that `rigdesign check --out` wrote, or its results.json")
+    file, document = read_document(
+        path, "report takes a folder that `rigdesign check --out` wrote, or its results.json"
+    )
     try:
         values = {
             **document,

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rigdesign.report.csv_text import csv_text
+from rigdesign.base.json_text import csv_text
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import HeatRow
 

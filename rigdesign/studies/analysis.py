@@ -62,7 +62,7 @@ def kept_by_copies(case: "Case", plan: Plan) -> Iterator[Finding]:
         copies = [copy for copy in case.copies_of(path) if copy not in varied]
         if copies:
             all_boxes = ".".join(["gearboxes", "*", *path.split(".")[2:]])
-            text = f"{path} is varied alone: {', '.join(copies)}, which the case takes from it by `like`, keeps its value"
+            text = f"{path} is varied alone: {', '.join(copies)}, taken from it by `like` in the case, keeps its value"
             yield Finding(id="not_carried", text=f"{text}; vary {all_boxes} to move all")
 
 

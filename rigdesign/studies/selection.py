@@ -78,7 +78,10 @@ class CheckSelection:
             result,
             checks=Checks(checks),
             verdict=overall(checks),
-            warnings=[Finding(id="checks_selected", text=f"{text}; the others do not count"), *result.warnings],
+            warnings=[
+                Finding(id="checks_selected", text=f"{text}; the others do not count"),
+                *result.warnings,
+            ],
         )
 
     def of(self, identities: Sequence[str]) -> tuple[str, ...]:

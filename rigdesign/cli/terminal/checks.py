@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from rigdesign.base.errors import one_line
 from rigdesign.cli.terminal.console import NARROWEST, hanging, new_console, verbosity, verdict_console
 from rigdesign.cli.terminal.reason_groups import reason_groups
 from rigdesign.report.numbers import limit_text, margin_text, percent_text, quantity_text
@@ -42,7 +43,7 @@ def print_checks(result: RunResult, out: Path | None, *, everything: bool = Fals
         _print_verdict(verdict_console(), result)
         return
     console = new_console(wrap=True)
-    console.print(Text(f"{result.case['title']}  ({result.fidelity})", "bold"))
+    console.print(Text(f"{one_line(result.case['title'])}  ({result.fidelity})", "bold"))
     _print_verdict(console, result)
     if everything:
         _print_all(console, result)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.json_text import csv_text
 from rigdesign.base.output_folder import staged
-from rigdesign.report.csv_text import csv_text
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.margins.answer import study_answer
 from rigdesign.report.margins.table import MarginTable, margin_table

@@ -4,6 +4,7 @@ import csv
 import json
 import re
 import shutil
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import meshio
@@ -11,10 +12,10 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import OutputError
-from rigdesign.base.json_text import to_plain, to_text
+from rigdesign.base.json_text import csv_text, to_plain, to_text
 from rigdesign.base.output_folder import file_stem, staged
+from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
-from rigdesign.report.csv_text import csv_text
 from rigdesign.report.junit import check_seconds, write_junit
 from rigdesign.report.results_json import read_result
 from tests.builders.commands import Rigdesign
@@ -192,6 +193,40 @@ def test_csv_cells():
     assert csv_text(("a", "b"), [(1.0, None), (2e-12, 'say "x", y')]) == 'a,b\n1,\n2e-12,"say ""x"", y"\n'
 
 
+@pytest.mark.parametrize(
+    ("text", "cell"),
+    [
+        ("=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"),
+        ("@SUM(1+1)", "'@SUM(1+1)"),
+        ("+1+cmd|x", "'+1+cmd|x"),
+        ("-2 degC|calc!A0", "'-2 degC|calc!A0"),
+        ("-10 degC", "-10 degC"),
+        ("-4.5e-3 W/(m2 K)", "-4.5e-3 W/(m2 K)"),
+        ("+12", "+12"),
+        (-3.5, "-3.5"),
+        ("two\nlines", "two lines"),
+        ("a\u202eb\x1b", "a\\u202eb\\u001b"),
+    ],
+)
+def test_no_cell_is_a_formula_and_each_is_one_line(text, cell):
+    """OWASP, CSV injection; numbers keep their sign."""
+    assert csv_text((text,), [(text,)]) == f"{cell}\n" * 2
+
+
+def test_texts_of_a_case_are_no_formula_and_turn_no_line_of_the_output(tmp_path, capsys):
+    title = "turned \u202e title\nverdict: pass"
+    result = small_result(checks=[make_check("gap", 1.0, 0.3, title="=1+1", reason="\u2066moved")])
+    result = replace(result, case={**result.case, "title": title})
+    write_results(result, tmp_path)
+    table = (tmp_path / "curves/checks.csv").read_text(encoding="utf-8")
+    assert "'=1+1" in table
+    print_checks(result, None, everything=True)
+    shown = capsys.readouterr().out
+    assert "\nverdict: pass" not in shown and "turned \\u202e title verdict: pass" in shown
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert not re.search("[\u202a-\u202e\u2066-\u2069]", table + shown + page)
+
+
 def test_file_names_are_safe():
     assert file_stem("../../etc", "a b/c") == "etc_a_b_c"
     assert file_stem("..") == "unnamed"
@@ -311,7 +346,9 @@ def _words(page: str) -> str:
 def test_a_pdf_beside_the_result_belongs_to_it(rigdesign: Rigdesign, tmp_path, monkeypatch):
     """The next run in the folder removes it."""
     monkeypatch.setattr("rigdesign.report.pdf.require_pdf", lambda: None)
-    monkeypatch.setattr("rigdesign.report.pdf.write_pdf", lambda page, path: path.write_text("pdf", encoding="utf-8"))
+    monkeypatch.setattr(
+        "rigdesign.report.pdf.write_pdf", lambda page, path: path.write_text("pdf", encoding="utf-8")
+    )
     write_results(make_result(fields=[]), tmp_path)
     before = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
     assert rigdesign("report", tmp_path / "results.json", "--pdf").status == 0
