@@ -46,7 +46,9 @@ class CheckValue:
     unit: str
     verdict: str
     value: float | None
+    comparison: str
     limit: float | None
+    upper_limit: float | None
     margin: float | None
     distance: float | None
     reason: str
@@ -182,7 +184,9 @@ def _check(row: Mapping[str, Any]) -> CheckValue:
         unit=_text(row["unit"]),
         verdict=status(row["verdict"], row["flags"]),
         value=_number_or_none(row["value"]),
+        comparison=_text(row["comparison"]),
         limit=_number_or_none(row["limit"]),
+        upper_limit=_number_or_none(row["upper_limit"]),
         margin=_number_or_none(row["margin"]),
         distance=_number_or_none(row["distance"]),
         reason=_text(row["reason"]),

@@ -11,8 +11,11 @@ LEAST = 1e-6
 RANKS = {"pass": 1, "advisory": 2, "open": 3, "fail": 4}
 NOT_APPLICABLE = "not applicable"
 
-Change = Literal["flipped", "now applicable", "no longer applicable", "moved", "added", "removed"]
-"""What became of a check: another verdict; it applies to one of the results only; other numbers; one result has it."""
+Change = Literal[
+    "newly failing", "flipped", "now applicable", "no longer applicable", "moved", "added", "removed"
+]
+"""What became of a check: it fails and did not apply before; another verdict; it applies to one of the results only;
+other numbers; one result has it."""
 CHANGES: tuple[Change, ...] = get_args(Change)
 """In the order in which they are listed."""
 
@@ -35,7 +38,9 @@ class CheckChange:
 
     @property
     def worse(self) -> bool:
-        """Whether the verdict flipped to a worse one."""
+        """Whether it newly fails, or its verdict flipped to a worse one."""
+        if self.change == "newly failing":
+            return True
         if self.before is None or self.after is None:
             return False
         ranks = (RANKS.get(side.verdict, 0) for side in (self.before, self.after))
@@ -72,7 +77,7 @@ class QuantityChange:
 def changed_checks(
     before: Mapping[str, CheckValue], after: Mapping[str, CheckValue]
 ) -> tuple[CheckChange, ...]:
-    """Verdicts that flipped first, to the worse before the better, then by change of distance."""
+    """Checks that newly fail, verdicts that flipped (to the worse first), the others; each by change of distance."""
     found = []
     for identity in dict.fromkeys([*before, *after]):
         old, new = before.get(identity), after.get(identity)
@@ -94,6 +99,9 @@ def changed_checks(
 
 def _change(before: CheckValue | None, after: CheckValue | None) -> Change | None:
     """What became of a check; None where nothing did."""
+    applied = before is not None and before.verdict != NOT_APPLICABLE
+    if after is not None and after.verdict == "fail" and not applied:
+        return "newly failing"
     if before is None or after is None:
         return "added" if before is None else "removed"
     if before.verdict != after.verdict:

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from rigdesign.cli.terminal.console import new_console, verbosity, verdict_console
-from rigdesign.report.numbers import number_text, quantity_text
+from rigdesign.report.numbers import change_text, limit_change_text, number_text, quantity_text
 
 if TYPE_CHECKING:
     from rigdesign.difference.document import ResultsDifference, TextChanges
@@ -61,6 +61,8 @@ def print_difference(difference: "ResultsDifference", out: Path | None, *, every
         console.print(Text(line, "bold"))
     for notice in difference.notices:
         _wrapped(console, f"note: {notice}", width)
+    failing = difference.checks_that("newly failing")
+    part("now failing, not applicable before", failing, lambda row: _new_fail(row, width), "flipped")
     part("verdicts flipped", difference.flipped, lambda row: _flip(row, width), "flipped", DISTANCE)
     part("inputs changed", difference.inputs, lambda row: [_input(row, width)], "inputs")
     now, no_longer = difference.checks_that("now applicable"), difference.checks_that("no longer applicable")
@@ -101,10 +103,27 @@ def _flip(row: "CheckChange", width: int) -> Iterator[Text]:
     verdicts += Text(row.after.verdict, STYLES[row.after.verdict])
     yield _line(verdicts, row.id, _distances(row), width)
     below = " " * (verdicts.cell_len + 2)
-    limit = "" if row.after.limit is None else f", limit {quantity_text(row.after.limit, row.after.unit)}"
-    yield Text(f"{below}{row.known.title}: {_values(row)}{limit}")
+    yield from _below(row, _values(row), below, width)
+
+
+def _below(row: "CheckChange", value: str, below: str, width: int) -> Iterator[Text]:
+    """What the numbers of a check are, and why it does not pass now."""
+    assert row.after is not None
+    limit, text = limit_change_text(row), f"{below}{row.known.title}: {value}"
+    limit = "" if limit == "–" else f"limit {limit}"
+    if limit and len(text) + len(limit) + 2 <= width:
+        text, limit = f"{text}, {limit}", ""
+    yield Text(text)
+    if limit:
+        yield Text(below + limit)
     if row.after.verdict != "pass":
         yield Text(below + row.after.reason, "dim")
+
+
+def _new_fail(row: "CheckChange", width: int) -> Iterator[Text]:
+    """A check that fails and did not apply before."""
+    yield _one_sided(row, width)
+    yield from _below(row, quantity_text(row.known.value, row.known.unit), "    ", width)
 
 
 def _moved(row: "CheckChange", width: int) -> Text:
@@ -125,21 +144,12 @@ def _distances(row: "CheckChange") -> str:
         None if side is None or side.distance is None else 100.0 * side.distance
         for side in (row.before, row.after)
     )
-    return _pair(before, after, "%")
+    return change_text(before, after, "%")
 
 
 def _values(row: "CheckChange") -> str:
     before, after = (None if side is None else side.value for side in (row.before, row.after))
-    return _pair(before, after, row.known.unit)
-
-
-def _pair(before: float | None, after: float | None, unit: str) -> str:
-    """Two numbers with their unit, in the least digits from three that show a difference."""
-    for digits in (3, 4, 5, 6):
-        first, second = number_text(before, digits), quantity_text(after, unit, digits)
-        if first != number_text(after, digits):
-            break
-    return f"{first} → {second}"
+    return change_text(before, after, row.known.unit)
 
 
 def _input(row: "InputChange", width: int) -> Text:
@@ -153,7 +163,7 @@ def _quantity(row: "QuantityChange", width: int) -> Text:
     name = f"{row.quantity}, {row.place}"
     if row.after is None:
         return _line(Text("  "), name, f"{quantity_text(row.before, row.unit)} → –", width)
-    return _line(Text("  "), name, _pair(row.before, row.after, row.unit), width)
+    return _line(Text("  "), name, change_text(row.before, row.after, row.unit), width)
 
 
 def _largest(rows: "Sequence[QuantityChange]") -> "list[QuantityChange]":

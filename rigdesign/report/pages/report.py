@@ -127,6 +127,8 @@ def environment() -> "Environment":
     )
     templates.globals.update(
         quantity=numbers.quantity_text,
+        quantities=numbers.quantity_texts,
+        limit_change=numbers.limit_change_text,
         value=numbers.value_text,
         limit=numbers.limit_text,
         margin=numbers.margin_text,
