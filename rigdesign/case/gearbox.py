@@ -139,6 +139,14 @@ class Gearbox(Part):
         """Halves of a gear that the loop has the springs and the mass of."""
         return self.meshes[self.first_meshes()[gear][0]].sharing
 
+    def seat_diameter(self, gear: str) -> float:
+        """Diameter of the shaft in a gear [m]: its bore, or where it is cut into the shaft that of the bearings."""
+        part = self.gears[gear]
+        on_shaft = [
+            bearing.shaft_diameter for bearing in self.bearings.values() if bearing.shaft == part.shaft
+        ]
+        return part.bore_diameter or min(on_shaft, default=0.0)
+
     def body_width(self, gear: str) -> float:
         """Face width of a gear with both its halves [m]."""
         return self.halves(gear) * self.gears[gear].face_width

@@ -172,7 +172,7 @@ class Gear(Part):
     face_width: Length
     """Width of the toothing; of one half for a double-helical gear."""
     bore_diameter: Gap = 0.0
-    """Bore of the gear body; zero for a solid disc."""
+    """Bore of the gear body; zero for a gear that is cut into its shaft."""
     rim_thickness: Length | None = None
     """Radial, of the rim under the root circle; the body is solid down to the bore when left out. Temperature field and
     centrifugal expansion take any body as solid."""

@@ -102,7 +102,9 @@ def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[
         front=_end_bearing(front),
         rear=_end_bearing(rear),
         seal_diameter=seal_diameter,
-        seat_diameter=on_shaft[1].bore_diameter if on_shaft else seal_diameter or shaft.outside_diameter,
+        seat_diameter=gearbox.seat_diameter(on_shaft[0])
+        if on_shaft
+        else seal_diameter or shaft.outside_diameter,
         overhang_diameter=shaft.outside_diameter,
         seal_gap=seals.radial_gap,
         locating="rear" if rear.locating else "front",

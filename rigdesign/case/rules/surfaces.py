@@ -98,7 +98,6 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
                 f"{' and '.join(gears)} sit on one shaft, the housing model has one gear per shaft",
                 "put them on shafts of their own",
             )  # fmt: skip
-        yield from _bores(at, gearbox, shaft)
         yield from _seal_diameter(at, housing, shaft)
         yield from _rubbing_without_a_seal(at, gearbox, housing, shaft)
 
@@ -132,15 +131,6 @@ def _seal_diameter(at: str, housing: Housing, shaft: str) -> Iterator[Fault]:
             "bearing",
             "remove it, or give the housing its partitions",
         )  # fmt: skip
-
-
-def _bores(at: str, gearbox: Gearbox, shaft: str) -> Iterator[Fault]:
-    for name, gear in gearbox.gears.items():
-        if gear.shaft == shaft and gear.bore_diameter == 0.0:
-            yield Fault(
-                f"{at}.gears.{name}.bore_diameter", "", "a gear on a shaft of the housing needs its bore",
-                "add the diameter of the gear seat",
-            )  # fmt: skip
 
 
 def _centre_distances(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
