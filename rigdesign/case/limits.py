@@ -96,10 +96,12 @@ class BearingLimits(Part):
     """Most radial load over diameter times width."""
     rating_life_minimum: Hours | None = None
     """Least modified rating life of a rolling bearing; the planned test time when left out."""
-    static_safety_minimum: Positive | None = None
-    """Least static safety of a rolling bearing."""
-    operating_clearance_minimum: Deviation | None = None
-    """Least radial internal clearance of a rolling bearing as it runs; negative where a preload is allowed."""
+    static_safety_minimum: Positive = 1.5
+    """Least static safety of a rolling bearing: of usual operation 1 with balls and 1.5 with rollers (ISO 76, guide
+    values)."""
+    operating_clearance_minimum: Deviation = 0.0
+    """Least radial internal clearance of a rolling bearing as it runs, of those without contact angle; negative where a
+    preload is allowed."""
     operating_clearance_maximum: Deviation | None = None
     """Most radial internal clearance of a rolling bearing as it runs."""
 
@@ -162,6 +164,24 @@ class FlankLimits(Part):
     flank_over_root_minimum: Positive | None = None
     """Least load that the flanks carry, those of specimens and those of the rig, over what the root of the weakest
     specimen carries: of tests that are to end with a broken tooth."""
+
+
+class GeometryLimits(Part):
+    """Toothing as drawn, held before anything is solved; lengths in normal modules. Usual practice, by no standard but
+    where one is named."""
+
+    tip_thickness_minimum: Positive = 0.2
+    """Least thickness at the tip circle; 0.4 is usual for case-hardened teeth."""
+    root_clearance_minimum: Positive = 0.1
+    """Least clearance between a tip and the root of its mate; ISO 53 has 0.25."""
+    fillet_distance_minimum: float = 0.0
+    """Least distance of the fillet from the path of the mating tip, along the line of action."""
+    undercut_distance_minimum: float = -0.17
+    """Least profile shift less that at which undercut begins: 14 teeth without shift instead of 17 at 20 deg."""
+    contact_ratio_minimum: Positive = 1.1
+    """Least transverse contact ratio; of meshes with an overlap ratio from 1 on the total one."""
+    profile_shift_sum_maximum: Positive = 1.5
+    """Most sum of the two profile shifts of a mesh, without its sign."""
 
 
 class SpecimenWindow(Part):
@@ -325,6 +345,8 @@ class Limits(Part):
     """Least safeties of the gears of the rig itself."""
     flanks: FlankLimits = FlankLimits()
     """Least load capacity of the flanks."""
+    geometry: GeometryLimits = GeometryLimits()
+    """Limits of the toothing as drawn."""
     specimen: SpecimenWindow = SpecimenWindow()
     """Window of the test gears."""
     ramp: RampRules = RampRules()

@@ -48,7 +48,7 @@ def _clearances(solved: SolvedRig) -> Values:
         (clearance, f"{name}, stage {point.point.stage}")
         for point in solved.points
         for name, clearance in point.last.coupling_state.bearing_clearance.items()
-        if not solved.rig.bearing(name).has_film
+        if not solved.rig.bearing(name).has_film and not solved.rig.bearing(name).induced_axial_load(1.0)
     )
 
 
@@ -159,7 +159,7 @@ RULES = (
     _rule(
         "operating_clearance", "least clearance of a rolling bearing as it runs", MICROMETRE,
         "Radial internal clearance less what fits and temperatures of rings, rolling elements and seats take, at the "
-        "held stages; negative is preload.",
+        "held stages; negative is preload. Bearings with a contact angle are adjusted axially and do not count.",
         source="limits.bearing.operating_clearance_minimum", comparison=">=",
         limit=_stated("operating_clearance_minimum"), values=_clearances,
     ),
