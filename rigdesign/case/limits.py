@@ -112,7 +112,8 @@ class DynamicsLimits(Part):
     dynamic_factor_maximum: Annotated[float, Field(gt=1.0)] | None = None
     """K_V at the held stages, max over mean."""
     resonance_distance_minimum: Share | None = None
-    """Distance of a held speed from a dangerous resonance, as a share of that speed."""
+    """Distance of a speed at which the rig dwells from a dangerous resonance of meshes, shafts and joints, as a share
+    of that speed; the bands that the recommended ramp avoids have it too."""
     dangerous_amplification: Positive = 2.0
     """A resonance is dangerous above this amplification of the mesh force, or above ``dangerous_force_share``."""
     dangerous_force_share: Positive = 0.2

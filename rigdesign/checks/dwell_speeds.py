@@ -1,4 +1,4 @@
-"""Check of the speeds at which the rig dwells against resonances of meshes, shafts and joints."""
+"""Check of the speeds at which the rig dwells against resonances of shafts and joints, as against those of meshes."""
 
 from collections.abc import Iterator
 
@@ -12,13 +12,13 @@ from rigdesign.results.units import NUMBER, RPM
 
 DWELL = RuleFamily(
     key="dynamics.dwell_speed",
-    title="distance of dwell speeds from resonances of meshes, shafts and joints",
+    title="distance of dwell speeds from resonances of shafts and joints",
     procedure=(
-        "Periodic response over speed: a peak counts where K_V exceeds one by more than dangerous_force_share, or "
-        f"where half the peak-to-peak torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the "
-        "mean torque of the loop; so does a shaft or coupling order that meets a lightly damped mode. The "
-        "value is the distance of the nearest one from a dwell, as a share of its speed, 0 where the dwell itself is "
-        "above such a share; where there is none, the range searched."
+        "Periodic response around every speed at which the rig dwells: a peak counts where half the peak-to-peak "
+        f"torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the mean torque of the loop; so "
+        "does a shaft or coupling order that meets a lightly damped mode. The value is the distance of the nearest one "
+        "from a dwell, as a share of its speed, 0 where the dwell itself is above such a share; where there is none, "
+        "the range searched."
     ),
     unit=NUMBER,
     group="dynamics",
@@ -49,7 +49,10 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
         speed = rig.pinion_speed(stage.speed_end)
         if speed not in solved.near_dwells:
             continue
-        near = solved.near_dwells[speed].nearest
+        dwell = solved.near_dwells[speed]
+        near = dwell.nearest_of(
+            one for one in dwell.resonances if one.kind in ("shaft torque", "shaft order")
+        )
         if near.resonance is None:
             yield near.distance, f"stage {stage.name}: none within {100.0 * near.distance:.0f} % of its speed"
         else:

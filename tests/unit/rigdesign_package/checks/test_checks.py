@@ -63,7 +63,8 @@ def lost(stage: str, start: float, share: float) -> ContactLoss:
 def solved(points: Any = None, **changes: Any) -> SolvedRig:
     """Both gearboxes with the same made-up loads; ``changes`` of the records of one mesh."""
     mesh = mesh_loads(**changes)
-    run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, None), "90 Nm": (90.0, None)}))
+    bare = SimpleNamespace(points=())
+    run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, bare), "90 Nm": (90.0, bare)}))
     held_points = points or [held("test", (1.1, 1.2))]
     loads = DynamicLoads(meshes={"test": mesh, "reference": mesh})
     return SolvedRig(rig=rig(), points=held_points, run=run, loads=loads)

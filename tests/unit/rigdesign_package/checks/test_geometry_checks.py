@@ -1,4 +1,4 @@
-"""Limits of the toothing as drawn: each from the geometry alone, with its margin, and a cause that names what to change."""
+"""Limits of the toothing as drawn: each from the geometry alone, with its margin and the cause."""
 
 import math
 from dataclasses import replace
@@ -58,7 +58,12 @@ def test_a_usual_pair_keeps_all_limits_without_being_solved() -> None:
     [
         (TYPE_A, "tip_thickness", 0.144, "test pinion: 0."),
         ({"racks": 2 * (Rack(dedendum=1.1, tip_radius=0.2),)}, "root_clearance", 0.08, "root of its mate"),
-        ({**EDRIVE, "profile_shift_1": "equal"}, "fillet_distance", -0.264, "test pinion: its fillet ends 0.462 mm inside"),
+        (
+            {**EDRIVE, "profile_shift_1": "equal"},
+            "fillet_distance",
+            -0.264,
+            "test pinion: its fillet ends 0.462",
+        ),
         ({**EDRIVE, "profile_shift_1": "equal"}, "profile_shift_sum", 1.937, "0.968 and 0.968"),
         ({"profile_shift_1": 0.95}, "undercut", -0.193, "x_min = -0.404"),
         ({"tips": TipShortening(shortening=(1.5e-3, 1.5e-3))}, "contact_ratio", None, "eps_beta 0.000"),
