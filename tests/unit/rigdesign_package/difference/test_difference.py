@@ -375,7 +375,7 @@ def test_a_window_is_shown_whole_and_a_limit_that_moved_twice(after, shown, firs
     before = {"value": 1050.0, "comparison": "within", "limit": 700.0, "upper_limit": 1100.0, "margin": 50.0}
     first["checks"][2].update(before)
     other = copy.deepcopy(first)
-    other["checks"][2].update(value=2351.0, margin=-1251.0, utilisation=2.1, verdict="fail", **after)
+    other["checks"][2].update(value=2351.0, margin=-1251.0, distance=-1.1, verdict="fail", **after)
     found = results_difference(written(first, tmp_path / "a"), written(other, tmp_path / "b"))
     print_difference(found, None)
     write_difference(found, tmp_path / "out")
@@ -387,8 +387,8 @@ def test_a_window_is_shown_whole_and_a_limit_that_moved_twice(after, shown, firs
 def test_a_check_that_fails_now_and_did_not_apply_before_comes_first(there, first, tmp_path, capsys):
     """Whether the other result has it as not applicable, or not at all."""
     other = copy.deepcopy(first)
-    other["checks"][0].update(value=0.09, margin=-0.01, utilisation=1.1, verdict="fail", reason="too warm")
-    first["checks"][0].update(verdict="not applicable", value=None, margin=None, utilisation=None)
+    other["checks"][0].update(value=0.09, margin=-0.01, distance=-0.1, verdict="fail", reason="too warm")
+    first["checks"][0].update(verdict="not applicable", value=None, margin=None, distance=None)
     first["checks"] = first["checks"][0 if there else 1 :]
     found = results_difference(written(first, tmp_path / "a"), written(other, tmp_path / "b"))
     assert found.checks[0].change == "newly failing" and found.checks[0].worse
