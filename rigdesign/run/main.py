@@ -17,6 +17,7 @@ from rigdesign.base.finite import require_finite
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
+from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks import all_checks
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.placed_loss import PlacedLoss
@@ -206,12 +207,12 @@ def _case_record(case: Case) -> dict[str, str]:
 
 
 def _doubts(case: Case) -> list[Finding]:
-    """What the case says against itself."""
-    reason = case.schedule.simulation_only
-    if reason is None:
-        return []
-    text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
-    return [Finding(id="simulation_only", text=text)]
+    """What speaks against the case itself: values outside of their usual range, a schedule that no rig can run."""
+    found = [Finding(id="unusual_input", text=text) for text in unusual_inputs(case).values()]
+    if (reason := case.schedule.simulation_only) is not None:
+        text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
+        found.append(Finding(id="simulation_only", text=text))
+    return found
 
 
 def losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[PlacedLoss]]:

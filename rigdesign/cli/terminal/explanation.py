@@ -42,6 +42,8 @@ def print_overview(seen: Overview, case: Path) -> None:
     console.print(table)
     counts = ", ".join(f"{number} {basis}" for basis, number in seen.inputs.items())
     _answer(console, "inputs", f"{sum(seen.inputs.values())}: {counts}; {seen.ranged} assumed with a range")
+    for text in seen.unusual:
+        _answer(console, "unusual", text)
     groups = ", ".join(f"{group} {len(found)}" for group, found in seen.checks.items())
     unlimited = f"; {len(seen.unlimited)} more without a limit in this case" if seen.unlimited else ""
     _answer(
@@ -71,6 +73,8 @@ def print_path(found: PathExplanation) -> None:
     for value in found.values:
         place = f"{value.path}: " if len(found.values) > 1 else ""
         _answer(console, "value", f"{place}{_value(value)}")
+    for text in found.unusual:
+        _answer(console, "unusual", text)
     for station in found.enters:
         _answer(console, "enters", f"{station.module}: {station.role}")
     if found.influences:
