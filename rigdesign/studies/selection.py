@@ -61,9 +61,8 @@ class CheckSelection:
     def applied(self, solved: "SolvedRig", result: "RunResult") -> "RunResult":
         """The result of a run in which the checks that are not selected do not apply, and its verdict then."""
         from rigdesign.checks.rules import not_applicable
-from rigdesign.results.check import overall
         from rigdesign.explanation.rules import declared_rules
-        from rigdesign.results.check import Checks
+        from rigdesign.results.check import Checks, overall
         from rigdesign.results.result import Finding
 
         if self.selects_all:
