@@ -31,6 +31,7 @@ from rigdesign.results.lateral import (
     LateralVibration,
     MeshWhirl,
     SealWhirl,
+    SeatStiffness,
     Separation,
     SpeedWhirl,
     StageLateral,
@@ -58,7 +59,19 @@ def lateral_vibration(rig: Rig, points: Sequence[PointResult]) -> LateralVibrati
         stages.append(whirls.stage(point, state, point.last.bearings, "held"))
         idle = replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 0.0))
         stages.append(whirls.stage(point, idle, solve_bearings(rig, point.point, idle), "lost"))
-    return LateralVibration(stages=tuple(stages), curve=tuple(whirls.curve(points)))
+    return LateralVibration(
+        stages=tuple(stages), curve=tuple(whirls.curve(points)), seats=tuple(seat_stiffnesses(rig))
+    )
+
+
+def seat_stiffnesses(rig: Rig) -> Iterator[SeatStiffness]:
+    """Static stiffness of every elastic seat."""
+    for support in rig.elastic.rig.supports:
+        alone = 1.0 / np.diag(np.linalg.inv(support.stiffness)).reshape(-1, support.directions)
+        for name, (lateral, vertical, *axial) in zip(support.bearings, alone.tolist(), strict=True):
+            yield SeatStiffness(
+                bearing=name, lateral=lateral, vertical=vertical, axial=axial[0] if axial else None
+            )
 
 
 def seal_whirls(rig: Rig, point: PointResult) -> tuple[SealWhirl, ...]:

@@ -110,11 +110,24 @@ class SpeedWhirl:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SeatStiffness:
+    """Elastic seat of one bearing: force over its travel with that bearing alone loaded [N/m]."""
+
+    bearing: str
+    lateral: float
+    vertical: float
+    axial: float | None
+    """None of a seat that stands still along the shaft."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class LateralVibration:
     """All held stages, and the whirl over speed under torque and temperatures of the one that speaks for the rig."""
 
     stages: tuple[StageLateral, ...]
     curve: tuple[SpeedWhirl, ...]
+    seats: tuple[SeatStiffness, ...] = ()
+    """Of housings condensed to their seats, and of supports that the case states; rigid ones are left out."""
 
     def of(self, torque: Torque) -> tuple[StageLateral, ...]:
         """Stages with their torque, or without."""

@@ -8,6 +8,7 @@ from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
+from rigdesign.case.rules.rotating_parts import sideways_keys
 from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
@@ -37,6 +38,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="gear", text=text) for text in _gears(solved)),
         *(Finding(id="iso_6336_1", text=text) for text in _iso(solved)),
         *(Finding(id="shaft", text=t.finding) for t in solved.rig.shaft_torsions if t.finding),
+        *(Finding(id="fidelity", text=text) for text in without_effect(solved)),
         *(Finding(id="response", text=text) for text in _response(solved)),
         *(Finding(id="damping", text=text) for text in _light_dwells(solved)),
         *(Finding(id="tooth_deviations", text=text) for text in _deviating_teeth(solved)),
@@ -261,6 +263,16 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
         "moments of a load that wanders over the face in motion: the dynamic tooth force acts at mid-face along the "
         "line of action; the mean tilt of the axes is in the gap of the flanks"
     )
+
+
+def without_effect(solved: SolvedRig) -> Iterator[str]:
+    """Keys of the case that shafts which only twist do not read."""
+    keys = sideways_keys(solved.case) if solved.rig.shaft_model == "torsional" else []
+    if keys:
+        yield (
+            f"{', '.join(keys)}: without effect in this run, whose shafts only twist (fidelity quick, or no "
+            "drivetrain); run at standard"
+        )
 
 
 def _light_dwells(solved: SolvedRig) -> Iterator[str]:

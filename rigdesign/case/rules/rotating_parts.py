@@ -8,10 +8,11 @@ from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 
 if TYPE_CHECKING:
-    from rigdesign.case.drivetrain import CouplingInput, ShaftInput
+    from rigdesign.case.drivetrain import CouplingInput, DrivetrainInput, ShaftInput
     from rigdesign.case.model import Case
 
 OF_SHAFT = ("unbalances", "balance_grade", "balance_speed", "balance_angles", "bow")
+OF_SPLINE = ("radial_stiffness", "axial_stiffness", "angular_stiffness", "lateral_damping_time")
 OF_COUPLING = ("flange_run_out", "flange_tilt", "cold_angle_lateral", "cold_angle_vertical")
 
 
@@ -28,9 +29,28 @@ def rotating_part_faults(case: "Case") -> Iterator[Fault]:
         yield from _of_coupling(f"drivetrain.couplings.{name}", coupling)
 
 
-def _torsional(case: "Case") -> Iterator[Fault]:
-    assert case.drivetrain is not None
-    train = case.drivetrain
+def sideways_keys(case: "Case") -> list[str]:
+    """Paths of the keys a case states that nothing but shafts that bend reads."""
+    stated = [] if case.drivetrain is None else _of_circuit(case.drivetrain)
+    for name, box in case.gearboxes.items():
+        at = f"gearboxes.{name}"
+        if box.housing is not None and box.housing.bearing_seats == "elastic":
+            stated.append(f"{at}.housing.bearing_seats")
+        stated += [
+            f"{at}.bearings.{part}.support_stiffness"
+            for part, bearing in box.bearings.items()
+            if bearing.support_stiffness is not None
+        ]
+        stated += [
+            f"{at}.gears.{part}.spline.{key}"
+            for part, gear in box.gears.items()
+            for key in OF_SPLINE
+            if gear.spline is not None and key in gear.spline.model_fields_set
+        ]
+    return stated
+
+
+def _of_circuit(train: "DrivetrainInput") -> list[str]:
     stated = [
         f"drivetrain.shafts.{name}.{key}"
         for name, shaft in train.shafts.items()
@@ -38,16 +58,19 @@ def _torsional(case: "Case") -> Iterator[Fault]:
         if key in shaft.model_fields_set
     ]
     stated += ["drivetrain.balance_grade"] if train.balance_grade is not None else []
-    stated += [
+    return stated + [
         f"drivetrain.couplings.{name}.{key}"
         for name, coupling in train.couplings.items()
         for key in OF_COUPLING
         if key in coupling.model_fields_set and not (coupling.joint == "hooke" and key.startswith("cold"))
     ]
-    for path in stated:
+
+
+def _torsional(case: "Case") -> Iterator[Fault]:
+    for path in sideways_keys(case):
         yield Fault(
             path, "",
-            'moves a shaft sideways, but shaft_model = "torsional" lets shafts only twist',
+            'is read by shafts that bend, but shaft_model = "torsional" lets them only twist',
             'write drivetrain.shaft_model = "elastic", or leave it out',
         )  # fmt: skip
 

@@ -27,6 +27,7 @@ def _values(result: RunResult, draw: Draw) -> Values:
             for stage in lateral["stages"]
             for row in stage["bearings"]
         ],
+        "seats": lateral["seats"],
         "seals": [
             {"seal": row["seal"], "stage": stage["stage"], "shaft": row["shaft"], "orbit_um": row["orbit_um"]}
             for stage in lateral["stages"]

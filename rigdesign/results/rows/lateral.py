@@ -7,11 +7,23 @@ from dynamics.elastic_rig.lateral import RigMode
 from rigdesign.results.lateral import BearingWhirl, LateralVibration, Separation, StageLateral
 from rigdesign.results.units import RPM, UM
 
+PER_UM = 1e-6
+"""N/um in a N/m."""
+
 
 def lateral_row(found: LateralVibration) -> dict[str, Any]:
     """All stages and the whirl over speed; what has no end is None."""
     return {
         "stages": [_stage(stage) for stage in found.stages],
+        "seats": [
+            {
+                "bearing": seat.bearing,
+                "lateral_N_um": seat.lateral * PER_UM,
+                "vertical_N_um": seat.vertical * PER_UM,
+                "axial_N_um": None if seat.axial is None else seat.axial * PER_UM,
+            }
+            for seat in found.seats
+        ],
         "curve": {
             "speed_rpm": [RPM * at.speed for at in found.curve],
             "bearings": [

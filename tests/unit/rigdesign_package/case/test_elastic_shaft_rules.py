@@ -241,6 +241,22 @@ def test_shafts_that_only_twist_assume_nothing_of_bending(tmp_path: Path) -> Non
         assert implied(case, key) == {}
 
 
+def test_shafts_that_only_twist_refuse_what_they_do_not_read(tmp_path: Path) -> None:
+    with pytest.raises(CaseError) as refused:
+        loaded(
+            tmp_path,
+            """
+            gearboxes.test.housing.bearing_seats = "elastic"
+            gearboxes.reference.bearings.wheel_front.support_stiffness = "1e9 N/m"
+            """,
+            "torsional",
+        )
+    paths = {fault.path for fault in refused.value.faults}
+    assert {
+        "gearboxes.test.housing.bearing_seats", "gearboxes.reference.bearings.wheel_front.support_stiffness"
+    } <= paths  # fmt: skip
+
+
 def test_a_disc_without_a_mass_is_a_third_as_thick_as_its_radius() -> None:
     radius = 0.1
     mass = 7850.0 * math.pi * radius**2 * radius / 3.0

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from dynamics.elastic_rig.lateral import rig_modes
+from dynamics.elastic_rig.layout import HousingSupport, isotropic_support
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.lateral import lateral_vibration, seal_whirls
+from rigdesign.records.lateral import lateral_vibration, seal_whirls, seat_stiffnesses
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.rows.lateral import lateral_row
 from rigdesign.rig.model import Rig, build_rig
@@ -99,6 +100,26 @@ def test_rows_have_every_stage_twice_and_the_curve() -> None:
     meshes = row["stages"][0]["meshes"]
     assert {mesh["mesh"] for mesh in meshes} == set(rig_of().mesh_names)
     assert all(0.0 < mesh["share"] < 0.01 for mesh in meshes)
+
+
+def test_the_stiffness_of_elastic_seats_stands_in_the_result() -> None:
+    """Two seats of 2e9 N/m that a wall of 1e9 N/m joins: alone each gives 2e9 + 2e9 x 1e9/(2e9 + 1e9)."""
+    coupled = 1e9 * np.kron(np.array([[3.0, -1.0], [-1.0, 3.0]]), np.eye(3))
+    supports = (
+        HousingSupport(name="box", bearings=("test.front", "test.rear"), stiffness=coupled, mass=np.eye(6)),
+        isotropic_support("reference.front", 5e8, 1.0),
+    )
+    rig: Any = SimpleNamespace(elastic=SimpleNamespace(rig=SimpleNamespace(supports=supports)))
+    found = LateralVibration(stages=(), curve=(), seats=tuple(seat_stiffnesses(rig)))
+    front, _, stated = lateral_row(found)["seats"]
+    assert front["bearing"] == "test.front"
+    for key in ("lateral_N_um", "vertical_N_um", "axial_N_um"):
+        assert front[key] == pytest.approx(1e3 * (2.0 + 2.0 / 3.0))
+    assert stated == {
+        "bearing": "reference.front", "lateral_N_um": pytest.approx(500.0),
+        "vertical_N_um": pytest.approx(500.0), "axial_N_um": None,
+    }  # fmt: skip
+    assert lateral_row(vibration())["seats"] == []
 
 
 def test_modes_up_to_8_khz_are_enough_for_what_happens_at_the_speed_of_the_shafts() -> None:

@@ -10,7 +10,7 @@ from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
-from rigdesign.run.warnings import not_modelled
+from rigdesign.run.warnings import not_modelled, without_effect
 from tests.builders.paths import CASES
 
 
@@ -48,3 +48,16 @@ def test_couplings_out_of_line_lack_their_alternating_forces_alone() -> None:
     assert any(
         "alternating forces of misaligned couplings" in item and "constant force" in item for item in bent
     )
+
+
+def test_keys_that_only_bending_shafts_read_are_named_where_shafts_only_twist() -> None:
+    """elastic_seats.toml at quick gives what case.toml gives, so it says that it does."""
+    case = load_case(CASES / "uhcf_prototype" / "elastic_seats.toml")
+    quick, standard = (
+        list(without_effect(SimpleNamespace(case=case, rig=build_rig(case, fidelity))))  # type: ignore[arg-type]
+        for fidelity in ("quick", "standard")
+    )
+    assert standard == []
+    assert "gearboxes.test.housing.bearing_seats" in quick[0]
+    assert "gearboxes.test.gears.wheel.spline.radial_stiffness" in quick[0]
+    assert "without effect in this run" in quick[0] and "run at standard" in quick[0]
