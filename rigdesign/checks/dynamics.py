@@ -110,7 +110,9 @@ def _distances(solved: SolvedRig, mesh: int) -> Values:
             if ranges[torque][0] <= speed <= ranges[torque][1]
         }
         places |= {f"{label} {gear}" for gear in ("pinion", "wheel")}
-        for peak in peaks:
+        for peak in sorted(
+            peaks, key=lambda one, first=first: abs(one.speed - first)
+        ):  # of equals the first is named
             if peak.where in places:
                 distance, mode = peak.distance(first, bounds.margin), peak.mode or peak.kind
                 inside = "" if distance else ", where the response itself is above the share"

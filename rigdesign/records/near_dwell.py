@@ -72,7 +72,7 @@ class NearDwell:
     def nearest_of(self, some: Iterable[AvoidedResonance]) -> NearResonance:
         """The nearest of some resonances; the range searched where none is in it."""
         reach = min(REACH * self.margin, AROUND)
-        found = min(some, key=self.distance, default=None)
+        found = min(some, key=lambda one: (self.distance(one), abs(one.speed - self.speed)), default=None)
         if found is None or self.distance(found) > reach:
             return NearResonance(distance=reach, resonance=None)
         return NearResonance(distance=self.distance(found), resonance=found)

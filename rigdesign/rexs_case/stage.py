@@ -216,7 +216,7 @@ def _seated(unit: GearUnit, name: str, meshes: tuple[UnitMesh, ...], first: Unit
 
 def _in_casing(unit: GearUnit, bearing: UnitBearing) -> bool:
     """Whether a bearing does not sit between two parts that turn."""
-    turning = {part.id for part in (*unit.shafts, *unit.gears)}
+    turning = {*(shaft.id for shaft in unit.shafts), *(gear.id for gear in unit.gears)}
     return not {bearing.place.inner, bearing.place.outer} <= turning
 
 
