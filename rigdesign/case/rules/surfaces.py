@@ -8,7 +8,7 @@ from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import written
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry
+from rigdesign.case.geometry import bearing_on, conditions_of, covering, housing_geometry
 from rigdesign.case.housing import Housing
 from rigdesign.case.matching import matched
 from rigdesign.case.paths import nearest
@@ -146,7 +146,6 @@ def _centre_distances(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[F
 
 
 def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
-    covered: dict[str, list[str]] = {name: [] for name in names}
     for name, condition in housing.boundary.items():
         for pattern in condition.surfaces:
             if not matched([pattern], names):
@@ -159,21 +158,14 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
                     f"{hint}known: {', '.join(names)}",
                 )
     for name, surface, stood_for in conditions_of(housing, names):
-        condition = housing.boundary[name]
-        covered[surface].append("" if condition.may_join_a_film else name)
-        partner = condition.partner_of(stood_for)
-        if partner in covered:
-            covered[partner].append("")
-        elif partner is not None:
+        partner = housing.boundary[name].partner_of(stood_for)
+        if partner is not None and partner not in names:
             meant = nearest(partner, names)
             hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
             yield Fault(
                 f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
             )
-    for enclosure in housing.enclosures.values():
-        for surface in enclosure.emissivities(names):
-            covered[surface].append("")
-    for surface, conditions in covered.items():
+    for surface, conditions in covering(housing, names).items():
         films = [name for name in conditions if name]
         if not conditions:
             usual = ("flank_film", "constant_film"), ("constant_film", "insulated")

@@ -411,10 +411,6 @@ BAD_INPUT = {
         '[[schedule.stages]]\nname = "run_down"\nspeed = "13000 rpm"\n',
         ["schedule.stages.run_down.speed = 13000 rpm", "does not fall", "12000 rpm", "correct the value"],
     ),
-    "surface without a boundary condition": (
-        '[gearboxes.test.housing.boundary]\nremove = ["gear_rims"]\n',
-        ["gearboxes.test.housing.boundary", "gear_test_pinion_rim has no boundary condition", "add one"],
-    ),
     "check on a part that is not there": (
         '[limits.bought_parts.motor]\npart = "drivetrain.moter"\n',
         ["limits.bought_parts.motor.part", "drivetrain.moter", "no such part", "drivetrain.motor"],
