@@ -236,7 +236,9 @@ class _Set:
         """The effect with how many detectable sizes it has, alone, over either floor."""
         change = self._seen(effect) if self._of_chain(effect) else self.truth([effect]) - self.truth([])
         effect["detectable_sizes"] = self.detector.detectable_sizes(change, baseline=self.paired)
-        effect["detectable_sizes_declared"] = self.detectors.declared.detectable_sizes(change, baseline=self.paired)
+        effect["detectable_sizes_declared"] = self.detectors.declared.detectable_sizes(
+            change, baseline=self.paired
+        )
         return effect
 
     def _seen(self, effect: Mapping[str, Any]) -> np.ndarray:

@@ -189,7 +189,9 @@ def _wrong_data(
     wrong = [one for one in evidence if one.hypothesis.family == "input"]
     best = max(wrong, key=lambda one: weights.masses[one.hypothesis.name])
     heat = np.flatnonzero(residuals.of_heat)
-    of_heat = 0.5 * (_square(whole, whole.residual, heat) - _square(whole, whole.residual - best.answer, heat))
+    of_heat = 0.5 * (
+        _square(whole, whole.residual, heat) - _square(whole, whole.residual - best.answer, heat)
+    )
     if of_heat < thresholds.evidence and best.log_bayes < thresholds.evidence_loop:
         return None  # healthy rigs have given as much evidence
     return Evaluation(

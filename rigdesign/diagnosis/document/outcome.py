@@ -225,7 +225,10 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
         title = names.title(parts[0]) if leads is None else names.title_of(leads)
         suspects.append(
             Suspect(
-                name=JOIN.join(parts), title=title if size is None else size.title, inclusion=held[parts], size=size
+                name=JOIN.join(parts),
+                title=title if size is None else size.title,
+                inclusion=held[parts],
+                size=size,
             )
         )
     return tuple(suspects)

@@ -213,7 +213,11 @@ def test_what_explains_nothing_has_no_group():
     ("alone", "sensor", "said"),
     [
         (60.0, "", "a cause outside the catalogue explains the data better"),
-        (30.0, "", f"leak and {in_words(HOUSING.removeprefix('unknown: '), -1.0)} together explain the data better"),
+        (
+            30.0,
+            "",
+            f"leak and {in_words(HOUSING.removeprefix('unknown: '), -1.0)} together explain the data better",
+        ),
         (0.0, "torque_zero:M_1", "leak and torque_zero:M_1 together explain the data better"),
     ],
 )

@@ -183,7 +183,11 @@ def test_a_cause_beside_an_effect_has_a_size_of_its_own():
             0.0,
         ),
         ("heat in the drain of test.gear_oil constant", "heat in the drain line of test.gear_oil", 1.0),
-        ("order 2 of M_1 ~n2", "order 2 of M_1 without a known source, growing with the square of the speed", -1.0),
+        (
+            "order 2 of M_1 ~n2",
+            "order 2 of M_1 without a known source, growing with the square of the speed",
+            -1.0,
+        ),
         ("conductance contact:test.a|b", "heat path other than modelled: contact from test.a to b", 0.0),
         ("conductance film:test.outer_warm", "heat path other than modelled: film at test.outer_warm", 0.0),
         (
@@ -191,7 +195,11 @@ def test_a_cause_beside_an_effect_has_a_size_of_its_own():
             "less power loss than modelled in test.housing, growing with the square of the speed",
             -2.0,
         ),
-        ("heat unpaid at oil:a ~n", "cooling from outside the drive in the oil a, growing with the speed", -2.0),
+        (
+            "heat unpaid at oil:a ~n",
+            "cooling from outside the drive in the oil a, growing with the speed",
+            -2.0,
+        ),
         ("heat near TC07 constant", "draught near thermocouple TC07, the same at all operating points", -0.1),
         ("heat in the drain of a constant", "cooling in the drain line of a", -1.0),
         ("conductance film:a", "heat path worse than modelled: film at a", -0.3),

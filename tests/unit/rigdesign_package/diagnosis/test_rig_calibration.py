@@ -109,7 +109,9 @@ def test_a_known_drift_is_found_again_within_its_spread() -> None:
 
 
 def test_changes_that_are_not_independent_count_less() -> None:
-    pair = healthy_pairs(Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3), 1, seed=2)[0]
+    pair = healthy_pairs(
+        Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3), 1, seed=2
+    )[0]
     start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02, sensors=0.3)
     change = Change.of(*pair, Amplitudes())
     once, twice = fit_drift([change], start), fit_drift([change, change], start, weight=0.5)
