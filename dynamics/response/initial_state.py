@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import line_ratios
+from dynamics.drivetrain.static_loop import TRACE, line_ratios
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
@@ -187,7 +187,7 @@ class _Winding:
             reaction = evaluate_mesh(self._packed[mesh], 0.0, x + law.offset, 0.0, 0.0)
             force[mesh] = reaction.force_front[0] - reaction.force_back[0]
             tangent = reaction.torque_2_per_approach[0] / law.base_radius_2
-            stiffness[mesh] = max(tangent, 1e-3 * law.mean_stiffness)
+            stiffness[mesh] = max(tangent, TRACE * law.mean_stiffness)
         return force, stiffness
 
     def _reach(self, mesh: int, force: float) -> float:

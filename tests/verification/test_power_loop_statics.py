@@ -14,6 +14,7 @@ from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_stat
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.static_cycle import static_cycle
 from dynamics.response.initial_state import wound_state
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 
@@ -191,3 +192,65 @@ def test_bracing_that_winds_nothing_is_refused() -> None:
     system, laws = rig()
     with pytest.raises(DynamicsInputError, match="twist does not load the first mesh"):
         wound_state(replace(system, twist_load=0.0 * system.twist_load), laws, 0.0, LoopLoad(torque=180.0))
+
+
+LENGTHS = (
+    "base_radius_1",
+    "base_radius_2",
+    "base_pitch",
+    "path_start",
+    "path_step",
+    "gap",
+    "slice_shift",
+    "backlash",
+)
+LENGTHS += (
+    "deviation_1",
+    "deviation_2",
+    "offset",
+    "phase",
+    "back_phase",
+    "rolling_radius_1",
+    "rolling_radius_2",
+)
+LENGTHS += ("friction_reversal_speed", "damping_depth", "stiffness", "mean_stiffness")
+
+
+def similar(factor: float) -> tuple[LinearSystem, tuple[MeshLaw, ...]]:
+    """The prototype with all its torques times a factor at the same stresses, lengths with its third root."""
+    length, system = factor ** (1.0 / 3.0), assemble(prototype())
+    laws = tuple(
+        law._replace(
+            damping=length**2 * law.damping, **{name: length * getattr(law, name) for name in LENGTHS}
+        )
+        for law in prototype_laws()
+    )
+    return replace(
+        system,
+        inertia=length**5 * system.inertia,
+        damping=length**4 * system.damping,
+        stiffness=factor * system.stiffness,
+        twist_load=factor * system.twist_load,
+    ), laws
+
+
+@pytest.mark.parametrize("factor", [0.1, 1e3])
+@pytest.mark.parametrize("torque", [1e-2, 180.0])
+def test_a_larger_or_smaller_rig_finds_the_same_state(factor: float, torque: float) -> None:
+    """No limit of an iteration is a force, torque or length as such."""
+    system, laws = similar(factor)
+    base_system, base_laws = similar(1.0)
+    wanted, base = LoopLoad(torque=factor * torque), LoopLoad(torque=torque)
+    wound = wound_state(system, laws, 0.0, wanted)
+    assert wound.state.twist == pytest.approx(
+        wound_state(base_system, base_laws, 0.0, base).state.twist, rel=1e-8
+    )
+    found = solve_static(port_model(system, laws), wanted)
+    assert found.twist == pytest.approx(
+        solve_static(port_model(base_system, base_laws), base).twist, rel=1e-8
+    )
+    cycle, like = (
+        static_cycle(law, load)
+        for law, load in ((laws[0], factor ** (2.0 / 3.0) * torque), (base_laws[0], torque))
+    )
+    assert cycle.approach == pytest.approx(factor ** (1.0 / 3.0) * like.approach, rel=1e-8)
