@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
+
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case import Case
 from rigdesign.diagnosis.catalogue import effects_of
@@ -27,6 +29,7 @@ from rigdesign.studies.design import StudyDesign
 from rigdesign.studies.result import StudyResult
 from rigdesign.studies.run import DEFAULT as ONE_PROCESS_A_CORE
 from rigdesign.studies.run import Execution, StudyOutcome, run_study
+from rigdesign.studies.selection import CheckSelection
 from rigdesign.uncertainty.run import with_ranges
 
 Progress = Callable[[str], None]
@@ -39,6 +42,7 @@ def run_case(
     *,
     transient: bool = False,
     ranges: bool = False,
+    checks: Sequence[str] = (),
 ) -> RunResult:
     """Compute a case and hold it against its limits, as ``rigdesign check`` does.
 
@@ -49,9 +53,12 @@ def run_case(
     progress : called with what is being computed
     transient : follow temperatures and clearances over the schedule and its events as well
     ranges : move every assumed input to both ends of its range; a check passes only if it holds there too
+    checks : patterns on the ids of the checks to judge, as `CheckSelection` takes them; the others do not apply
 
     Raises
     ------
+    UsageError
+        A pattern that matches no check.
     CaseError
         A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
     NotConvergedError
@@ -59,7 +66,10 @@ def run_case(
     MissingLibraryError
         A system library that gmsh needs.
     """
-    result = main.run_case(case, fidelity, progress, transient=transient, follow_ups={"flips": with_flips})
+    selection = CheckSelection(checks)
+    selection.require(case, transient=transient)
+    follow_ups = {"checks": selection.applied, "flips": with_flips}
+    result = main.run_case(case, fidelity, progress, transient=transient, follow_ups=follow_ups)
     return with_ranges(case, result, progress=progress) if ranges else result
 
 
@@ -106,7 +116,8 @@ def study(
     if not isinstance(design, StudyDesign):
         design = StudyDesign(vary=(design,) if isinstance(design, str) else tuple(design))
     write = partial(_write_study, tables=tables)
-    return run_study(case, design, Path(out), write=write, fidelity=fidelity, execution=execution)
+    with threadpool_limits(limits=1):
+        return run_study(case, design, Path(out), write=write, fidelity=fidelity, execution=execution)
 
 
 def _write_study(study: StudyResult, out: Path, tables: Sequence[TableFormat]) -> None:
@@ -128,7 +139,8 @@ def compare(
     CaseError, NotConvergedError, MissingLibraryError
         As :func:`run_case`.
     """
-    return compare_measurement(case, Path(measurement), model=model, fidelity=fidelity)
+    with threadpool_limits(limits=1):
+        return compare_measurement(case, Path(measurement), model=model, fidelity=fidelity)
 
 
 def diagnose(
@@ -155,5 +167,5 @@ def diagnose(
     if name is not None:
         check_pick(effects_of(case, channels=None), name)
     used = DEFAULT if calibration is None else load_rig_calibration(Path(calibration), case)
-    found = diagnose_measurement(case, Path(measurement), calibration=used)
-    return outcome(found, pick=name)
+    with threadpool_limits(limits=1):
+        return outcome(diagnose_measurement(case, Path(measurement), calibration=used), pick=name)

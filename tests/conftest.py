@@ -1,5 +1,11 @@
 """Fixtures for all tests, and the folder in which the processes of a test run share what takes long."""
 
+import os
+
+from rigdesign.base.parallel import one_blas_thread
+
+os.environ.update(one_blas_thread())  # before numpy loads
+
 import pytest
 
 from tests.builders.commands import rigdesign, write

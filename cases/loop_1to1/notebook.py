@@ -18,13 +18,11 @@ print(result)
 
 # %%
 near = sorted(
-    (check for check in result.checks if check.utilisation is not None),
-    key=lambda check: -(check.utilisation or 0.0),
+    (check for check in result.checks if check.distance is not None),
+    key=lambda check: check.distance or 0.0,
 )
 for check in near[:5]:
-    print(
-        f"{check.id:45} {check.value:8.4g} {check.unit:6} {100 * check.utilisation:4.0f} %  {check.verdict}"
-    )
+    print(f"{check.id:45} {check.value:8.4g} {check.unit:6} {100 * check.distance:4.0f} %  {check.status}")
 
 # %% [markdown]
 # ## The dynamic factor over speed

@@ -21,6 +21,9 @@ from dynamics.mesh.tables import undamped
 
 Array = NDArray[np.float64]
 
+TRACE = 1e-3
+"""Share of its mean stiffness that a mesh keeps in Newton's method where its flanks stand apart."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PortModel:
@@ -234,9 +237,10 @@ def solve_static(
         tau, tangents, own, transmitted = _reactions(model, u, where, speed)
         residual = u @ model.stiffness.T - tau - model.twist * phi - drag - drive[:, None] * unit
         miss = 0.0 if torque is None else torque - float(transmitted[:, control_mesh].mean())
-        error = max(float(np.max(np.abs(residual))), abs(miss)) / scale
+        error = max(float(np.max(np.abs(residual))), abs(miss))
         # a loop that a shift braces carries torque with hardly any twist
-        if error < 1e-10 * max(1.0, float(np.max(np.abs(transmitted))) / scale):
+        limit = 1e-10 * max(scale, float(np.max(np.abs(transmitted)))) + _round_off(model, u, phi)
+        if error < limit:
             return StaticState(
                 twist=float(phi), angles=where, ports=u, torque=transmitted, drive=drive,
                 approach=u @ model.approach.T + model.offsets,
@@ -268,9 +272,20 @@ def solve_static(
         step = (move[:, :n], move[:, n], d_phi)
         u, drive, phi = u + step[0], drive + step[1], phi + step[2]
     raise DynamicsNotConverged(
-        f"static loop: residual {previous:.2e} of the torque after the last step, limit 1e-10: "
+        f"static loop: {error:.2g} N m are left unbalanced at a torque of {scale:.3g} N m, limit {limit:.1g} N m: "
         "the twist leaves the flanks open or the torque is below the friction; raise the twist or the torque"
     )
+
+
+def _round_off(model: PortModel, u: Array, twist: float) -> float:
+    """Torque that the last digits of windups, twist and approaches make [N m]."""
+    windup = np.abs(u).max(axis=0)
+    reach = np.abs(model.approach) @ windup + np.abs(model.offsets)
+    tooth = max(law.mean_stiffness * law.base_radius_1 * x for law, x in zip(model.laws, reach))
+    size = max(
+        float((np.abs(model.stiffness) @ windup).max()), float(np.abs(model.twist * twist).max()), tooth
+    )
+    return 16.0 * float(np.finfo(float).eps) * size
 
 
 def _transmitted_change(own: Array, moves: Array, mesh: int) -> Array:
@@ -281,7 +296,9 @@ def _transmitted_change(own: Array, moves: Array, mesh: int) -> Array:
 
 def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple[Array, Array, Array, Array]:
     """Port torques (n_angles, n), their derivatives over the windup (n_angles, n, n), those of each mesh at its own
-    pinion (n_angles, n_meshes, n), transmitted torques (n_angles, n_meshes)."""
+    pinion (n_angles, n_meshes, n), transmitted torques (n_angles, n_meshes).
+
+    The derivatives keep a trace of stiffness where the flanks stand apart, so that Newton's method closes them."""
     tau = np.zeros_like(u)
     tangents = np.zeros((*u.shape, u.shape[1]))
     own = np.zeros((u.shape[0], model.n_meshes, u.shape[1]))
@@ -295,12 +312,16 @@ def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple
         )
         tau[:, p] += reaction.torque_1
         tau[:, w] += reaction.torque_2
-        own[:, m] = reaction.torque_1_per_approach[:, None] * model.approach[m]
+        radius_1, radius_2 = model.base_radii[m]
+        apart = np.maximum(
+            TRACE * model.laws[m].mean_stiffness - reaction.torque_2_per_approach / radius_2, 0.0
+        )
+        own[:, m] = (reaction.torque_1_per_approach - apart * radius_1)[:, None] * model.approach[m]
         own[:, m, p] += reaction.torque_1_per_angle
         tangents[:, p] += own[:, m]
-        tangents[:, w] += reaction.torque_2_per_approach[:, None] * model.approach[m]
+        tangents[:, w] += (reaction.torque_2_per_approach + apart * radius_2)[:, None] * model.approach[m]
         tangents[:, w, p] += reaction.torque_2_per_angle
-        transmitted[:, m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
+        transmitted[:, m] = radius_1 * (reaction.force_front - reaction.force_back)
     return tau, tangents, own, transmitted
 
 

@@ -213,7 +213,10 @@ def require_whole_flanks(pair: PairGeometry) -> None:
 
     The flank field ends at the active profile: what touches beyond the end of an undercut flank is no involute.
     """
-    lost = (pair.path.start - pair.path.tip_start, pair.path.tip_end - pair.path.end)
+    lost, total = (
+        (pair.path.start - pair.path.tip_start, pair.path.tip_end - pair.path.end),
+        sum(pair.profile_shifts),
+    )
     for name, gear, details, missing in zip(NAMES, pair.gears, pair.details, lost, strict=True):
         if not gear.tip_thickness > 0.0:
             raise GearGeometryError(
@@ -221,9 +224,12 @@ def require_whole_flanks(pair: PairGeometry) -> None:
                 "reduce profile shift or tip diameter"
             )
         if gear.undercut and missing > 0.0:
+            least, thinned = gear.least_profile_shift, gear.generating_profile_shift - gear.profile_shift
             raise GearGeometryError(
-                f"{name}: undercut takes {1e3 * missing:.3f} mm of the path of contact (limit 0 mm); "
-                "raise its profile shift or shorten the mating tip"
+                f"{name}: undercut takes {1e3 * missing:.3f} mm of the path of contact (limit 0 mm), its profile shift "
+                f"{gear.profile_shift:.3f} is below x_min = {least:.3f}; raise its profile shift to "
+                f"{least - thinned:.3f}, its thinning counted: its mate then has {total - least + thinned:.3f}, or "
+                "more with a larger centre distance; or shorten the mating tip"
             )
         if details.protuberance and missing > 0.0:
             raise GearGeometryError(

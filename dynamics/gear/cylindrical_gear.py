@@ -170,9 +170,16 @@ class CylindricalGear:
         return self.normal_module * (height - rack.tip_radius * (1.0 - sin(self.pressure_angle)))
 
     @property
+    def least_profile_shift(self) -> float:
+        """x_min, the generating profile shift below which the tool cuts off flank [-]: h_fP - rho_fP (1 - sin alpha_n)
+        - z sin^2 alpha_t / (2 cos beta)."""
+        over = self._root_feed - self.reference_radius * sin(self.transverse_pressure_angle) ** 2
+        return self.generating_profile_shift + over / self.normal_module
+
+    @property
     def undercut(self) -> bool:
         """True if the tool reaches below the base tangent point and cuts off flank."""
-        return self.reference_radius * sin(self.transverse_pressure_angle) ** 2 < self._root_feed
+        return self.generating_profile_shift < self.least_profile_shift
 
     @cached_property
     def form_radius(self) -> float:

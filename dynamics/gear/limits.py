@@ -6,13 +6,9 @@ from dynamics.gear.pair_geometry import PairGeometry
 NAMES = ("pinion", "wheel")
 FILLET_OVERLAP_LIMIT = 0.02
 """Overlap of a mating flank with the fillet, in normal modules, above which the pair is refused."""
-FILLET_OVERLAP_NOTED = 1e-4
-"""Overlap in normal modules that is worth a warning."""
 THIN_RIM, NO_RIM = 1.2, 0.5
 """Rim under the root, in tooth heights: below the first it adds to the root stress, at the second it carries no
 tooth (ISO 6336-3:2006, clause 9)."""
-THIN_TIP = 0.2
-"""Tip thickness in normal modules below which a hardened tip is likely to break."""
 
 
 def require_sizes(pair: PairGeometry) -> None:
@@ -118,22 +114,6 @@ def rim_in_tooth_heights(pair: PairGeometry, index: int) -> float:
 def unusual(pair: PairGeometry) -> tuple[str, ...]:
     """Warnings about a pair that can run: name, value, limit, remedy."""
     found: list[str] = []
-    for name, gear, overlap in zip(NAMES, pair.gears, pair.fillet_overlaps, strict=True):
-        if gear.undercut:
-            found.append(
-                f"{name}: undercut, its involute starts at d = {2e3 * gear.form_radius:.3f} mm; "
-                "raise its profile shift"
-            )
-        if overlap > FILLET_OVERLAP_NOTED * gear.normal_module:
-            found.append(
-                f"{name}: fillet reaches {1e6 * overlap:.2f} um into the path of the mating tip "
-                "(limit 1e-4 m_n); use a smaller tool tip radius, a deeper tool or a shorter mating tip"
-            )
-        if gear.tip_thickness < THIN_TIP * gear.normal_module:
-            found.append(
-                f"{name}: tip thickness {1e3 * gear.tip_thickness:.3f} mm below 0.2 m_n; "
-                "reduce shift or addendum"
-            )
     for i, name in enumerate(NAMES):
         rim = rim_in_tooth_heights(pair, i)
         stated = pair.details[i].rim_thickness is not None

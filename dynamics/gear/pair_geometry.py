@@ -324,6 +324,18 @@ class PairGeometry:
         return mass, 0.5 * mass * (outer**2 + inner**2)
 
     @property
+    def fillet_distances(self) -> Pair:
+        """Distance along the line of action from the ends of the fillets of pinion and wheel to where the mating tip
+        begins to touch [m]; negative: it runs into the fillet."""
+        reach_1, reach_2 = self.rolling_radii
+        rolls = reach_1 + self.path.tip_start, reach_2 - self.path.tip_end
+        first, second = (
+            roll - gear.roll_length(flank.form_radius)
+            for gear, flank, roll in zip(self.gears, self.flanks, rolls, strict=True)
+        )
+        return first, second
+
+    @property
     def fillet_overlaps(self) -> Pair:
         """Overlap of the mating tip with the fillet of pinion and wheel along the line of action [m]."""
         reach_1, reach_2 = self.rolling_radii

@@ -68,7 +68,8 @@ def static_cycle(law: MeshLaw, force: float, n: int = 64, start: float | None = 
         if not np.all(tangent > 0.0):
             break
         approach = approach - off / tangent
-        if float(np.abs(off).max()) <= CLOSED * force:
+        round_off = 4.0 * float(np.finfo(float).eps * (tangent * np.abs(approach)).max())
+        if float(np.abs(off).max()) <= CLOSED * force + round_off:
             teeth = tooth_forces(law, theta, approach)
             return StaticCycle(
                 force=force,

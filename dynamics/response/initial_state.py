@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import line_ratios
+from dynamics.drivetrain.static_loop import TRACE, line_ratios
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
@@ -80,99 +80,105 @@ def wound_state(
         (value * system.drag_loads[name] for name, value in (drag_torques or {}).items()),
         np.zeros(len(ratios)),
     )
-    winding = _Winding(system, laws, ratios, speed, braked if outer is None else braked + outer)
-    unknowns = winding.solve(load.torque, load.twist)
-    n = len(system.inertia)
-    state = DriveState(angles=unknowns[:n], speeds=speed * ratios, twist=float(unknowns[n + 1]))
-    return WoundLoop(state, float(unknowns[n]), winding.loop_stiffness(unknowns))
+    load_now = braked - system.damping @ (speed * ratios)
+    winding = _Winding(system, laws, load_now if outer is None else load_now + outer)
+    reach, twist = winding.solve(load.torque, load.twist)
+    angles, drive = winding.freedoms(reach, twist)
+    state = DriveState(angles=angles, speeds=speed * ratios, twist=twist)
+    return WoundLoop(state, drive, winding.loop_stiffness(reach))
 
 
 class _Winding:
-    """Static equilibrium in (angles, motor torque, twist) with the pinion of the first mesh held at angle 0."""
+    """Static equilibrium with the pinion of the first mesh held at angle 0, reduced to approaches and twist.
 
-    def __init__(
-        self,
-        system: LinearSystem,
-        laws: Sequence[MeshLaw],
-        ratios: Array,
-        speed: float,
-        load: Array,
-    ) -> None:
+    The system is solved once, with springs for meshes and every freedom in units of its own stiffness. Newton's method
+    is left with one row a mesh, ``approach = rest + compliance @ (force - spring * approach) + per_twist * twist``: its
+    convergence does not depend on number and order of the freedoms.
+    """
+
+    def __init__(self, system: LinearSystem, laws: Sequence[MeshLaw], load: Array) -> None:
         self._laws = [law._replace(friction=0.0, damping=0.0) for law in laws]
         self._packed = [pack_meshes([law]) for law in self._laws]
-        n = len(system.inertia)
-        self._n = n
-        self._approach = np.zeros((len(laws), n))
-        for row, law, (pinion, wheel) in zip(self._approach, laws, system.mesh_ports):
+        self._spring = np.array([law.mean_stiffness for law in laws])
+        n, held = len(system.inertia), system.mesh_ports[0, 0]
+        ports = np.zeros((len(laws), n + 1))
+        for row, law, (pinion, wheel) in zip(ports, laws, system.mesh_ports):
             row[pinion], row[wheel] = law.base_radius_1, -law.base_radius_2
-        self._load = load - system.damping @ (speed * ratios)
-        self._linear = np.zeros((n + 2, n + 2))
-        self._linear[:n, :n] = system.stiffness
-        self._linear[system.drive_dof, n] = -1.0
-        self._linear[:n, n + 1] = -system.twist_load
-        self._linear[n, system.mesh_ports[0, 0]] = 1.0
+        matrix, right = np.zeros((n + 1, n + 1)), np.zeros((n + 1, len(laws) + 2))
+        matrix[:n, :n] = system.stiffness
+        matrix += ports.T @ (self._spring[:, None] * ports)
+        unit = 1.0 / np.sqrt(np.abs(np.diag(matrix)[:n]))
+        rows, columns = np.append(unit, 1.0 / unit[held]), np.append(unit, 1.0 / unit[system.drive_dof])
+        # the last unknown is the motor torque, the last row holds the pinion
+        matrix[system.drive_dof, n], matrix[n, held] = -1.0, 1.0
+        right[:n, 0], right[:, 1:-1], right[:n, -1] = load, -ports.T, system.twist_load
+        scaled = np.linalg.solve(rows[:, None] * matrix * columns, rows[:, None] * right)
+        self._shares = columns[:, None] * scaled
+        reach = ports @ self._shares
+        self._rest, self._compliance, self._per_twist = reach[:, 0], reach[:, 1:-1], reach[:, -1]
 
-    def solve(self, torque: float | None, twist: float | None) -> Array:
-        """Return the unknowns for a torque or a twist, Newton from the solution with springs in both directions."""
-        force, stiffness = np.zeros(len(self._laws)), np.array([law.mean_stiffness for law in self._laws])
-        reach = np.zeros(len(self._laws))
-        scale = 0.0
+    def solve(self, torque: float | None, twist: float | None) -> tuple[Array, float]:
+        """Return approaches [m] and twist [rad] for a torque or a twist, Newton from springs in both directions."""
+        spring = self._spring
+        wanted, _ = self._step(np.zeros(len(spring)), spring, torque, twist)
+        # the springs tell which flank carries what; start each contact at that force
+        wanted *= spring
+        scale = max(float(np.abs(wanted).max()), 1e-12 * float(spring.max()))
+        reach = np.array([self._reach(mesh, f) for mesh, f in enumerate(wanted)])
         for _ in range(60):
-            unknowns = self._step(force - stiffness * reach, stiffness, torque, twist)
-            asked = self._approach @ unknowns[: self._n]
-            if scale == 0.0:
-                # the first solution tells which flank carries what; start each contact at that force
-                wanted = stiffness * asked
-                reach = np.array([self._reach(mesh, f) for mesh, f in enumerate(wanted)])
-                scale = max(float(np.abs(wanted).max()), 1e-12 * float(stiffness.max()))
-            else:
-                if np.abs(asked - reach).max() * float(stiffness.max()) < 1e-9 * scale:
-                    return unknowns
-                step = asked - reach
-                limit = 20.0 * scale / stiffness
-                reach = reach + np.clip(step, -limit, limit)
             force, stiffness = self._contact(reach)
+            asked, turned = self._step(force - stiffness * reach, stiffness, torque, twist)
+            change = float(np.abs(asked - reach).max() * spring.max())
+            limit = 1e-9 * scale + self._round_off(reach, force, turned)
+            if change < limit:
+                return asked, turned
+            step = 20.0 * scale / stiffness
+            reach = reach + np.clip(asked - reach, -step, step)
         raise DynamicsNotConverged(
-            "static state: contact forces still change by "
-            f"{np.abs(asked - reach).max() * stiffness.max() / scale:.1e} of the largest, limit 1e-9; "
-            "the twist leaves the flanks open: raise twist or torque"
+            f"static state: tooth forces still change by {change:.2g} N after 60 steps, the largest is {scale:.3g} N, "
+            f"limit {limit:.1g} N; where a flank stands open raise twist or torque"
         )
 
-    def loop_stiffness(self, unknowns: Array) -> float:
+    def freedoms(self, reach: Array, twist: float) -> tuple[Array, float]:
+        """Return the angles (n,) [rad] and the motor torque [N m] of a solution."""
+        force = self._contact(reach)[0] - self._spring * reach
+        unknowns = self._shares @ np.concatenate([[1.0], force, [twist]])
+        return unknowns[:-1], float(unknowns[-1])
+
+    def loop_stiffness(self, reach: Array) -> float:
         """Return d (torque of the first mesh) / d twist at a solution [N m/rad]."""
-        reach = self._approach @ unknowns[: self._n]
         _, stiffness = self._contact(reach)
-        change = self._step(np.zeros(len(reach)), stiffness, None, 1.0, unloaded=True)
-        return float(self._laws[0].base_radius_1 * stiffness[0] * (self._approach[0] @ change[: self._n]))
+        follow = np.eye(len(reach)) - self._compliance * (stiffness - self._spring)
+        change = np.linalg.solve(follow, self._per_twist)
+        return float(self._laws[0].base_radius_1 * stiffness[0] * change[0])
 
     def _step(
-        self,
-        preload: Array,
-        stiffness: Array,
-        torque: float | None,
-        twist: float | None,
-        *,
-        unloaded: bool = False,
-    ) -> Array:
-        """Solve with contact forces ``preload + stiffness * approach``."""
-        n = self._n
-        matrix, right = self._linear.copy(), np.zeros(n + 2)
-        matrix[:n, :n] += self._approach.T @ (stiffness[:, None] * self._approach)
-        right[:n] = -self._approach.T @ preload + (0.0 if unloaded else self._load)
+        self, preload: Array, stiffness: Array, torque: float | None, twist: float | None
+    ) -> tuple[Array, float]:
+        """Return approaches and twist with contact forces ``preload + stiffness * approach``."""
+        n, turn = len(preload), float(np.abs(self._per_twist).max())
+        matrix, right = np.eye(n + 1), np.zeros(n + 1)
+        matrix[:n, :n] -= self._compliance * (stiffness - self._spring)
+        right[:n] = self._rest + self._compliance @ preload
+        matrix[:n, n] = -self._per_twist / (turn or 1.0)
         if twist is not None:
-            matrix[n + 1, n + 1], right[n + 1] = 1.0, twist
+            right[n] = twist * (turn or 1.0)
         else:
             assert torque is not None
-            radius = self._laws[0].base_radius_1
-            matrix[n + 1, :n] = stiffness[0] * self._approach[0]
-            right[n + 1] = torque / radius - preload[0]
-        try:
-            solution = np.asarray(np.linalg.solve(matrix, right), float)
-        except np.linalg.LinAlgError:
-            raise DynamicsInputError(
-                "the bracing twist does not load the first mesh; give a twist_load that winds it"
-            ) from None
-        return solution
+            matrix[n] = np.eye(1, n + 1)[0]
+            right[n] = (torque / self._laws[0].base_radius_1 - preload[0]) / stiffness[0]
+            if np.linalg.cond(matrix) > 1e12:
+                raise DynamicsInputError(
+                    "the bracing twist does not load the first mesh; give a twist_load that winds it"
+                )
+        solution = np.asarray(np.linalg.solve(matrix, right), float)
+        return solution[:n], float(solution[n] / (turn or 1.0))
+
+    def _round_off(self, reach: Array, force: Array, twist: float) -> float:
+        """Tooth force that a few last digits of the sums behind an approach make [N]."""
+        sums = np.abs(self._rest) + np.abs(self._compliance) @ np.abs(force - self._spring * reach)
+        sums += np.abs(self._per_twist * twist) + np.abs(reach) + [abs(law.offset) for law in self._laws]
+        return 16.0 * float(np.finfo(float).eps * sums.max() * self._spring.max())
 
     def _contact(self, reach: Array) -> tuple[Array, Array]:
         """Return force and stiffness of every mesh; an open one keeps a trace of stiffness so that Newton moves it."""
@@ -181,7 +187,7 @@ class _Winding:
             reaction = evaluate_mesh(self._packed[mesh], 0.0, x + law.offset, 0.0, 0.0)
             force[mesh] = reaction.force_front[0] - reaction.force_back[0]
             tangent = reaction.torque_2_per_approach[0] / law.base_radius_2
-            stiffness[mesh] = max(tangent, 1e-3 * law.mean_stiffness)
+            stiffness[mesh] = max(tangent, TRACE * law.mean_stiffness)
         return force, stiffness
 
     def _reach(self, mesh: int, force: float) -> float:

@@ -3,13 +3,13 @@
 import logging
 import re
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import MissingLibraryError, UsageError, shortened
 from rigdesign.base.version import __version__
-from rigdesign.base.worker_pool import LostWorkersError, Outcome, Workers
+from rigdesign.base.worker_pool import LostWorkersError, Outcome, Task, Workers
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -69,7 +69,7 @@ class ClusterWorkers(Workers):
     def __str__(self) -> str:
         return f"workers of {self._address}"
 
-    def open(self) -> None:
+    def open(self, work: Callable[[Task], Outcome], tasks: Sequence[Task]) -> None:
         """Reach the scheduler and ask its workers what they are.
 
         Raises

@@ -36,9 +36,27 @@ CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
 """What a terminal obeys and XML cannot hold; tabs and new lines are text."""
 
 
+LAYOUT = re.compile("[\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
+"""Marks that turn the direction of what follows or break a line, unseen themselves."""
+
+
+def one_line(text: str) -> str:
+    """A text of others for one line of an output: line breaks as blanks, control characters and marks as codes."""
+    return without_layout(CONTROL.sub(_code, " ".join(text.splitlines())))
+
+
+def without_layout(text: str) -> str:
+    """A text of others in which no mark turns the direction of what stands beside it."""
+    return LAYOUT.sub(_code, text)
+
+
+def _code(found: re.Match[str]) -> str:
+    return f"\\u{ord(found[0]):04x}"
+
+
 def shortened(text: str, width: int = WIDEST) -> str:
     """``text`` cut to ``width`` characters, with its length where it is longer; control characters are spelled out."""
-    cut = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text[:width])
+    cut = CONTROL.sub(_code, text[:width])
     return cut if len(text) <= width else f"{cut}… ({len(text)} characters)"
 
 

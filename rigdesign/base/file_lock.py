@@ -1,7 +1,7 @@
 """A lock file that names its owner; the operating system ends the lock with the process, however that ends.
 
 The name of the owner is for messages only: whether a lock is held is asked of the operating system, so that a file
-left by a killed process, on this machine or another, holds up nobody.
+left by a killed process, on this machine or another, holds up nobody. A copy made by fork does not hold it.
 """
 
 import json
@@ -49,6 +49,7 @@ class FileLock:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._handle = _locked(path)
+        _HANDLES.add(self._handle)
         owner = Owner(socket.gethostname(), os.getpid(), time.strftime("%Y-%m-%d %H:%M:%S"))
         try:
             os.ftruncate(self._handle, 0)
@@ -59,10 +60,12 @@ class FileLock:
 
     def release(self) -> None:
         """Remove the file and end the lock."""
-        with suppress(OSError):
-            self._path.unlink()
-        with suppress(OSError):
-            os.close(self._handle)
+        if self._handle in _HANDLES:
+            _HANDLES.remove(self._handle)
+            with suppress(OSError):
+                self._path.unlink()
+            with suppress(OSError):
+                os.close(self._handle)
 
     def __enter__(self) -> "FileLock":
         return self
@@ -71,6 +74,20 @@ class FileLock:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.release()
+
+
+_HANDLES: set[int] = set()
+"""Of the locks that this process holds."""
+
+
+def _leave_to_parent() -> None:
+    """In a copy: close its doubles of the handles; the lock stays with the parent and ends with it."""
+    while _HANDLES:
+        os.close(_HANDLES.pop())
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_parent)
 
 
 def _locked(path: Path) -> int:

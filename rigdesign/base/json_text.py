@@ -1,16 +1,26 @@
-"""Records as JSON: plain values with ten digits, the same bytes for the same numbers."""
+"""Records as JSON and tables as CSV: plain values with ten digits, the same bytes for the same numbers."""
 
+import csv
+import io
 import json
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
+from rigdesign.base.errors import one_line
 from rigdesign.base.finite import finite
 
 SIGNIFICANT_DIGITS = 10
 """Digits kept of every number: far beyond any model's accuracy, short of the last bits of round-off."""
+
+FORMULA = ("=", "+", "-", "@")
+"""What a spreadsheet takes for the beginning of a formula."""
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[\w°µ²³%/·.() ]*")
+"""A number, with or without a unit."""
+Row = Sequence[Any]
 
 
 def to_text(document: Mapping[str, Any]) -> str:
@@ -55,3 +65,23 @@ def _rounded(value: float, path: str) -> float:
 
 def _join(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
+
+
+def csv_text(header: Row, rows: Iterable[Row]) -> str:
+    """One table as CSV text; floats keep ten significant digits, None is an empty cell.
+
+    A text that a spreadsheet would run as a formula stands behind an apostrophe; every cell is one line.
+    """
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerows([_cell(value) for value in row] for row in (header, *rows))
+    return buffer.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, float):
+        return f"{value:.{SIGNIFICANT_DIGITS}g}"
+    if not isinstance(value, str):
+        return value
+    text = one_line(value)
+    return f"'{text}" if text.startswith(FORMULA) and not NUMBER.fullmatch(text) else text

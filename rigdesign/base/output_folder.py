@@ -3,6 +3,7 @@
 import errno
 import os
 import re
+import secrets
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -70,6 +71,21 @@ def staged(out: Path) -> Iterator[Path]:
 def write_whole(path: Path, text: str) -> None:
     """Write one text file (UTF-8, newline ``\\n``) whole or not at all."""
     write_texts(path.parent, {path.name: text})
+
+
+def replace_whole(file: Path, content: bytes) -> None:
+    """Write a file of a cache whole or not at all, with the rights that this user gives to files.
+
+    Raises OSError where the folder cannot be written.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_name(f".{secrets.token_hex(8)}.part")
+    try:
+        part.write_bytes(content)
+        part.replace(file)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def write_texts(out: Path, texts: Mapping[str, str]) -> None:

@@ -1,11 +1,12 @@
 """Work on other cores and machines, through any `concurrent.futures.Executor`.
 
-The pool of this module: processes of one thread each, none outlives its parent, a dying one costs one task.
+The pool of this module: processes of one thread each, none outlives its parent, a dying one costs one task. Where they
+cannot start or cannot load what they are to compute, it is computed in this process.
 """
 
 import os
-import signal
-import threading
+import pickle
+import sys
 from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -19,21 +20,17 @@ from concurrent.futures import (
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import islice
-from multiprocessing import connection, get_context
-from multiprocessing.connection import Connection
-from types import TracebackType
+from multiprocessing import current_process, get_context
+from types import ModuleType, TracebackType
 from typing import Self, TypeVar
 
 from rigdesign.base.errors import UsageError
-from rigdesign.base.parallel import granted_cores
+from rigdesign.base.parallel import BLAS_THREADS, begin_child, granted_cores, stops_held
 
 Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
 
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "BLIS_NUM_THREADS"),
-    "1",
-)
+ONE_THREAD = dict.fromkeys((*BLAS_THREADS, "NUMBA_NUM_THREADS"), "1")
 IN_FLIGHT = 256
 """Tasks handed to an executor and not finished: enough for its workers, little in the memory of a scheduler."""
 DIED = "the worker process died; look for a lack of memory"
@@ -61,6 +58,10 @@ def worker_count(workers: int | None) -> int:
     return workers
 
 
+class _NoWorkersError(LostWorkersError):
+    """Processes of this machine that do not start, or cannot load what they are to compute."""
+
+
 class Workers:
     """Computes tasks on an executor. A context manager.
 
@@ -84,8 +85,8 @@ class Workers:
     def __str__(self) -> str:
         return f"workers of {type(self._executor).__name__}"
 
-    def open(self) -> None:
-        """Reach the workers; called before the first task, and again before others."""
+    def open(self, work: Callable[[Task], Outcome], tasks: Sequence[Task]) -> None:
+        """Reach the workers for these tasks; called before they are computed."""
 
     @property
     def remark(self) -> str:
@@ -179,6 +180,7 @@ def _lost_worker(executor: Executor) -> tuple[type[BaseException], ...]:
 class ProcessWorkers(Workers):
     """Processes on this machine, one thread each, started when they are needed and kept from call to call.
 
+    They prove that they start and load the tasks before they get one; where they do not, this process computes.
     Tasks start in their order, so when a process dies (killed, out of memory, crash in a compiled library) one of
     the first ``count`` unfinished ones did it: they are computed again alone, one by one, and new processes go on
     with the rest.
@@ -187,11 +189,26 @@ class ProcessWorkers(Workers):
     _lost = ()
 
     def __init__(self, count: int) -> None:
+        if getattr(current_process(), "_inheriting", False):
+            sys.exit(1)  # in a worker that runs the user's script to load a task, which leads here once more
         self.size = count
         self._pool: _ProcessPool | None = None
+        self._refused = ""
 
     def __str__(self) -> str:
         return f"{self.size} worker process{'es' if self.size > 1 else ''}"
+
+    @property
+    def remark(self) -> str:
+        """Why this process computes, if it does."""
+        return self._refused and f"{self._refused}; all is computed in this process, one after the other"
+
+    def open(self, work: Callable[[Task], Outcome], tasks: Sequence[Task]) -> None:
+        """Start the processes and let each load a task."""
+        try:
+            self._pool, self._refused = self._proven(self._pool, self.size, work, tasks[0]), ""
+        except _NoWorkersError as error:
+            self._pool, self._refused = None, str(error)
 
     def close(self, *, at_once: bool = False) -> None:
         """End the processes."""
@@ -202,10 +219,21 @@ class ProcessWorkers(Workers):
     def compute(
         self, work: Callable[[Task], Outcome], tasks: Sequence[Task]
     ) -> Generator[tuple[int, Outcome | None], None, None]:
-        """As of `Workers`; the outcome is None only for a task that kills a process of its own."""
+        """As of `Workers`; the outcome is None only for a task that kills a process of its own.
+
+        Raises
+        ------
+        LostWorkersError
+            If processes that could start cannot any more.
+        """
         unfinished = list(range(len(tasks)))
+        if unfinished and self._pool is None:
+            self.open(work, tasks)
+        if self._refused:
+            yield from ((index, work(task)) for index, task in enumerate(tasks))
+            return
         while unfinished:
-            self._pool = self._pool or _ProcessPool(self.size)
+            self._pool = self._pool or self._proven(None, self.size, work, tasks[0])
             try:
                 for index, outcome in self._submitted(self._pool.executor, work, tasks, tuple(unfinished)):
                     unfinished.remove(index)
@@ -216,6 +244,35 @@ class ProcessWorkers(Workers):
                 for index in under_way:
                     yield index, self._alone(work, tasks, index)
 
+    def _proven(
+        self, pool: "_ProcessPool | None", count: int, work: Callable[[Task], Outcome], task: Task
+    ) -> "_ProcessPool":
+        """The pool, or a new one, after an empty task for each of its processes that loads ``work`` and ``task``."""
+        if current_process().daemon:
+            raise _NoWorkersError("this process is a worker of a pool that allows it none of its own")
+        try:
+            sent = pickle.dumps((work, task))
+        except Exception as error:  # whatever the classes of the user raise
+            raise _NoWorkersError(f"worker processes cannot compute this ({error})") from error
+        try:
+            pool = pool or _ProcessPool(count)
+            with self._starting(), nullcontext() if b"__main__" in sent else _script_hidden():
+                loading = [pool.executor.submit(_fault, sent) for _ in range(count)]
+            fault = next(filter(None, [future.result() for future in loading]), "")
+            if not fault:
+                return pool
+        except BrokenProcessPool:
+            fault = "they end while they start; does the script call this below if __name__ == '__main__'?"
+        except (OSError, ImportError, NotImplementedError) as error:  # no process, semaphore or memory left
+            fault = str(error)
+        except BaseException:
+            if pool is not None:
+                pool.end(at_once=True)
+            raise
+        if pool is not None:
+            pool.end(at_once=True)
+        raise _NoWorkersError(f"worker processes cannot compute this ({fault})")
+
     def _withdraw(self, pending: Collection[Future[Outcome]]) -> None:
         """End the processes with their tasks.
 
@@ -225,7 +282,7 @@ class ProcessWorkers(Workers):
             self.close(at_once=True)
 
     def _alone(self, work: Callable[[Task], Outcome], tasks: Sequence[Task], index: int) -> Outcome | None:
-        pool = _ProcessPool(1)
+        pool = self._proven(None, 1, work, tasks[index])
         try:
             return next(outcome for _, outcome in self._submitted(pool.executor, work, tasks, [index]))
         except BrokenProcessPool:
@@ -235,7 +292,7 @@ class ProcessWorkers(Workers):
 
     @contextmanager
     def _starting(self) -> Iterator[None]:
-        with _one_thread_each(), _interrupts_held():
+        with _one_thread_each(), stops_held():
             yield
 
 
@@ -246,7 +303,7 @@ class _ProcessPool:
         context = get_context("spawn")
         self._end_of_workers, self._end_of_parent = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(
-            count, mp_context=context, initializer=_begin_worker, initargs=(self._end_of_workers,)
+            count, mp_context=context, initializer=begin_child, initargs=(self._end_of_workers,)
         )
 
     def end(self, *, at_once: bool) -> None:
@@ -254,42 +311,46 @@ class _ProcessPool:
 
         An interrupt waits until it is done.
         """
-        with _interrupts_held():
+        with stops_held():
             if not at_once:
                 self.executor.shutdown()
+            for process in dict(self.executor._processes or {}).values():
+                process.kill()  # compiled code would not let it see the end of the lifeline
             self._end_of_parent.close()
             self._end_of_workers.close()
             self.executor.shutdown(cancel_futures=True)
 
 
 def compute_all(
-    work: Callable[[Task], Outcome], tasks: Sequence[Task], workers: int
+    work: Callable[[Task], Outcome], tasks: Sequence[Task], workers: int, remark: Callable[[str], None]
 ) -> Generator[tuple[int, Outcome | None], None, None]:
-    """Compute every task in processes of this machine, as `ProcessWorkers.compute`."""
+    """Compute every task in processes of this machine, as `ProcessWorkers.compute`; ``remark``: see `Workers`."""
     with ProcessWorkers(min(workers, max(1, len(tasks)))) as pool:
+        if tasks:
+            pool.open(work, tasks)
+            if pool.remark:
+                remark(pool.remark)
         yield from pool.compute(work, tasks)
 
 
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Interrupts wait, and processes started meanwhile never see one: they would print a traceback while they load.
+def _fault(sent: bytes) -> str:
+    """In a worker: why it cannot load work and task; empty if it can."""
+    try:
+        pickle.loads(sent)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return ""
 
-    The mask is for the processes, which inherit it. Here it holds for one thread only: another one, of a linear
-    algebra library, may take the signal, and Python then runs its handler in the main thread all the same.
-    """
-    if not hasattr(signal, "pthread_sigmask") or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    held: list[int] = []
-    handler = signal.signal(signal.SIGINT, lambda number, frame: held.append(number))
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+
+@contextmanager
+def _script_hidden() -> Iterator[None]:
+    """Processes started meanwhile do not run the user's script again, of which they need nothing."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        signal.signal(signal.SIGINT, signal.SIG_DFL if handler is None else handler)
-        if held:
-            signal.raise_signal(signal.SIGINT)
+        sys.modules["__main__"] = script
 
 
 @contextmanager
@@ -305,14 +366,3 @@ def _one_thread_each() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
-
-
-def _begin_worker(lifeline: Connection) -> None:
-    """Leave interrupts to the parent, and end when the lifeline does: closed, or its holder dead by SIGKILL."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
-
-
-def _end_with(lifeline: Connection) -> None:
-    connection.wait([lifeline])
-    os._exit(1)

@@ -10,6 +10,7 @@ class AssumptionRecord:
     path: str
     value: str
     reason: str
-    range: tuple[str, str] | None = None
+    range: tuple[str | int | float, str | int | float] | None = None
+    """Lowest and highest plausible value, as written."""
     decides: tuple[str, ...] = ()
     """Ids of the checks that depend on it."""

@@ -1,21 +1,11 @@
 """Numbers of a rolling bearing from the catalogue: those of a tabled designation, or those that a case writes."""
 
 from functools import cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import (
-    Angle,
-    Force,
-    Gap,
-    Length,
-    Part,
-    Positive,
-    Speed,
-    Text,
-    fault,
-)
+from rigdesign.case.fields import Angle, Force, Gap, Length, Part, Positive, Speed, Text, Usual, fault
 
 if TYPE_CHECKING:
     from dynamics.bearing.rolling_catalogue import CatalogueBearing
@@ -28,11 +18,11 @@ class CatalogueNumbers(Part):
     """Kind of bearing."""
     series: Text
     """Dimension series, for the coefficients of its friction, e.g. ``62``, ``2``, ``302``, ``72B``."""
-    bore: Length
+    bore: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")]
     """Bore d."""
-    outside_diameter: Length
+    outside_diameter: Annotated[Length, Usual(1.1, 3.6, "bore of the bearing")]
     """Outside diameter D."""
-    width: Length
+    width: Annotated[Length, Usual(0.12, 1.6, "bore of the bearing")]
     """Width B; T of a tapered roller bearing."""
     dynamic_rating: Force
     """Basic dynamic load rating C."""

@@ -31,6 +31,7 @@ from rigdesign.case.fields import (
     Play,
     Share,
     TorsionalDamping,
+    Usual,
 )
 from rigdesign.case.kinds import kind_from
 from rigdesign.case.losses import LossFactor
@@ -49,23 +50,23 @@ class JournalBearingInput(Part):
     """Shaft that it carries."""
     side: Literal["front", "rear"]
     """End of the housing it sits in; the front is where x starts."""
-    diameter: Length
+    diameter: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")]
     """Nominal diameter of the journal."""
-    width: Length
+    width: Annotated[Length, Usual(0.15, 2.5, "bore of the bearing")]
     """Load-carrying width along the shaft."""
-    diametral_clearance: Clearance
+    diametral_clearance: Annotated[Clearance, Usual(4e-4, 5e-3, "bore of the bearing")]
     """Bore minus journal, as drawn."""
     locating: bool = False
     """Fixes its shaft axially; one per shaft."""
-    axial_play: Play = 0.0
+    axial_play: Annotated[Play, Usual("0.06 mm", "1.9 mm")] = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn: the thermal
     expansion of the shaft against the housing between them uses it up. Left out for a shaft with stops at one end
     only."""
     position: Gap | None = None
     """Distance of its middle from the start of its shaft in the drivetrain."""
-    radial_load: Force | None = None
+    radial_load: Annotated[Force, Usual(0.01, 9.0, "tooth force")] | None = None
     """Load at the held stages; from the tooth forces when left out."""
-    feed_share: Share = 1.0
+    feed_share: Annotated[Share, Usual(0.3, 1.0)] = 1.0
     """Share of the oil fed that cools the film; 1 as ISO 7902 assumes, less where oil passes by."""
     feed: Feed = "widest_gap"
     """Where oil enters. widest_gap: at the widest gap, as ISO 7902-1 has it; two_axial_grooves: by two grooves of

@@ -1,7 +1,7 @@
 """Shafts, joints and drive of the power circuit."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -26,6 +26,7 @@ from rigdesign.case.fields import (
     TorsionalDamping,
     TorsionalStiffness,
     Unbalance,
+    Usual,
 )
 
 End = Literal["start", "end"]
@@ -36,11 +37,11 @@ MeshStiffness = Literal["influence_numbers", "iso_6336_scaled", "weber_banaschek
 class SectionInput(Part):
     """Cylinder of a stepped shaft."""
 
-    length: Size
+    length: Annotated[Size, Usual(0.02, 13.0, "shaft diameter")]
     """Axial length of the section."""
-    outer_diameter: Length
+    outer_diameter: Annotated[Length, Usual(0.3, 3.2, "shaft diameter")]
     """Outside diameter of the section."""
-    inner_diameter: Gap = 0.0
+    inner_diameter: Annotated[Gap, Usual(0.05, 3.0, "shaft diameter")] = 0.0
     """Bore; zero for a solid section."""
 
 
@@ -49,7 +50,7 @@ class DiscInput(Part):
 
     position: Gap
     """Distance from the start of the shaft."""
-    inertia: Inertia
+    inertia: Annotated[Inertia, Usual(0.2, 2.7, "mass times the shaft diameter squared")]
     """Polar mass moment of inertia about the axis of the shaft."""
     mass: Mass | None = None
     """For bending; that of a steel disc a third as thick as its radius when left out."""
@@ -100,7 +101,7 @@ class ShaftInput(Part):
 
     unbalances: Mapping[Name, UnbalanceInput] = {}
     """Unbalances by name; they take the place of the balance grade of the drivetrain."""
-    balance_grade: float | None = Field(default=None, ge=0.0, le=4000.0)
+    balance_grade: Annotated[float, Usual(0.3, 20.0)] | None = Field(default=None, ge=0.0, le=4000.0)
     """Balance quality grade G of ISO 21940-11 [mm/s], whose permissible unbalance stands in the planes of its bearings
     in addition to ``unbalances``; that of the drivetrain when left out."""
     balance_speed: Speed | None = None
@@ -138,23 +139,25 @@ class CouplingInput(Part):
     """First and second shaft that it joins."""
     ends: tuple[End, End]
     """End of the first and of the second shaft at which it sits."""
-    torsional_stiffness: TorsionalStiffness
+    torsional_stiffness: Annotated[TorsionalStiffness, Usual(0.02, 20.0, "stiffness of the shaft")]
     """Torque per angle of twist between its two halves."""
-    torsional_damping: TorsionalDamping
+    torsional_damping: Annotated[TorsionalDamping, Usual(2e-6, 5e-3, "stiffness of the coupling times 1 s")]
     """Massless; its flanges and a torque flange are discs of the shafts."""
-    radial_stiffness: LinearStiffness | None = None
+    radial_stiffness: Annotated[LinearStiffness, Usual("1e4 N/m", "1.2e9 N/m")] | None = None
     """Force per offset of the two ends; none when left out: bending does not pass it."""
     axial_stiffness: LinearStiffness | None = None
     """Force per axial travel of the two ends; none when left out."""
-    angular_stiffness: TorsionalStiffness | None = None
+    angular_stiffness: Annotated[TorsionalStiffness, Usual(3e-4, 20.0, "stiffness of the shaft")] | None = (
+        None
+    )
     """Moment per angle between the two ends, about a diameter; none when left out."""
     lateral_damping_time: float = Field(default=0.0, ge=0.0, le=1e-3)
     """Damping over stiffness of these three [s]."""
     excitation: tuple[HarmonicTorqueInput, ...] = ()
     """Torques between its two ends, drawing the first ahead: what it makes of axes out of line turns up at order 2."""
-    radial_offset_maximum: Length | None = None
+    radial_offset_maximum: Annotated[Length, Usual("0.02 mm", "2.5 mm")] | None = None
     """What its maker allows between the axes, as set and warm."""
-    angle_maximum: Tilt | None = None
+    angle_maximum: Annotated[Tilt, Usual("0.15 mrad", "9 mrad")] | None = None
     """What its maker allows between the axes, as set and warm."""
     cold_offset_lateral: Deviation = 0.0
     """Axis of the first shaft against that of the second as set up, across (y)."""
@@ -185,9 +188,9 @@ class MotorInput(Part):
     """Shaft of the power circuit that the motor drives."""
     end: End
     """End of that shaft at which it drives."""
-    torque_limit: Torque
+    torque_limit: Annotated[Torque, Usual(0.01, 1.1, "test torque")]
     """Most torque of the motor at every speed; its power has a limit of its own under ``limits.bought_parts``."""
-    inertia: Inertia
+    inertia: Annotated[Inertia, Usual(1.2e-4, 3e-3, "torque of the motor")]
     """Polar mass moment of inertia of the rotor, turning with the shaft."""
     ripple: tuple[HarmonicTorqueInput, ...] = ()
     """Alternating parts of its torque about the mean."""
@@ -206,10 +209,10 @@ class Bracing(Part):
     """Helical gear that is shifted, ``gearbox.gear`` (``shift_held`` and ``torque_controlled``)."""
     partner_floats: bool = False
     """The partner of the shifted half floats axially and takes half of the shift."""
-    spline_friction_coefficient: float = Field(default=0.0, ge=0.0, le=1.0)
+    spline_friction_coefficient: Annotated[float, Usual(0.02, 0.4)] = Field(default=0.0, ge=0.0, le=1.0)
     """Friction coefficient of the seat on which the shifted gear slides: adds to the force of the load
     unit."""
-    spline_pitch_radius: Length | None = None
+    spline_pitch_radius: Annotated[Length, Usual(0.25, 2.5, "shaft diameter")] | None = None
     """Radius at which that friction acts; no friction force when left out."""
     temperature_drift: float = Field(default=0.0, ge=-0.02, le=0.02)
     """Change of the locked torque, as a share, for each kelvin by which the gear oil that enters the gearbox of
@@ -232,7 +235,7 @@ class DrivetrainInput(Part):
     shaft_model: ShaftModel = "elastic"
     """elastic: shafts that bend in bearings that give, gears in six degrees of freedom; torsional: shafts that only
     twist, as always at fidelity quick."""
-    balance_grade: float | None = Field(default=None, ge=0.0, le=4000.0)
+    balance_grade: Annotated[float, Usual(0.3, 20.0)] | None = Field(default=None, ge=0.0, le=4000.0)
     """Balance quality grade G of ISO 21940-11 [mm/s] of all shafts that state neither one of their own nor unbalances;
     2.5 when left out."""
     bearing_coefficients: Literal["computed", "stated"] = "computed"

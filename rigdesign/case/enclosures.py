@@ -1,11 +1,11 @@
 """Chambers of a housing whose surfaces radiate at each other."""
 
 from collections.abc import Iterable, Mapping
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Name, Part, Share, Temperature, Text, fault
+from rigdesign.case.fields import Name, Part, Share, Temperature, Text, Usual, fault
 from rigdesign.case.matching import matched
 
 Chamber = Literal["warm", "cold_front", "cold_rear"]
@@ -27,7 +27,7 @@ class RadiatingPart(Part):
 
     surfaces: tuple[Text, ...] = Field(min_length=1)
     """Surface names; ``*`` stands for any run of characters."""
-    emissivity: Share
+    emissivity: Annotated[Share, Usual(0.1, 1.0)]
     """Emissivity of the grey surface; 0 for one that gives back all that arrives (re-radiating, no net heat)."""
 
 
@@ -39,7 +39,7 @@ class EnclosureInput(Part):
 
     chamber: Chamber | None = None
     """Chamber of the box whose walls, shafts and gears take part; left out, only ``parts`` do."""
-    emissivity: Share | None = None
+    emissivity: Annotated[Share, Usual(0.1, 1.0)] | None = None
     """Emissivity of the surfaces of the chamber that no part names; 0.82, oil on polished steel, when left out, which
     the report lists as an assumption."""
     parts: Mapping[Name, RadiatingPart] = {}

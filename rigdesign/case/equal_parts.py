@@ -49,6 +49,18 @@ class EqualParts:
         moved = list(dict.fromkeys(map(self._of_bearing, faults)))
         return [fault for fault in moved if not self._repeats(fault, moved)]
 
+    def copies_of(self, path: str) -> tuple[str, ...]:
+        """The same key of the gearboxes that are like the one of ``path`` and do not state it themselves."""
+        group, _, rest = path.partition(".")
+        original, _, key = rest.partition(".")
+        if group != "gearboxes" or not key or key.split(".")[0] in OWN:
+            return ()
+        copies: list[str] = []
+        for name, like in self.like.items():
+            if like == original and not RawTree(dict(self.own[name])).has(key):
+                copies += [f"gearboxes.{name}.{key}", *self.copies_of(f"gearboxes.{name}.{key}")]
+        return tuple(copies)
+
     def _of_bearing(self, fault: Fault) -> Fault:
         keys = fault.path.split(".")
         if len(keys) < 5 or keys[0] != "gearboxes" or keys[2] != "bearings":

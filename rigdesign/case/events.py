@@ -4,27 +4,27 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Tag, model_validator
 
-from rigdesign.case.fields import Force, Part, Share, Speed, Text, Time, Torque, Velocity, fault
+from rigdesign.case.fields import Force, Part, Share, Speed, Text, Time, Torque, Usual, Velocity, fault
 from rigdesign.case.kinds import kind_from
 
 
 class EventLoadLimits(Part):
     """Load limits of parts in an event."""
 
-    coupling_torque_maximum: Torque | None = None
+    coupling_torque_maximum: Annotated[Torque, Usual(0.5, 15.0, "test torque")] | None = None
     """Highest torque that the couplings and their flanges may carry."""
-    shaft_torque_maximum: Torque | None = None
+    shaft_torque_maximum: Annotated[Torque, Usual(0.5, 15.0, "test torque")] | None = None
     """Highest torque that a section of a shaft may carry."""
-    bearing_force_maximum: Force | None = None
+    bearing_force_maximum: Annotated[Force, Usual(0.1, 15.0, "tooth force")] | None = None
     """Highest radial force that a bearing may carry."""
 
 
 class LoadedEvent(EventLoadLimits):
     """What every event on the ramp states."""
 
-    speed: Speed | None = None
+    speed: Annotated[Speed, Usual(0.15, 1.6, "test speed")] | None = None
     """Speed at which it happens, counted as that of the test; the test speed when left out."""
-    torque: Torque | None = None
+    torque: Annotated[Torque, Usual(0.15, 2.0, "test torque")] | None = None
     """Torque under which it happens, counted as that of the test; the test torque when left out."""
 
 
@@ -41,17 +41,17 @@ class ToothLoss(LoadedEvent):
     """Adjacent teeth that are lost."""
     monitor: Text | None = None
     """Path of the monitored part, a coupling (``trip_torque``) or a bearing (``trip_velocity``)."""
-    trip_torque: Torque | None = None
+    trip_torque: Annotated[Torque, Usual(0.15, 6.0, "test torque")] | None = None
     """Absolute torque in the monitored coupling that stops the rig."""
     trip_velocity: Velocity | None = None
     """Lateral velocity of the journal in the monitored bearing that stops the rig."""
-    trip_delay: Time = 0.01
+    trip_delay: Annotated[Time, Usual("0.6 ms", "45 ms")] = 0.01
     """From the crossing of that limit until the motor is off and the brake begins."""
-    brake_torque: Torque = 0.0
+    brake_torque: Annotated[Torque, Usual(0.005, 1.0, "test torque")] = 0.0
     """Torque of motor or brake against the rotation, after the trip."""
     duration: Time = 0.03
     """Time computed after the loss; the gap comes into mesh once in every turn."""
-    trip_time_maximum: Time | None = None
+    trip_time_maximum: Annotated[Time, Usual("0.7 ms", "50 ms")] | None = None
     """Longest time from the loss until the limit is crossed."""
 
     @model_validator(mode="after")
@@ -71,7 +71,7 @@ class EmergencyStop(LoadedEvent):
 
     kind: Literal["emergency_stop"]
     """Selects the emergency stop."""
-    brake_torque: Torque | None = None
+    brake_torque: Annotated[Torque, Usual(0.005, 1.0, "test torque")] | None = None
     """Torque of motor or brake against the rotation; or state ``stop_time``."""
     stop_time: Time | None = None
     """Time to standstill, from which the brake torque follows; or state ``brake_torque``."""
@@ -79,7 +79,7 @@ class EmergencyStop(LoadedEvent):
     """Time in which the brake torque rises."""
     duration: Time = 0.1
     """Time computed from the stop on."""
-    standstill_time_maximum: Time | None = None
+    standstill_time_maximum: Annotated[Time, Usual("0.6 s", "45 s")] | None = None
     """Longest time to standstill."""
 
     @model_validator(mode="after")
@@ -94,13 +94,13 @@ class Overspeed(EventLoadLimits):
 
     kind: Literal["overspeed"]
     """Selects the overspeed."""
-    speed: Speed
+    speed: Annotated[Speed, Usual(1.0, 1.6, "test speed")]
     """Speed it reaches, counted as that of the test."""
     torque: Torque | None = None
     """Torque under which it runs; the test torque when left out."""
-    dynamic_factor_maximum: Annotated[float, Field(gt=1.0)] | None = None
+    dynamic_factor_maximum: Annotated[float, Field(gt=1.0), Usual(1.02, 4.0)] | None = None
     """K_V at this speed, max over mean, at most."""
-    resonance_distance_minimum: Share | None = None
+    resonance_distance_minimum: Annotated[Share, Usual(0.003, 0.6)] | None = None
     """Distance from the nearest resonance, as a share of this speed, at least."""
 
 

@@ -53,7 +53,7 @@ def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault
         if isinstance(given, dict) and "value" in given:
             return _misspelt_mark(path, given)
         shown = "" if isinstance(given, dict | BaseModel) else written(given)
-        return Fault(path, shown, context["problem"], context["remedy"])
+        return Fault(path, shown, context["problem"], context["remedy"], impossible=context["impossible"])
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         place = slot_at(model, tree, keys)
         key = "" if place is None else kind_key(list(place.models()))

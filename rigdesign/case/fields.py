@@ -23,9 +23,10 @@ class Part(BaseModel):
     )
 
 
-def fault(problem: str, remedy: str) -> PydanticCustomError:
-    """A validation error with a remedy, collected by the loader."""
-    return PydanticCustomError(FAULT, "{problem}; {remedy}", {"problem": problem, "remedy": remedy})
+def fault(problem: str, remedy: str, *, impossible: bool = False) -> PydanticCustomError:
+    """A validation error with a remedy, collected by the loader; ``impossible`` as in `base.errors.Fault`."""
+    context = {"problem": problem, "remedy": remedy, "impossible": impossible}
+    return PydanticCustomError(FAULT, "{problem}; {remedy}", context)
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Quantity:
         try:
             value = units.parse(text, self.kind, self.example)
         except units.QuantityError as error:
-            raise fault(error.problem, error.remedy) from None
+            raise fault(error.problem, error.remedy, impossible=True) from None
         for limit, words, holds in (
             (self.above, "is not above", float.__gt__),
             (self.at_least, "is below", float.__ge__),
@@ -88,6 +89,25 @@ class Quantity:
         }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Usual:
+    """The range in which a key usually lies; a value outside of it is computed and warned of, zero is never.
+
+    low, high : texts with unit as a user writes them, or multiples of ``of``
+    of : measure of the part or of the rig, one of `rigdesign.case.usual`; empty for the values themselves
+    """
+
+    low: str | float
+    high: str | float
+    of: str = ""
+
+    @property
+    def words(self) -> str:
+        """The range in words."""
+        low, high = (end if isinstance(end, str) else f"{end:g}" for end in (self.low, self.high))
+        return f"{low} to {high}{f' times the {self.of}' if self.of else ''}"
+
+
 Length = Annotated[float, Quantity("length", above="0 mm", at_most="20 m")]
 Size = Annotated[float, Quantity("length", above="0 mm", at_most="20 m", example="300 mm")]
 """A measure of a housing, a plate, a shaft."""
@@ -99,18 +119,26 @@ Play = Annotated[float, Quantity("length", at_least="0 mm", at_most="1 m", examp
 """A clearance that may be zero."""
 Offset = Annotated[float, Quantity("length", at_least="-20 m", at_most="20 m")]
 """A length with a sign."""
-Deviation = Annotated[float, Quantity("length", at_least="-20 m", at_most="20 m", example="5 um")]
+Deviation = Annotated[
+    float, Quantity("length", at_least="-20 m", at_most="20 m", example="5 um"), Usual("0.01 um", "5 mm")
+]
 """A deviation of a flank or an axis, with its sign."""
-Small = Annotated[float, Quantity("length", at_least="0 um", at_most="1 mm", example="10 um")]
+Small = Annotated[
+    float, Quantity("length", at_least="0 um", at_most="1 mm", example="10 um"), Usual("0.05 um", "500 um")
+]
 """A flank modification, a roughness."""
 Angle = Annotated[float, Quantity("angle", at_least="-360 deg", at_most="360 deg")]
 Tilt = Annotated[float, Quantity("angle", above="0 mrad", at_most="100 mrad", example="1 mrad")]
 """A small angle between axes."""
 PressureAngle = Annotated[float, Quantity("angle", at_least="10 deg", at_most="35 deg")]
 HelixAngle = Annotated[float, Quantity("angle", at_least="0 deg", at_most="45 deg", example="15 deg")]
-Temperature = Annotated[float, Quantity("temperature", at_least="-60 degC", at_most="600 degC")]
+Temperature = Annotated[
+    float, Quantity("temperature", at_least="-60 degC", at_most="600 degC"), Usual("-60 degC", "350 degC")
+]
 RoomTemperature = Annotated[
-    float, Quantity("temperature", at_least="-60 degC", at_most="600 degC", example="20 degC")
+    float,
+    Quantity("temperature", at_least="-60 degC", at_most="600 degC", example="20 degC"),
+    Usual("-45 degC", "60 degC"),
 ]
 TemperatureDifference = Annotated[float, Quantity("temperature_difference", above="0 K", at_most="500 K")]
 Torque = Annotated[float, Quantity("torque", at_least="0 N m", at_most="1000 kN m")]
@@ -118,18 +146,43 @@ Speed = Annotated[float, Quantity("speed", at_least="0 rpm", at_most="200000 rpm
 Velocity = Annotated[float, Quantity("velocity", at_least="0 m/s", at_most="500 m/s")]
 Force = Annotated[float, Quantity("force", at_least="0 N")]
 Power = Annotated[float, Quantity("power", at_least="0 W")]
-Stress = Annotated[float, Quantity("pressure", above="0 MPa", example="500 MPa")]
-Modulus = Annotated[float, Quantity("pressure", above="0 MPa")]
+Stress = Annotated[
+    float, Quantity("pressure", above="0 MPa", example="500 MPa"), Usual("0.5 MPa", "5000 MPa")
+]
+Modulus = Annotated[
+    float, Quantity("pressure", at_least="0.5 GPa", at_most="1200 GPa"), Usual("30 GPa", "400 GPa")
+]
 Time = Annotated[float, Quantity("time", above="0 s")]
 Hours = Annotated[float, Quantity("time", above="0 s", example="2 h")]
 """A time in which temperatures become steady, or a test is run."""
 Frequency = Annotated[float, Quantity("frequency", above="0 Hz", at_most="10000 kHz")]
-Flow = Annotated[float, Quantity("flow", above="0 l/min", at_most="100000 l/min")]
+Flow = Annotated[float, Quantity("flow", at_least="0.001 l/min", at_most="100000 l/min")]
 Volume = Annotated[float, Quantity("volume", above="0 l", at_most="100 m3")]
-Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]
-KinematicViscosity = Annotated[float, Quantity("kinematic_viscosity", above="0 mm2/s")]
+LiquidDensity = Annotated[
+    float,
+    Quantity("density", at_least="400 kg/m3", at_most="2500 kg/m3", example="870 kg/m3"),
+    Usual("700 kg/m3", "1300 kg/m3"),
+]
+MistDensity = Annotated[
+    float,
+    Quantity("density", above="0 kg/m3", at_most="1000 kg/m3", example="5 kg/m3"),
+    Usual("0.8 kg/m3", "19 kg/m3"),
+]
+"""Of air that carries oil."""
+Density = Annotated[
+    float,
+    Quantity("density", at_least="100 kg/m3", at_most="25000 kg/m3", example="7850 kg/m3"),
+    Usual("1000 kg/m3", "9000 kg/m3"),
+]
+KinematicViscosity = Annotated[
+    float, Quantity("kinematic_viscosity", above="0 mm2/s"), Usual("1.5 mm2/s", "2000 mm2/s")
+]
 PressureViscosity = Annotated[float, Quantity("pressure_viscosity", at_least="5 1/GPa", at_most="60 1/GPa")]
-HeatCapacity = Annotated[float, Quantity("heat_capacity", above="0 J/(kg K)")]
+HeatCapacity = Annotated[
+    float,
+    Quantity("heat_capacity", at_least="500 J/(kg K)", at_most="10 kJ/(kg K)"),
+    Usual("1400 J/(kg K)", "4300 J/(kg K)"),
+]
 Conductance = Annotated[float, Quantity("conductance", at_least="0 W/K", at_most="10000 kW/K")]
 """Heat that goes to something else per kelvin."""
 BodyHeatCapacity = Annotated[float, Quantity("body_heat_capacity", at_least="0 J/K")]
@@ -140,11 +193,13 @@ HeatTransferCoefficient = Annotated[
     float, Quantity("heat_transfer_coefficient", above="0 W/(m2 K)", at_most="1000000 W/(m2 K)")
 ]
 ExpansionCoefficient = Annotated[
-    float, Quantity("expansion_coefficient", at_least="0 1/K", at_most="1e-3 1/K")
+    float,
+    Quantity("expansion_coefficient", at_least="0 1/K", at_most="1e-3 1/K"),
+    Usual("4e-6 1/K", "30e-6 1/K"),
 ]
 TorsionalStiffness = Annotated[float, Quantity("torsional_stiffness", above="0 N m/rad")]
 TorsionalDamping = Annotated[float, Quantity("torsional_damping", at_least="0 N m s/rad")]
-LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]
+LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m"), Usual("1e4 N/m", "2e10 N/m")]
 LinearDamping = Annotated[float, Quantity("linear_damping", at_least="0 N s/m")]
 Mass = Annotated[float, Quantity("mass", above="0 kg", at_most="1000000 kg")]
 Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="100000 kg m2")]
@@ -158,7 +213,7 @@ Resistance = Annotated[float, Quantity("resistance", at_least="0 ohm", at_most="
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 """A part of a whole, 0 to 1."""
 Positive = Annotated[float, Field(gt=0.0)]
-LoadStage = Annotated[float, Field(ge=1.0, le=14.0)]
+LoadStage = Annotated[float, Field(ge=1.0, le=14.0), Usual(4.0, 14.0)]
 """Load stage of the FZG test A/8.3/90, DIN ISO 14635-1."""
 Count = Annotated[int, Field(gt=0)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]

@@ -12,7 +12,7 @@ from pydantic import Field, WithJsonSchema
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.fields import Name, Part, Size, Text, Velocity
+from rigdesign.case.fields import Name, Part, Size, Text, Usual, Velocity
 from rigdesign.case.ribs import Ribs
 from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
 from thermal.films import convection
@@ -34,7 +34,7 @@ Fluid = Annotated[
     Name, WithJsonSchema({"anyOf": [{"type": "string", "enum": list(FLUIDS)}, {"type": "string"}]})
 ]
 """One of `FLUIDS`, or the name of a volume or stream of the housing."""
-FilmFactor = Annotated[float, Field(gt=0.0, le=10.0)]
+FilmFactor = Annotated[float, Field(gt=0.0, le=10.0), Usual(0.15, 7.0)]
 """Multiplies a film: what it really is, over what its law or the case says."""
 
 FAN_VELOCITY = 3.0
@@ -142,7 +142,7 @@ class NiemannWinter(HousingHeightFilm):
 
     law: Literal["niemann_winter"]
     """Selects the film of Niemann/Winter for the housing in room air."""
-    draught_factor: float = Field(default=1.0, gt=0.0, le=5.0)
+    draught_factor: Annotated[float, Usual(0.3, 3.0)] = Field(default=1.0, gt=0.0, le=5.0)
     """f_k: 1 in still room air."""
     height: Size | None = None
     """h; the height of the housing when left out."""

@@ -16,6 +16,7 @@ from rigdesign.case.fields import (
     Stress,
     TorsionalDamping,
     TorsionalStiffness,
+    Usual,
     fault,
 )
 
@@ -31,13 +32,13 @@ class SplineToothing(Part):
 
     teeth: Count = Field(ge=4, le=500)
     """Number of teeth."""
-    module: Length | None = None
+    module: Annotated[Length, Usual(0.005, 0.2, "shaft diameter")] | None = None
     """Module; or ``pitch_diameter``."""
-    pitch_diameter: Length | None = None
+    pitch_diameter: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")] | None = None
     """Pitch diameter, teeth times module."""
     pressure_angle: SplineAngle = radians(30.0)
     """Pressure angle of the flanks; 30 deg by DIN 5480."""
-    length: Length
+    length: Annotated[Length, Usual(0.1, 4.0, "shaft diameter")]
     """Axial length of contact."""
     working_depth: Length | None = None
     """Radial height over which the flanks touch; 0.9 modules when left out, as of a spline to DIN 5480."""
@@ -49,13 +50,13 @@ class SplineToothing(Part):
     """Root circle of the teeth of the hub, its largest bore; without it the tension of the hub is not checked."""
     hub_diameter: Length | None = None
     """Outside diameter of the hub; the root circle of the gear when left out."""
-    allowable_pressure: Stress | None = None
+    allowable_pressure: Annotated[Stress, Usual("5 MPa", "600 MPa")] | None = None
     """Allowable flank pressure under the dynamic torque, life factor included. Dudley: 35 MPa for straight teeth of
     case-hardened steel that slide, nine times as much where they are fixed."""
-    allowable_shear: Stress | None = None
+    allowable_shear: Annotated[Stress, Usual("40 MPa", "700 MPa")] | None = None
     """Allowable shear stress of teeth and shaft. Dudley: 345 MPa for case-hardened steel, times its life
     factor, 0.5 to 0.2 for 1e5 to 1e7 cycles of the torque."""
-    allowable_tension: Stress | None = None
+    allowable_tension: Annotated[Stress, Usual("40 MPa", "1000 MPa")] | None = None
     """Allowable tensile stress of the hub at speed."""
 
     @model_validator(mode="after")
@@ -90,7 +91,7 @@ class SplineToothing(Part):
 class Spline(Part):
     """Spline-hub connection of a gear with its shaft."""
 
-    torsional_stiffness: TorsionalStiffness
+    torsional_stiffness: Annotated[TorsionalStiffness, Usual(1.6, 70.0, "stiffness of the shaft")]
     """Torque per angle of twist between gear and shaft."""
     torsional_damping: TorsionalDamping = 0.0
     """Torque per speed of twist between gear and shaft."""

@@ -1,12 +1,12 @@
 """A gearbox: gears, bearings, seals, their oil, and the housing if temperatures are wanted."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Clearance, Name, Part, Text, Torque
+from rigdesign.case.fields import Clearance, Name, Part, Text, Torque, Usual
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.heat_split import HeatSplit
 from rigdesign.case.housing import Housing
@@ -35,11 +35,11 @@ class Seals(Part):
     """Shaft that they seal."""
     kind: Literal["contactless", "radial_lip"] = "contactless"
     """What seals the shaft where it leaves the gearbox: a gap without contact, or a radial lip."""
-    radial_gap: Clearance
+    radial_gap: Annotated[Clearance, Usual(1.5e-3, 0.03, "shaft diameter")]
     """Half the difference of bore and shaft diameter as drawn; thermal expansion changes it."""
-    axial_travel: Clearance
+    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm")]
     """Axial movement of the shaft the seals take without touching."""
-    rubbing_torque: Torque = 0.0
+    rubbing_torque: Annotated[Torque, Usual(1e-5, 0.03, "test torque")] = 0.0
     """Friction torque of seals that touch, of all seals of the shaft together, on top of what ``kind`` loses."""
 
 
@@ -138,6 +138,14 @@ class Gearbox(Part):
     def carrying_halves(self, gear: str) -> int:
         """Halves of a gear that the loop has the springs and the mass of."""
         return self.meshes[self.first_meshes()[gear][0]].sharing
+
+    def seat_diameter(self, gear: str) -> float:
+        """Diameter of the shaft in a gear [m]: its bore, or where it is cut into the shaft that of the bearings."""
+        part = self.gears[gear]
+        on_shaft = [
+            bearing.shaft_diameter for bearing in self.bearings.values() if bearing.shaft == part.shaft
+        ]
+        return part.bore_diameter or min(on_shaft, default=0.0)
 
     def body_width(self, gear: str) -> float:
         """Face width of a gear with both its halves [m]."""

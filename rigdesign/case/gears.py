@@ -25,22 +25,24 @@ from rigdesign.case.fields import (
     Size,
     Small,
     Text,
+    Usual,
     fault,
 )
 from rigdesign.case.gear_seats import Spline
 from rigdesign.case.strain_gauges import StrainGaugeInput
 
+Modification = Annotated[Small, Usual(4e-4, 0.02, "module")]
 ReliefExponent = Annotated[float, Field(ge=0.5, le=6.0)]
 
 
 class RackInput(Part):
     """Basic rack of the toothing, in modules (ISO 53 A: 1.0, 1.25, 0.38)."""
 
-    addendum: Positive = 1.0
+    addendum: Annotated[Positive, Usual(0.6, 1.6)] = 1.0
     """Addendum of the basic rack in normal modules."""
-    dedendum: Positive = 1.25
+    dedendum: Annotated[Positive, Usual(0.8, 2.0)] = 1.25
     """Dedendum of the basic rack in normal modules."""
-    tip_radius: float = Field(default=0.38, ge=0.0, le=0.6)
+    tip_radius: Annotated[float, Usual(0.1, 0.6)] = Field(default=0.38, ge=0.0, le=0.6)
     """Fillet radius of the basic rack (tip radius of the tool) in normal modules."""
     protuberance: float = Field(default=0.0, ge=0.0, le=0.3)
     """s_pr in normal modules: undercut by a protuberance tool that is left once the flanks are finished."""
@@ -100,25 +102,25 @@ class WeakTooth(Part):
 class FlankModification(Part):
     """Micro-geometry and deviations of one gear; everything is zero unless stated."""
 
-    profile_crowning: Small = 0.0
+    profile_crowning: Modification = 0.0
     """C_alpha: relief at tip and root against the middle of the profile."""
-    lead_crowning: Small = 0.0
+    lead_crowning: Modification = 0.0
     """C_beta: relief at both face ends against the middle."""
     lead_crowning_form: Literal["parabolic", "circular"] = "parabolic"
     """Parabola over the face width, or arc of a circle."""
-    tip_relief: Small = 0.0
+    tip_relief: Modification = 0.0
     """C_a: relief at the tip edge."""
     tip_relief_length: Gap = 0.0
     """Radial height over which the tip relief grows."""
     tip_relief_exponent: ReliefExponent = 1.0
     """How it grows with the distance: 1 linear, 2 parabolic."""
-    root_relief: Small = 0.0
+    root_relief: Modification = 0.0
     """C_f: relief at the start of the active profile."""
     root_relief_length: Gap = 0.0
     """Radial height over which the root relief grows."""
     root_relief_exponent: ReliefExponent = 1.0
     """How it grows with the distance: 1 linear, 2 parabolic."""
-    end_relief: Small = 0.0
+    end_relief: Modification = 0.0
     """C_betaI, C_betaII: relief at the ends of the face."""
     end_relief_length: Gap = 0.0
     """Face width over which the end relief grows, at each end."""
@@ -169,14 +171,14 @@ class Gear(Part):
     """Shaft on which it sits; ``GEARBOX_GEAR`` when left out."""
     teeth: Count = Field(ge=6, le=2000)
     """Number of teeth."""
-    face_width: Length
+    face_width: Annotated[Length, Usual(0.4, 2.5, "face width of its mate")]
     """Width of the toothing; of one half for a double-helical gear."""
-    bore_diameter: Gap = 0.0
-    """Bore of the gear body; zero for a solid disc."""
-    rim_thickness: Length | None = None
+    bore_diameter: Annotated[Gap, Usual(0.25, 4.0, "shaft diameter")] = 0.0
+    """Bore of the gear body; zero for a gear that is cut into its shaft."""
+    rim_thickness: Annotated[Length, Usual(1.0, 30.0, "module")] | None = None
     """Radial, of the rim under the root circle; the body is solid down to the bore when left out. Temperature field and
     centrifugal expansion take any body as solid."""
-    web_thickness: Length | None = None
+    web_thickness: Annotated[Length, Usual(0.5, 20.0, "module")] | None = None
     """Axial, of the web inside of the rim, in the middle of the face; as wide as the face when left out."""
     tip_edge: TipEdgeInput = TipEdgeInput()
     """Rounding or chamfer between flank and tip, where the active flank ends; sharp unless stated."""
@@ -184,7 +186,7 @@ class Gear(Part):
     """Hand of the teeth of a single-helical gear; its partner has the other one, and so on through a train. With
     ``rotation`` of the gearbox it says which end of the face comes into mesh last; that at the rear of the housing when
     no gear of the train states one."""
-    shaft_interference: Small = 0.0
+    shaft_interference: Annotated[Small, Usual(1e-4, 3e-3, "shaft diameter")] = 0.0
     """Press fit: effective interference of the bore on its shaft at rest, on the diameter, whose stress the root of an
     idler holds as well. Zero for a seat without one. At 20 degC: its slip torque counts what a gear warmer than its
     shaft loses of it and a colder one gains, the stress in the root does not."""
@@ -196,24 +198,24 @@ class Gear(Part):
     seat_offset: Deviation = 0.0
     """Distance of the middle of the face from the middle of its seat on the shaft, positive towards the end of the
     shaft; the load acts on the shaft at the seat, on bending shafts with the moment of the offset."""
-    profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
+    profile_shift: Annotated[float, Usual(0.02, 1.2)] | None = Field(default=None, ge=-2.0, le=2.0)
     """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh. For both gears they
     have to agree with the centre distance."""
-    tip_shortening: Play = 0.0
+    tip_shortening: Annotated[Play, Usual(0.005, 1.0, "module")] = 0.0
     """Radial cut of the tip cylinder; or ``contact_ratio`` of the mesh."""
-    tooth_thinning: Small = 0.0
+    tooth_thinning: Annotated[Small, Usual(0.007, 0.12, "module")] = 0.0
     """Allowance of the normal tooth thickness that makes the backlash."""
     quality_grade: int = Field(ge=1, le=11)
     """Flank tolerance class, ISO 1328-1:2013."""
-    flank_roughness: Small
+    flank_roughness: Annotated[Small, Usual("0.06 um", "3 um")]
     """Arithmetic mean roughness Ra of the flanks."""
     material: Name
     """Built-in material or a name under ``materials``."""
     flank: FlankModification = FlankModification()
     """Modifications and deviations of the flanks."""
-    inertia: Inertia | None = None
+    inertia: Annotated[Inertia, Usual(0.3, 3.0, "inertia of a disc of its size")] | None = None
     """Polar inertia of the gear body; that of the bored disc, or of rim and web, when left out."""
-    inertia_factor: float = Field(default=1.0, ge=0.1, le=10.0)
+    inertia_factor: Annotated[float, Usual(0.3, 3.0)] = Field(default=1.0, ge=0.1, le=10.0)
     """Times the inertia, stated or of the disc."""
     spline: Spline | None = None
     """Connection with the shaft; a gear without one is rigid with its shaft."""
@@ -250,7 +252,7 @@ class GearMesh(Part):
     """Module in the normal section."""
     pressure_angle: PressureAngle
     """Normal pressure angle at the reference cylinder."""
-    helix_angle: HelixAngle = 0.0
+    helix_angle: Annotated[HelixAngle, Usual("3 deg", "40 deg")] = 0.0
     """Helix angle at the reference cylinder, without sign; zero for spur gears."""
     centre_distance: Size
     """Working distance of the axes, as drawn."""
@@ -274,23 +276,23 @@ class GearMesh(Part):
     """Halves of a double-helical mesh that carry. 2: they share the torque, as a gear that floats lets them, and the
     loop has the springs, dampers and mass of both. 1: the loop has one of them, which carries the whole torque; unless
     the inertia of its gears is stated it is that of one half."""
-    damping: LinearDamping | None = None
+    damping: Annotated[LinearDamping, Usual(0.015, 0.25, "critical damping of the mesh")] | None = None
     """Damping along the line of action at the mean mesh stiffness; or ``damping_ratio``."""
-    damping_ratio: float | None = Field(default=None, gt=0.0, le=0.5)
+    damping_ratio: Annotated[float, Usual(0.015, 0.3)] | None = Field(default=None, gt=0.0, le=0.5)
     """Damping as a share of the critical one, c / (2 sqrt(k m_red)): k mean mesh stiffness, m_red both gear bodies
     reduced to the line of action."""
     damping_acts_on: Literal["relative_rotation", "contact_closing_rate"] = "relative_rotation"
     """relative_rotation: on the approach rate r_b1 omega_1 - r_b2 omega_2 while teeth touch; contact_closing_rate: on
     the rate at which each contact closes, so that tip corners that come in under steady load are damped as well."""
-    stiffness_factor: float = Field(default=1.0, ge=0.1, le=10.0)
+    stiffness_factor: Annotated[float, Usual(0.3, 3.0)] = Field(default=1.0, ge=0.1, le=10.0)
     """Times the stiffness of the tooth pairs, however that is found."""
-    friction_factor: float = Field(default=1.0, ge=0.0, le=10.0)
+    friction_factor: Annotated[float, Usual(0.3, 3.0)] = Field(default=1.0, ge=0.0, le=10.0)
     """Times the friction coefficient, in the loop and for the heat, on top of ``loss_factors.mesh`` of the gearbox."""
     tooth_offset: int = Field(default=0, ge=0, le=1999)
     """Teeth by which the wheel is put on further: tooth 0 of the pinion meets this tooth of the wheel."""
     application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
     """K_A of ISO 6336: load from outside the gearbox over the nominal one."""
-    face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)
+    face_load_factor: Annotated[float, Usual(1.0, 3.0)] = Field(default=1.0, ge=1.0, le=10.0)
     """K_Fbeta of ISO 6336-3: uneven load over the face width. K_Hbeta of the flanks follows from it. It counts where no
     loaded contact is computed (fidelity quick); where one is, its own K_Hbeta, K_Fbeta, K_Halpha and K_Falpha do."""
     phase: Share = 0.0

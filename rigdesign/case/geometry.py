@@ -83,6 +83,20 @@ def conditions_of(housing: Housing, names: Iterable[str]) -> list[tuple[str, str
     ]
 
 
+def covering(housing: Housing, names: Iterable[str]) -> dict[str, list[str]]:
+    """Surface -> its boundary conditions by name; an empty name for what may join a film or comes from elsewhere."""
+    found: dict[str, list[str]] = {name: [] for name in names}
+    for name, surface, stood_for in conditions_of(housing, found):
+        condition = housing.boundary[name]
+        found[surface].append("" if condition.may_join_a_film else name)
+        if (partner := condition.partner_of(stood_for)) in found:
+            found[str(partner)].append("")
+    for enclosure in housing.enclosures.values():
+        for surface in enclosure.emissivities(found):
+            found[surface].append("")
+    return found
+
+
 def _end_bearing(bearing: BearingInput) -> EndBearing:
     return EndBearing(
         journal_diameter=bearing.shaft_diameter,
@@ -102,7 +116,9 @@ def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[
         front=_end_bearing(front),
         rear=_end_bearing(rear),
         seal_diameter=seal_diameter,
-        seat_diameter=on_shaft[1].bore_diameter if on_shaft else seal_diameter or shaft.outside_diameter,
+        seat_diameter=gearbox.seat_diameter(on_shaft[0])
+        if on_shaft
+        else seal_diameter or shaft.outside_diameter,
         overhang_diameter=shaft.outside_diameter,
         seal_gap=seals.radial_gap,
         locating="rear" if rear.locating else "front",

@@ -7,7 +7,14 @@ from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from rigdesign.base.errors import Fault
-from rigdesign.case.fields import HeatTransferCoefficient, Part, Size, Temperature, TemperatureDifference
+from rigdesign.case.fields import (
+    HeatTransferCoefficient,
+    Part,
+    Size,
+    Temperature,
+    TemperatureDifference,
+    Usual,
+)
 from rigdesign.case.films import (
     ROOM,
     WARM_WALL,
@@ -81,7 +88,7 @@ class ConstantFilm(SurfaceFilm):
 
     law: Literal["constant_film"]
     """Selects a given heat transfer coefficient."""
-    heat_transfer_coefficient: HeatTransferCoefficient
+    heat_transfer_coefficient: Annotated[HeatTransferCoefficient, Usual(0.09, 8.0, "usual film of its fluid")]
     """Heat flux per kelvin between surface and fluid."""
     fluid: Fluid
     """Fluid that wets the surface: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,

@@ -1,10 +1,10 @@
 """How each power loss of a gearbox divides between its bodies and its oil."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import model_validator
 
-from rigdesign.case.fields import Part, Share, fault
+from rigdesign.case.fields import Part, Share, Usual, fault
 
 MeshRule = Literal["assumed", "flank_film"]
 
@@ -16,15 +16,15 @@ class HeatSplit(Part):
     """assumed: ``mesh_into_gears`` of the friction heat enters the gears; flank_film: all of it enters the flanks,
     and the films on the rims (law ``flank_film``) decide how much heat goes into the oil. When left out:
     flank_film, or assumed where the case gives a share."""
-    mesh_into_gears: Share | None = None
+    mesh_into_gears: Annotated[Share, Usual(0.1, 1.0)] | None = None
     """Share of the friction heat of the meshes that enters the gears, for ``mesh = assumed``."""
-    mesh_pinion_share: Share | None = None
+    mesh_pinion_share: Annotated[Share, Usual(0.1, 0.9)] | None = None
     """Of the friction heat, the part that enters the pinion; by the thermal contact of the flanks when left out."""
-    windage_into_gears: Share
+    windage_into_gears: Annotated[Share, Usual(0.02, 0.9)]
     """Share of the windage loss that heats the gear bodies."""
-    seal_into_shaft: Share
+    seal_into_shaft: Annotated[Share, Usual(0.03, 1.0)]
     """Share of the seal losses that enters the shaft at the seal."""
-    seal_into_housing: Share
+    seal_into_housing: Annotated[Share, Usual(0.03, 1.0)]
     """Share of the seal losses that enters the bore of the seal."""
 
     @property

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from rigdesign.case.enclosures import EnclosureInput
 from rigdesign.case.faces import FaceSelection
-from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, fault
+from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, Usual, fault
 from rigdesign.case.films import FilmFactor
 from rigdesign.case.housing_fluids import HousingLink, HousingStream, HousingVolume
 from rigdesign.case.joint import FootContact
@@ -20,15 +20,15 @@ class HousingShaft(Part):
 
     lateral_position: Offset
     """y of its axis; the pinion usually at minus half the centre distance."""
-    seal_diameter: Length | None = None
+    seal_diameter: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")] | None = None
     """Diameter in the partition seals and in the cold sections; left out in a housing without partitions."""
-    outside_diameter: Length
+    outside_diameter: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")]
     """Diameter in the end seals and outside the housing."""
-    overhang_front: Gap
+    overhang_front: Annotated[Gap, Usual(0.15, 4.0, "shaft diameter")]
     """Length that leaves the front end wall; zero for a shaft that ends at its bearing."""
-    overhang_rear: Gap
+    overhang_rear: Annotated[Gap, Usual(0.15, 4.0, "shaft diameter")]
     """Length that leaves the rear end wall; zero for a shaft that ends at its bearing."""
-    bore_diameter: Gap = 0.0
+    bore_diameter: Annotated[Gap, Usual(0.1, 1.0, "shaft diameter")] = 0.0
     """Bore through the shaft; zero for a solid one."""
     material: Name
     """Built-in material or a name under ``materials``."""
@@ -37,11 +37,11 @@ class HousingShaft(Part):
 class ClampingFieldInput(Part):
     """Plate the gearbox stands on."""
 
-    length: Size
+    length: Annotated[Size, Usual(1.8, 26.0, "centre distance")]
     """Length of the plate along the shafts."""
-    width: Size
+    width: Annotated[Size, Usual(1.8, 26.0, "centre distance")]
     """Width of the plate across the shafts."""
-    thickness: Length
+    thickness: Annotated[Length, Usual(0.2, 5.0, "centre distance")]
     """Height of the plate."""
     material: Name
     """Built-in material or a name under ``materials``."""
@@ -57,30 +57,30 @@ class Housing(Part):
     x runs along the shafts from front to rear, y from pinion to wheel, z up.
     """
 
-    warm_length: Size
+    warm_length: Annotated[Size, Usual(0.3, 4.0, "centre distance")]
     """Clear length of the warm chamber, between the partitions; without partitions from end wall to end wall."""
-    cold_length_front: Size | None = None
+    cold_length_front: Annotated[Size, Usual(0.1, 4.0, "centre distance")] | None = None
     """Clear length of the front cold section, between end wall and partition. Left out together with
     ``cold_length_rear`` and ``partition_thickness``: one chamber, its end walls carry the bearings and stand in it."""
-    cold_length_rear: Size | None = None
+    cold_length_rear: Annotated[Size, Usual(0.1, 4.0, "centre distance")] | None = None
     """Clear length of the rear cold section, between partition and end wall."""
-    width: Size
+    width: Annotated[Size, Usual(1.2, 9.0, "centre distance")]
     """Outer width, across the shafts."""
-    height: Size
+    height: Annotated[Size, Usual(1.0, 9.0, "centre distance")]
     """Outer height above the clamping field."""
-    wall_thickness: Length
+    wall_thickness: Annotated[Length, Usual(0.02, 0.5, "centre distance")]
     """Thickness of the two side walls."""
-    floor_thickness: Length
+    floor_thickness: Annotated[Length, Usual(0.025, 0.5, "centre distance")]
     """Thickness of the floor."""
-    top_thickness: Length
+    top_thickness: Annotated[Length, Usual(0.02, 0.5, "centre distance")]
     """Thickness of the top."""
-    partition_thickness: Length | None = None
+    partition_thickness: Annotated[Length, Usual(0.02, 0.5, "centre distance")] | None = None
     """Thickness of the walls between warm chamber and cold sections: length of their seals."""
-    end_wall_thickness: Length
+    end_wall_thickness: Annotated[Length, Usual(0.05, 1.5, "centre distance")]
     """Thickness of the walls that carry the bearings."""
-    end_seal_width: Length
+    end_seal_width: Annotated[Length, Usual("2.5 mm", "40 mm")]
     """Length of the end seal outside of each bearing."""
-    shaft_height: Size
+    shaft_height: Annotated[Size, Usual(0.5, 5.0, "centre distance")]
     """Height of the shaft axes above the clamping field."""
     material: Name
     """Built-in material or a name under ``materials``."""

@@ -10,6 +10,7 @@ from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.defaults.consequences import causes_first
 from rigdesign.case.defaults.fill import filled_as_a_whole, with_defaults
+from rigdesign.case.defaults.housings import missing_films
 from rigdesign.case.equal_parts import EqualParts, written_out
 from rigdesign.case.faults import MISSING, faults_of, written
 from rigdesign.case.model import Case, Origin
@@ -59,8 +60,8 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
             else:
                 left_out.append((keys, new))
     for keys, new in left_out:
-        stated = _replaced(_with_default(stated, keys), keys, new)
-    return _build(stated, case.path, EqualParts({}, {}, {}))
+        stated = _replaced(_with_default(stated, keys, case.origin.tree), keys, new)
+    return _build(stated, case.path, EqualParts({}, {}, {}), origin=case.origin.equal)
 
 
 def _stands(tree: Any, keys: Sequence[str]) -> bool:
@@ -80,9 +81,12 @@ def _stands(tree: Any, keys: Sequence[str]) -> bool:
     return True
 
 
-def _with_default(stated: Mapping[str, Any], keys: Sequence[str]) -> Mapping[str, Any]:
+def _with_default(
+    stated: Mapping[str, Any], keys: Sequence[str], known: Mapping[str, Any]
+) -> Mapping[str, Any]:
     """``stated`` with the table or list around a path that a rule fills in as a whole, so that one of its values can
-    be replaced; the other defaults still follow the rest of the case."""
+    be replaced; the other defaults still follow the rest of the case, but for films added to those that it states,
+    which are as ``known``."""
     for depth in range(1, len(keys)):
         above = keys[:depth]
         if not _stands(stated, above) and filled_as_a_whole(".".join(above)):
@@ -92,6 +96,8 @@ def _with_default(stated: Mapping[str, Any], keys: Sequence[str]) -> Mapping[str
                 for lost in _lost(tree, with_defaults(filled)):
                     filled = dict(_replaced(filled, lost, _node(tree, lost)))
                 return filled
+            if _stands(known, above):
+                return dict(_replaced(stated, above, _node(known, above)))
     return stated
 
 
@@ -115,8 +121,19 @@ def _node(tree: Any, keys: Sequence[str]) -> Any:
     return tree
 
 
-def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:
-    tree = with_defaults(stated)
+def _build(
+    stated: Mapping[str, Any],
+    file: Path,
+    equal: EqualParts,
+    tree: Mapping[str, Any] | None = None,
+    *,
+    origin: EqualParts | None = None,
+) -> Case:
+    """The case of what a file states; faults stand where ``equal`` has them.
+
+    tree : with its defaults, as far as they are filled in already; origin : what the file says of equal parts
+    """
+    tree = with_defaults(stated) if tree is None else tree
     plain, marks, wrong_marks = take_off(dict(tree))
     faults = [Fault(wrong.path, wrong.given, wrong.problem, wrong.remedy) for wrong in wrong_marks]
     faults += [fault for mark in marks if mark.range is not None for fault in _range_faults(mark, plain)]
@@ -125,10 +142,14 @@ def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:
     except ValidationError as error:
         found = causes_first([*faults_of(error, Case, plain), *faults], marks, MISSING)
         raise CaseError(equal.as_written(found), str(file)) from None
+    if films := dict(missing_films(tree, case)):
+        for path, film in films.items():
+            tree = _replaced(tree, path.split("."), film)
+        return _build(stated, file, equal, tree, origin=origin)
     faults += broken_rules(case)
     if faults:
         raise CaseError(equal.as_written(faults), str(file))
-    case._origin = Origin(file, stated, tree, marks, changed_together)
+    case._origin = Origin(file, stated, tree, marks, changed_together, origin or equal)
     return case
 
 

@@ -5,12 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from rigdesign.case.fields import Density, Name, Part, Positive, Power
+from rigdesign.case.fields import MistDensity, Name, Part, Positive, Power, Usual
 
 LossKind = Literal["mesh", "bearing", "windage", "churning", "seal", "oil_acceleration", "squeeze"]
 
 
-LossFactor = Annotated[float, Field(ge=0.0, le=10.0)]
+LossFactor = Annotated[float, Field(ge=0.0, le=10.0), Usual(0.15, 7.0)]
 """Multiplies a loss: what it really is, over what its law or the case says."""
 
 
@@ -54,7 +54,7 @@ class GivenLoss(Part):
     """Kind of the loss."""
     part: Name
     """Mesh, bearing, seal or gear (windage) of that gearbox."""
-    power: Power
+    power: Annotated[Power, Usual(5e-5, 0.02, "circulating power")]
     """The loss as a power."""
     stages: tuple[Name, ...] = ()
     """Stages it holds for; all when empty."""
@@ -87,7 +87,7 @@ class ToothFriction(Part):
     constants of an oil test, or a constant."""
     lubricant_factor: float | None = Field(default=None, gt=0.1, le=2.0)
     """X_L; that of the oil when left out."""
-    coefficient: float | None = Field(default=None, ge=0.0, le=0.5)
+    coefficient: Annotated[float, Usual(0.01, 0.15)] | None = Field(default=None, ge=0.0, le=0.5)
     """Friction coefficient when the law is ``constant``."""
     doleschel: DoleschelConstants | None = None
     """Oil constants when the law is ``doleschel``."""
@@ -102,9 +102,9 @@ class Losses(Part):
     """Losses prescribed or measured, by name."""
     friction: ToothFriction = ToothFriction()
     """Friction of the teeth."""
-    chamber_density: Density | None = None
+    chamber_density: MistDensity | None = None
     """Density of the oil-air mist round the gears, for windage."""
-    squeeze_share: float = Field(default=0.0, ge=0.0, le=0.10)
+    squeeze_share: Annotated[float, Usual(0.01, 0.1)] = Field(default=0.0, ge=0.0, le=0.10)
     """Squeezing of oil out of the mesh, as a share of the mesh loss."""
     mesh_damping_heats_oil: bool = False
     """Whether the work of the mesh dampers is heat of the gear oil. Left out, the motor pays it and it stands among the

@@ -16,6 +16,7 @@ from rigdesign.case.fields import (
     Size,
     Temperature,
     Text,
+    Usual,
     Velocity,
     Volume,
     fault,
@@ -32,12 +33,12 @@ class JetOil(Part):
     """Built-in oil or a name under ``oils``."""
     inlet_temperature: Temperature
     """Temperature at which the oil enters the gearbox."""
-    flow: Flow
+    flow: Annotated[Flow, Usual(7e-11, 2.1e-9, "circulating power")]
     """Flow per mesh."""
     jet_direction: Literal["into_mesh", "out_of_mesh", "radial"]
     """Where the jets point: with the motion of the teeth into the mesh, against their motion out of the
     mesh, or radially; decides the power that brings the oil up to speed."""
-    jet_velocity: Velocity
+    jet_velocity: Annotated[Velocity, Usual("4 m/s", "80 m/s")]
     """Velocity of the oil as it leaves the jets, all open and nothing in ``oil_paths.bypass``."""
     outlet_temperature: Temperature | None = None
     """Measured outlet; computed from the heat when left out."""
@@ -58,7 +59,7 @@ class DipOil(Part):
     """Built-in oil or a name under ``oils``."""
     level: Offset
     """Height of the oil at rest above the shaft axes; below them it is negative."""
-    volume: Volume
+    volume: Annotated[Volume, Usual(0.35, 12.0, "cube of the centre distance")]
     """Oil in the sump."""
     sump_temperature: Temperature | None = None
     """Held by heater and cooler of the sump. Left out: it follows from the losses and from what the housing gives to
@@ -90,7 +91,7 @@ class FedOil(Part):
     """Built-in oil or a name under ``oils``."""
     inlet_temperature: Temperature
     """Temperature at which the oil enters the bearings."""
-    flow: Flow
+    flow: Annotated[Flow, Usual(4.2e-3, 0.1, "bore times width of the bearings")]
     """Flow per bearing."""
     outlet_temperature: Temperature | None = None
     """Measured outlet; computed from the heat when left out."""
@@ -153,7 +154,7 @@ class OilState(Part):
 
     air_content: Annotated[float, Field(ge=0.0, le=0.3)] = 0.0
     """Volume share of free air in the oil fed, bubbles: less mass and conductivity, more viscosity."""
-    viscosity_factor: Annotated[float, Field(ge=0.2, le=5.0)] = 1.0
+    viscosity_factor: Annotated[float, Field(ge=0.2, le=5.0), Usual(0.4, 2.5)] = 1.0
     """Viscosity over that of the data sheet, at every temperature."""
     heat_capacity_factor: Annotated[float, Field(ge=0.5, le=2.0)] = 1.0
     """Heat capacity over that of the data sheet."""

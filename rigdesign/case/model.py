@@ -14,6 +14,7 @@ from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
+from rigdesign.case.equal_parts import EqualParts
 from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
@@ -45,6 +46,8 @@ class Origin:
     marks: tuple[Mark, ...]
     change: Callable[["Case", Mapping[str, object]], "Case"]
     """Reads the case again with values replaced by path."""
+    equal: EqualParts
+    """Parts that the file writes once for several places."""
 
     @cached_property
     def mark_of(self) -> Mapping[str, Mark]:
@@ -205,6 +208,10 @@ class Case(Part):
             As :meth:`with_value`.
         """
         return self._origin.change(self, values)
+
+    def copies_of(self, path: str) -> tuple[str, ...]:
+        """Paths of gearboxes that the file makes ``like`` that of ``path``: :meth:`with_value` leaves them alone."""
+        return self._origin.equal.copies_of(path)
 
     def input_kind(self, path: str) -> InputKind | None:
         """What a path (or the first that fits one with ``*``) holds; None where there is no such path."""

@@ -21,6 +21,7 @@ from rigdesign.case.fields import (
     Temperature,
     TemperatureDifference,
     Text,
+    Usual,
     Volume,
     fault,
 )
@@ -33,11 +34,11 @@ StreamName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*\.[a-z_]+$", max_len
 class TankInput(Part):
     """Tank of a circuit, its oil well mixed."""
 
-    volume: Volume
+    volume: Annotated[Volume, Usual(60.0, 3000.0, "pump flow")]
     """Most oil it holds."""
-    fill: Volume
+    fill: Annotated[Volume, Usual(0.2, 1.0, "tank volume")]
     """Oil of the whole circuit at room temperature, pipes and gearboxes included."""
-    suction_minimum: Volume | None = None
+    suction_minimum: Annotated[Volume, Usual(0.02, 0.6, "tank volume")] | None = None
     """Oil in the tank below which the pump draws air; 0 when left out."""
     wall_conductance: Conductance = 0.0
     """From the oil to the room; 0 for a lagged tank."""
@@ -52,9 +53,9 @@ class PumpInput(Part):
 
     flow: Flow
     """Delivered; what the lines do not take returns to the tank over the relief valve."""
-    pressure: Pressure
+    pressure: Annotated[Pressure, Usual("0.6 bar", "59 bar")]
     """Rise of pressure."""
-    efficiency: Annotated[float, Field(gt=0.0, le=1.0)]
+    efficiency: Annotated[float, Field(gt=0.0, le=1.0), Usual(0.2, 1.0)]
     """Hydraulic over shaft power."""
     heat_share: Share = 1.0
     """Share of the shaft power that ends in the oil; the rest goes to the room."""

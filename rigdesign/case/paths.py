@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel
 
-from rigdesign.case.fields import Quantity
+from rigdesign.case.fields import Quantity, Usual
 from rigdesign.case.kinds import of_kind
 from rigdesign.case.provenance import item_name
 
@@ -31,6 +31,11 @@ class Slot:
         """The quantity, if the place holds one (or a list of them)."""
         found = (item for _, metadata in self.choices for item in metadata if isinstance(item, Quantity))
         return next(found, None)
+
+    @property
+    def usual(self) -> tuple[Usual, ...]:
+        """Ranges it usually lies in."""
+        return tuple(item for _, metadata in self.choices for item in metadata if isinstance(item, Usual))
 
     @property
     def plain_types(self) -> tuple[type, ...]:
@@ -72,7 +77,7 @@ def slot_of(annotation: Any, metadata: Sequence[Any] = ()) -> Slot:
 
 
 @cache
-def _slot_of_field(model: type[BaseModel], key: str) -> Slot | None:
+def slot_of_field(model: type[BaseModel], key: str) -> Slot | None:
     """What a key of a table may hold; None where there is no such key."""
     field = model.model_fields.get(key)
     return None if field is None else slot_of(field.annotation, field.metadata)
@@ -163,7 +168,7 @@ def _step(slot: Slot, node: Any, key: str) -> tuple[Slot, Any] | None:
         elif origin is Mapping and isinstance(node, Mapping) and key in node:
             return slot_of(arguments[1]), node[key]
     for model in _models_for(slot, node):
-        found = _slot_of_field(model, key)
+        found = slot_of_field(model, key)
         if found is not None:
             return found, node.get(key) if isinstance(node, Mapping) else None
     return None

@@ -4,6 +4,7 @@ Any value may be written as a table that holds it under ``value`` with one or mo
 
     flow = { value = "5 l/min", assumed = "as for an FZG rig of this power", range = ["3 l/min", "8 l/min"] }
     damping = { value = "1000 N s/m", source = "P2, Table 1" }
+    root_strength = { value = "1600 MPa", confirmed = "shot-peened, own pulsator tests" }
     heat_transfer_coefficient = { value = "9.1 W/(m2 K)", measured = "heat flux foil, 2026-05-12" }
 
 The loader takes the marks off before the values are validated and keeps them by path.
@@ -14,10 +15,10 @@ from typing import Any, Literal
 
 from rigdesign.case.fields import text_fault
 
-MARKS = ("assumed", "range", "source", "measured")
+MARKS = ("assumed", "range", "source", "measured", "confirmed")
 KEYS = frozenset(("value", *MARKS))
 
-MarkKind = Literal["measured", "assumed", "source"]
+MarkKind = Literal["measured", "assumed", "source", "confirmed"]
 """Where a value comes from, by its mark."""
 
 
@@ -31,14 +32,16 @@ class Mark:
     range : lowest and highest plausible value, as written
     source : where it is printed
     measured : the measurement that replaces a computed or printed value
+    confirmed : why a value outside of its usual range is right
     """
 
     path: str
     value: Any
     assumed: str | None = None
-    range: tuple[str, str] | None = None
+    range: tuple[str | int | float, str | int | float] | None = None
     source: str | None = None
     measured: str | None = None
+    confirmed: str | None = None
 
     @property
     def shown(self) -> str:
@@ -61,6 +64,7 @@ class Mark:
             ("measured", self.measured),
             ("assumed", self.assumed),
             ("source", self.source),
+            ("confirmed", self.confirmed),
         )
         return tuple((kind, text) for kind, text in every if text is not None)
 
@@ -123,7 +127,7 @@ def item_name(item: object, index: int) -> str:
 
 def _read(node: dict[str, Any], path: str) -> tuple[Mark | None, list[MarkFault]]:
     faults = []
-    for key in ("assumed", "source", "measured"):
+    for key in ("assumed", "source", "measured", "confirmed"):
         text = node.get(key, key)
         if not (isinstance(text, str) and text.strip()):
             remedy = f'write {key} = "…", a reason or source'
@@ -144,5 +148,6 @@ def _read(node: dict[str, Any], path: str) -> tuple[Mark | None, list[MarkFault]
         range=None if limits is None else (limits[0], limits[1]),
         source=node.get("source"),
         measured=node.get("measured"),
+        confirmed=node.get("confirmed"),
     )
     return mark, []

@@ -24,6 +24,7 @@ from rigdesign.case.fields import (
     Temperature,
     Text,
     Torque,
+    Usual,
     fault,
 )
 
@@ -51,7 +52,7 @@ class MachineInput(Part):
 
     drives: Name | None = None
     """Machine that it drives; the rig itself when left out."""
-    efficiency: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    efficiency: Annotated[float, Field(gt=0.0, le=1.0), Usual(0.4, 1.0)] | None = None
     """Output over input power at every operating point, or ``loss_map``."""
     loss_map: tuple[LossPointInput, ...] | None = Field(default=None, min_length=4)
     """Losses on a grid of speeds and torques of the output shaft, every speed with every torque; bilinear in between

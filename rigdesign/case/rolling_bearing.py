@@ -25,6 +25,7 @@ from rigdesign.case.fields import (
     Text,
     Torque,
     TorsionalDamping,
+    Usual,
     fault,
 )
 from rigdesign.case.losses import LossFactor
@@ -70,11 +71,11 @@ class RollingBearingInput(Part):
     arrangement: Literal["back_to_back", "face_to_face"] | None = None
     """How a bearing with a contact angle stands to the one at the other end: back to back (O) or face to face (X). Left
     out, both are rated for either, and shafts that bend have them face to face."""
-    axial_play: Play = 0.0
+    axial_play: Annotated[Play, Usual("0.06 mm", "1.9 mm")] = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn."""
     position: Gap | None = None
     """Distance of its middle from the start of its shaft in the drivetrain."""
-    radial_load: Force | None = None
+    radial_load: Annotated[Force, Usual(0.01, 9.0, "tooth force")] | None = None
     """Load at the held stages; from the tooth forces when left out."""
     friction_law: Literal["skf", "iso_tr_14179_2"] = "skf"
     """Law of the friction torque: the four sources of SKF, or ISO/TR 14179-2 (Palmgren)."""
@@ -85,14 +86,14 @@ class RollingBearingInput(Part):
     bearing that is shut off from it."""
     clearance_class: Literal["C2", "CN", "C3", "C4", "C5"] = "CN"
     """Class of the radial internal clearance; its middle counts."""
-    radial_clearance: Play | None = None
+    radial_clearance: Annotated[Play, Usual(1e-5, 3e-3, "bore of the bearing")] | None = None
     """Radial internal clearance of the unmounted bearing in place of a class; 0 for bearings set at assembly."""
     shaft_interference: Deviation | None = None
     """Effective interference of the inner ring on the shaft, on the diameter, negative if loose; 0.0003 of the bore
     (k6) when left out."""
     housing_interference: Deviation | None = None
     """Effective interference of the outer ring in the housing; -0.0002 of the outside diameter (H7) when left out."""
-    seat_outside_diameter: Length | None = None
+    seat_outside_diameter: Annotated[Length, Usual(1.3, 8.0, "bore of the bearing")] | None = None
     """Outside diameter of the housing round the outer ring; rigid when left out."""
     contamination: Cleanliness = "normal cleanliness"
     """Cleanliness of the lubricant, ISO 281 table 13."""
@@ -100,7 +101,7 @@ class RollingBearingInput(Part):
     """Factor e_C of ISO 281 in place of ``contamination``."""
     reliability: Annotated[float, Field(ge=0.9, le=0.99)] = 0.9
     """Of the rating life."""
-    seal_torque: Torque = 0.0
+    seal_torque: Annotated[Torque, Usual(1e-5, 0.02, "test torque")] = 0.0
     """Friction torque of the bearing's own contact seals."""
     friction_factor: LossFactor = 1.0
     """Multiplies its friction, on top of ``loss_factors.bearing`` of the gearbox."""

@@ -1,11 +1,11 @@
 """What the rig is asked to do: stages of speed and torque, and the planned test."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Count, Hours, Name, Part, Share, Speed, Text, Time, Torque, fault
+from rigdesign.case.fields import Count, Hours, Name, Part, Share, Speed, Text, Time, Torque, Usual, fault
 
 StageKind = Literal["load", "unload", "run_up", "run_down", "dwell"]
 
@@ -22,9 +22,9 @@ class StageInput(Part):
     kind: StageKind
     """What changes during the stage: the torque (load, unload), the speed (run_up, run_down) or nothing
     (dwell)."""
-    speed: Speed | None = None
+    speed: Annotated[Speed, Usual(0.005, 1.6, "test speed")] | None = None
     """Speed at its end; that of the stage before when left out."""
-    torque: Torque | None = None
+    torque: Annotated[Torque, Usual(0.005, 2.0, "test torque")] | None = None
     """Torque at its end; that of the stage before when left out."""
     torque_share: Share | None = None
     """The torque as a share of the test torque."""
@@ -60,9 +60,9 @@ class StageValues:
 class ScheduleInput(Part):
     """Stages in their order."""
 
-    test_speed: Speed
+    test_speed: Annotated[Speed, Usual(1.0, 80.0, "speed of 1 m/s at the pitch circle")]
     """Speed of the test, counted at ``drivetrain.torque_at``."""
-    test_torque: Torque
+    test_torque: Annotated[Torque, Usual(1e6, 6e8, "torque of 1 Pa on face width times module")]
     """Torque of the test, counted at ``drivetrain.torque_at``."""
     stages: tuple[StageInput, ...] = Field(min_length=1)
     """Stages in the order in which they run."""

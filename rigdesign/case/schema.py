@@ -18,6 +18,7 @@ _MARK_PROPERTIES: dict[str, Any] = {
         "type": "string",
         "description": "the measurement that replaces a computed or printed value",
     },
+    "confirmed": {"type": "string", "description": "why a value outside of its usual range is right"},
 }
 
 

@@ -13,6 +13,7 @@ from rigdesign.case.fields import (
     Quantity,
     Resistance,
     Size,
+    Usual,
     Voltage,
     fault,
 )
@@ -27,7 +28,7 @@ class StrainBridge(Part):
     kind: Literal["quarter", "half_passive", "half", "full"]
     """quarter: one gauge, completed in the amplifier; half_passive: one gauge with a passive resistor next to it,
     completed in the amplifier; half: two gauges; full: four."""
-    supply_voltage: Voltage
+    supply_voltage: Annotated[Voltage, Usual("0.3 V", "15 V")]
     """Voltage that feeds the bridge, at the amplifier."""
     arms: tuple[ArmStrain, ...] | None = None
     """Strain of each active arm over that of the gauge, e.g. 1 and -0.3 for a second gauge across; 1 and -1, or twice
@@ -52,7 +53,7 @@ class StrainGaugeInput(Part):
     fillet: Literal["front", "back"] = "front"
     """Fillet under the front flank, or under the back flank; that of the front flank is pulled where the mesh runs on
     its front flanks."""
-    face_position: Offset
+    face_position: Annotated[Offset, Usual(0.0, 0.5, "face width")]
     """Middle of the grid over the face width: from mid-face, positive to the rear end, the one that comes into mesh
     last."""
     fillet_position: Offset | None = None
@@ -63,13 +64,13 @@ class StrainGaugeInput(Part):
     """Diameter at the middle of the grid."""
     misalignment: Angle = 0.0
     """Direction of the grid against that of the fillet."""
-    grid_length: Length
+    grid_length: Annotated[Length, Usual("0.2 mm", "5 mm")]
     """Length of the measuring grid, along its wires."""
-    grid_width: Length
+    grid_width: Annotated[Length, Usual("0.2 mm", "5 mm")]
     """Width of the measuring grid."""
-    gauge_factor: Positive = 2.0
+    gauge_factor: Annotated[Positive, Usual(1.5, 4.0)] = 2.0
     """k: relative change of resistance over strain."""
-    resistance: Resistance = 120.0
+    resistance: Annotated[Resistance, Usual("50 ohm", "1100 ohm")] = 120.0
     """Resistance of the gauge."""
     transverse_sensitivity: float = Field(default=0.0, ge=-0.2, le=0.2)
     """Sensitivity across over that along the grid."""

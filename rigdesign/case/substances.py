@@ -10,6 +10,7 @@ from rigdesign.case.fields import (
     ExpansionCoefficient,
     HeatCapacity,
     KinematicViscosity,
+    LiquidDensity,
     LoadStage,
     Modulus,
     Part,
@@ -19,6 +20,7 @@ from rigdesign.case.fields import (
     Temperature,
     Text,
     Time,
+    Usual,
     fault,
 )
 from rigdesign.properties.oil import Oil
@@ -31,7 +33,7 @@ class Ambient(Part):
     """Temperature of the room air."""
     surroundings_temperature: RoomTemperature | None = None
     """Walls that the rig radiates to; the air temperature when left out."""
-    reference_temperature: RoomTemperature = 293.15
+    reference_temperature: Annotated[RoomTemperature, Usual("15 degC", "30 degC")] = 293.15
     """At which drawings and measures of the case hold; 20 degC by ISO 1."""
     warming_time: Time | None = None
     """How long an operating point had run from a rig at the temperature of the room; steady when left out. The housings
@@ -43,15 +45,15 @@ class CustomOil(Part):
 
     title: Text
     """Name of the oil in the report."""
-    kinematic_viscosity_40: KinematicViscosity
+    kinematic_viscosity_40: Annotated[KinematicViscosity, Usual(2.5, 30.0, "viscosity at 100 degC")]
     """Kinematic viscosity at 40 degC."""
     kinematic_viscosity_100: KinematicViscosity
     """Kinematic viscosity at 100 degC."""
-    density_15: Density
+    density_15: LiquidDensity
     """Density at 15 degC."""
     heat_capacity: HeatCapacity
     """Specific heat capacity, taken as constant."""
-    conductivity: Conductivity
+    conductivity: Annotated[Conductivity, Usual("0.08 W/(m K)", "0.7 W/(m K)")]
     """Thermal conductivity at 40 degC."""
     lubricant_factor: Annotated[float, Field(gt=0.1, le=2.0)] = 1.0
     """X_L of the friction laws: 1 for mineral oil."""
@@ -91,26 +93,26 @@ class CustomMaterial(Part):
 
     title: Text
     """Name of the material in the report."""
-    conductivity: Conductivity
+    conductivity: Annotated[Conductivity, Usual("8 W/(m K)", "420 W/(m K)")]
     """Thermal conductivity."""
     expansion_coefficient: ExpansionCoefficient
     """Linear thermal expansion per kelvin."""
     elastic_modulus: Modulus
     """Young's modulus."""
-    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)]
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5), Usual(0.2, 0.4)]
     """Poisson's ratio."""
     density: Density
     """Mass density."""
-    root_strength: Stress | None = None
+    root_strength: Annotated[Stress, Usual("150 MPa", "1500 MPa")] | None = None
     """sigma_FE of ISO 6336-5 for gears: allowable stress number of the root, sigma_Flim Y_ST."""
-    flank_strength: Stress | None = None
+    flank_strength: Annotated[Stress, Usual("250 MPa", "2500 MPa")] | None = None
     """sigma_Hlim of ISO 6336-5 for gears: strength of their flanks, and how they run in."""
     treatment: Literal["case_hardened", "nitrided", "through_hardened"] = "case_hardened"
     """Of gears: how their flanks run in (ISO 6336-1)."""
     scuffing_factor: Annotated[float, Field(ge=0.4, le=1.5)] = 1.0
     """X_W of ISO/TS 6336-20 for gears: 1 for case-hardened steel with 20 to 30 % of retained austenite, 1.15 with less,
     1.5 nitrided."""
-    tempering_temperature: Temperature | None = None
+    tempering_temperature: Annotated[Temperature, Usual("120 degC", "600 degC")] | None = None
     """Tempering temperature of gears; without it their bulk temperature is not checked."""
 
     @model_validator(mode="after")

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.bath_film import BathFilm
-from rigdesign.case.fields import Clearance, HeatTransferCoefficient, Temperature, Text, fault
+from rigdesign.case.fields import Clearance, HeatTransferCoefficient, Temperature, Text, Usual, fault
 from rigdesign.case.films import FilmFactor, PlateFilm, SurfaceCondition
 from rigdesign.case.given_film import ConstantFilm
 from rigdesign.case.shaft_films import ShaftFilm
@@ -70,7 +70,7 @@ class ThermalRadiation(SurfaceCondition):
 
     law: Literal["radiation"]
     """Selects radiation."""
-    emissivity: float = Field(gt=0.0, le=1.0)
+    emissivity: Annotated[float, Usual(0.1, 1.0)] = Field(gt=0.0, le=1.0)
     """Emissivity of the grey surface."""
     emissivity_excess: float = Field(default=0.0, ge=-1.0, le=1.0)
     """What the surface has beyond ``emissivity``: it counts even where a film to room air stands for the rest."""

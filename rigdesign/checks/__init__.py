@@ -1,11 +1,15 @@
 """Design checks: every registered rule held against the solved rig."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatchcase
+from typing import Any
 
+from rigdesign.case.model import Case
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
-from rigdesign.checks.registry import REGISTRY, load_topics
-from rigdesign.checks.rules import with_error, with_omissions
+from rigdesign.checks.registry import LOADS, REGISTRY, load_topics
+from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
+from rigdesign.records.hand import disagreeing
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 
@@ -14,15 +18,49 @@ __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks"]
 load_topics(__name__, __path__)
 
 
-def all_checks(solved: SolvedRig) -> list[Check]:
-    """Every check in the order of the report, each with its discretisation error and the inputs it depends on."""
-    return [with_assumptions(solved.case, check) for check in estimated_checks(solved)]
+def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> list[Check]:
+    """Every check in the order of the report with its error, what makes it doubtful and the inputs it depends on.
+
+    hand : rows of `records.hand.hand_checks`
+    """
+    causes, case = list(disagreeing(hand)), solved.case
+    checks = (_with_doubts(case, check, causes) for check in estimated_checks(solved))
+    return [with_assumptions(case, check) for check in checks]
 
 
 def estimated_checks(solved: SolvedRig) -> list[Check]:
-    """Every check in the order of the report with its discretisation error, without its assumed inputs."""
+    """Every check in the order of the report with the error of its value, without its assumed inputs."""
     errors = solved.mesh_errors
-    return [with_error(check, errors.get(check.id)) for check in held_checks(solved)]
+    checks = (with_error(check, errors.get(check.id)) for check in held_checks(solved))
+    return [_of_reduced_model(solved, check) if solved.rig.reduced else check for check in checks]
+
+
+def _with_doubts(case: Case, check: Check, causes: Sequence[tuple[tuple[str, ...], str]]) -> Check:
+    """A check that fails or is close with what makes its value doubtful.
+
+    causes : calculations by hand that do not agree; a source that could not be confirmed comes first
+    """
+    if not (check.missed or "close" in check.flags):
+        return check
+    doubts = [REGISTRY.family_of(case, check).unconfirmed]
+    doubts += [text for patterns, text in causes if any(fnmatchcase(check.id, part) for part in patterns)]
+    return with_doubt(check, joined(*doubts)) if any(doubts) else check
+
+
+REDUCED = "fidelity quick (shafts that only twist, analytic teeth with K_Hbeta as stated, few speeds)"
+REDUCED_ERROR = 0.5
+"""Share of the value of a check on tooth loads by which fidelity quick may be off: up to 0.42 between quick and
+standard on the shipped rigs and two rigs of others (K_V 1.53 against 1.08, root safety 3.18 against 1.85)."""
+
+
+def _of_reduced_model(solved: SolvedRig, check: Check) -> Check:
+    """A check on tooth loads with the error of the reduced model; resonances it cannot tell at all."""
+    family = REGISTRY.family_of(solved.case, check)
+    if check.value is None or family.needs is not LOADS:
+        return check
+    if family.resonant:
+        return unjudged(check, f"{REDUCED} cannot tell resonances")
+    return with_error(check, (check.error or 0.0) + REDUCED_ERROR * abs(check.value), REDUCED)
 
 
 def held_checks(solved: SolvedRig) -> list[Check]:

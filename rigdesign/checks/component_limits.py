@@ -15,7 +15,7 @@ from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
 from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Omission, Rule, hold, not_applicable
+from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
@@ -42,7 +42,7 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
     if value is None:
         value, reason = RESULTS[part.quantity](solved, part.part)
     if value is None:
-        return not_applicable(rule, reason)
+        return (not_evaluated if reason in (NO_LOADS, NO_HOUSING) else not_applicable)(rule, reason)
     return hold(rule, display(value, part.kind), reason)
 
 

@@ -9,7 +9,7 @@ from rigdesign.case.limits import PASSED, BoughtPart
 from rigdesign.case.model import Case
 from rigdesign.checks.component_limits import GROUP, is_at
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
 from rigdesign.records.solved_rig import NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
@@ -69,7 +69,7 @@ def _rule(name: str, part: BoughtPart) -> Rule:
 def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
     rule = _rule(name, part)
     if solved.loads is None:
-        return not_applicable(rule, NO_LOADS)
+        return not_evaluated(rule, NO_LOADS)
     found = [
         torque for torque in solved.part_torques if torque.event is not None and is_at(torque, part.part)
     ]

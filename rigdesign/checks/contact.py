@@ -10,7 +10,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import meshes, meshes_of
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.gear_loads import application_factor
 from rigdesign.records.loaded_contact import held_contact
@@ -42,7 +42,7 @@ PRESSURE = RuleFamily(
     procedure="Highest Hertzian pressure of the loaded contact over a mesh cycle and the face, away from tip edges, "
     "times the root of K_A and of the simulated K_V; the highest of all held stages counts. Limit as stated; else the "
     "pitting stress limit of the weaker gear after the planned cycles over the least pitting safety, for gears of the "
-    "rig; that is a strength at the pitch point and warns at most.",
+    "rig; that is a strength at the pitch point, so that a missed limit is advisory.",
     places=_held_meshes,
     limit_keys=("limits.flanks.contact_pressure_maximum", "limits.flanks.pitting_safety_minimum"),
     one_limit_suffices=True,
@@ -119,7 +119,7 @@ def _contacts(solved: SolvedRig, mesh: int) -> tuple[list[_Held], str]:
 def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
     contacts, missing = _contacts(solved, mesh)
     if not contacts:
-        return not_applicable(rule, missing)
+        return _without_contact(rule, missing)
     limit, basis = rule.limit, "limit as stated"
     if limit is None:
         permissible = _permissible(solved, mesh)
@@ -127,7 +127,7 @@ def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
             return not_applicable(rule, NO_LIMIT)
         limit, basis = permissible
         # sigma_HG belongs to the pitch point and the inner point of single contact, not to the peak of a pattern
-        rule = replace(rule, warn_only=True)
+        rule = replace(rule, advisory=True)
     pressure, how = worst(
         (
             MPA * held.cycle.flank_pressure * held.raised,
@@ -138,10 +138,14 @@ def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
     return hold(replace(rule, limit=limit), pressure, f"{how}; {basis}")
 
 
+def _without_contact(rule: Rule, missing: str) -> Check:
+    return (not_applicable if missing == NO_TORQUE else not_evaluated)(rule, missing)
+
+
 def _edge(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
     contacts, missing = _contacts(solved, mesh)
     if not contacts:
-        return not_applicable(rule, missing)
+        return _without_contact(rule, missing)
     return hold(rule, *worst(_edges(held) for held in contacts))
 
 

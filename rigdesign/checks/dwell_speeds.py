@@ -1,41 +1,31 @@
-"""Check of the speeds at which the rig dwells against resonances of meshes, shafts and joints."""
+"""Check of the speeds at which the rig dwells against resonances of shafts and joints, as against those of meshes."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule
 from rigdesign.records.loop_states import dwell_stages
 from rigdesign.records.near_dwell import SHAFT_SHARE
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER, RPM
 
-
-@dataclass(frozen=True, kw_only=True)
-class DwellRule(RuleFamily):
-    """A rule of good practice: it warns."""
-
-    def rule(self, limit: float | None, place: str = "") -> Rule:
-        """The rule with its limit."""
-        return replace(super().rule(limit, place), warn_only=True)
-
-
-DWELL = DwellRule(
+DWELL = RuleFamily(
     key="dynamics.dwell_speed",
-    title="distance of dwell speeds from resonances of meshes, shafts and joints",
+    title="distance of dwell speeds from resonances of shafts and joints",
     procedure=(
-        "Periodic response over speed: a peak counts where K_V exceeds one by more than dangerous_force_share, or "
-        f"where half the peak-to-peak torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the "
-        "mean torque of the loop; so does a shaft or coupling order that meets a lightly damped mode. The "
-        "value is the distance of the nearest one from a dwell, as a share of its speed, 0 where the dwell itself is "
-        "above such a share; where there is none, the range searched."
+        "Periodic response around every speed at which the rig dwells: a peak counts where half the peak-to-peak "
+        f"torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the mean torque of the loop; so "
+        "does a shaft or coupling order that meets a lightly damped mode. The value is the distance of the nearest one "
+        "from a dwell, as a share of its speed, 0 where the dwell itself is above such a share; where there is none, "
+        "the range searched."
     ),
     unit=NUMBER,
     group="dynamics",
     source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
     comparison=">=",
+    advisory=True,
+    resonant=True,
     needs=LOADS,
     leaves_out=(long_periods,),
     absent="no stage dwells at a speed whose response is computed",
@@ -59,7 +49,10 @@ def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
         speed = rig.pinion_speed(stage.speed_end)
         if speed not in solved.near_dwells:
             continue
-        near = solved.near_dwells[speed].nearest
+        dwell = solved.near_dwells[speed]
+        near = dwell.nearest_of(
+            one for one in dwell.resonances if one.kind in ("shaft torque", "shaft order")
+        )
         if near.resonance is None:
             yield near.distance, f"stage {stage.name}: none within {100.0 * near.distance:.0f} % of its speed"
         else:

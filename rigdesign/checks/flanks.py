@@ -8,7 +8,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.omissions import HEAT, Omissions, long_periods
 from rigdesign.checks.places import gears_of, meshes, rig_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Omission, Rule, hold, not_applicable
+from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
 from rigdesign.checks.strength import OF_SAFETY, GearFamily, root_safety
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
@@ -83,6 +83,7 @@ SCUFFING = RuleFamily(
     places=meshes,
     comparison=">=",
     needs=LOADS,
+    unconfirmed="X_Gamma, X_J, mu_m and S_B of ISO/TS 6336-20 are from memory, not compared with a copy",
     leaves_out=(_mean_of_gear, long_periods, *HEAT),
     moved_by=frozenset({"gear rating", "flank rating", "housing"}),
 )
@@ -98,6 +99,7 @@ FILM = RuleFamily(
     places=meshes,
     comparison=">=",
     needs=LOADS,
+    unconfirmed="ISO/TS 6336-22 is from memory of ISO/TR 15144-1, not compared with a copy",
     leaves_out=(_mean_of_gear, long_periods, *HEAT),
     moved_by=frozenset({"gear rating", "housing"}),
 )
@@ -151,13 +153,16 @@ def _held(
 ) -> Check:
     """The least value against its rule, or why there is none."""
     if not any(point.last.response is not None for point in solved.points):
-        return not_applicable(rule, NO_LOADS)
+        return not_evaluated(rule, NO_LOADS)
     if rule.limit is None:
         return not_applicable(rule, NO_LIMIT)
     listed = list(values)
     if not listed:
-        return not_applicable(
-            rule, "; ".join(dict.fromkeys(filter(None, missing))) or "no held stage turns under load"
+        lacking = "; ".join(dict.fromkeys(filter(None, missing)))
+        return (
+            not_evaluated(rule, lacking)
+            if lacking
+            else not_applicable(rule, "no held stage turns under load")
         )
     return hold(rule, *worst(listed, smallest=True))
 

@@ -1,6 +1,6 @@
 """What the value of a check leaves out: finders that the families of rules name (`registry.RuleFamily.leaves_out`).
 
-A held check with an omission is at best a warning that names it, unless the size of the omission is known and below
+A held check with an omission is open and names it, unless the size of the omission is known and below
 the margin (`rules.with_omissions`). A finder depends on the case: a part that it states and no model follows, an
 effect that another part of the run computes and the value does not count. Finders of one family only stand with it.
 Simplifications that all rigs share are listed in the report (`run.warnings.not_modelled`); contributions that could

@@ -14,7 +14,7 @@ from rigdesign.case.limits import Limits
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import Influence
 from rigdesign.checks.places import whole_rig
-from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable
+from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable, not_evaluated
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.units import DisplayUnit
@@ -33,7 +33,7 @@ class Need:
 
     met: Callable[[SolvedRig], bool]
     reason: str
-    """Why the rule does not apply where it is not met."""
+    """Why the rule cannot be evaluated where it is not met."""
 
 
 LOADS = Need(lambda solved: solved.loads is not None, NO_LOADS)
@@ -63,7 +63,13 @@ class RuleFamily:
     comparison: Comparison = "<="
     needs: Need | None = None
     absent: str | Callable[[SolvedRig], str] = NO_HOUSING
-    """Why the rule does not apply where the solved rig has no value for it."""
+    """Why there is no value where there is none: the rule does not apply, but for want of a housing it is open."""
+    unconfirmed: str = ""
+    """What of its sources was written from memory and could not be compared with a copy."""
+    resonant: bool = False
+    """The value jumps with a resonance or a loss of contact: a reduced model cannot tell it."""
+    advisory: bool = False
+    """A missed limit does not bind (`rules.Rule`)."""
     housed: bool = False
     """Without a housing there is no value."""
     leaves_out: tuple[Finder, ...] = ()
@@ -87,6 +93,7 @@ class RuleFamily:
             group=self.group,
             limit=None if limit is None else self.unit.shown(limit),
             comparison=self.comparison,
+            advisory=self.advisory,
             by_definition=self.by_definition,
         )
 
@@ -100,13 +107,17 @@ class RuleFamily:
 
     def worst(self, solved: SolvedRig, rule: Rule, values: Values) -> Check:
         """Hold the governing one of some values against a rule of this family, or say why there is none."""
-        if self.needs is not None and not self.needs.met(solved):
-            return not_applicable(rule, self.needs.reason)
         if rule.limit is None:
             return not_applicable(rule, NO_LIMIT)
+        if self.needs is not None and not self.needs.met(solved):
+            stated = any(solved.case.origin.value_of.get(path) for path in self.limits_of(rule))
+            asked = stated or solved.case.drivetrain is not None
+            return (not_evaluated if asked else not_applicable)(rule, self.needs.reason)
         listed = list(values)
         if not listed:
-            return not_applicable(rule, self.absent if isinstance(self.absent, str) else self.absent(solved))
+            reason = self.absent if isinstance(self.absent, str) else self.absent(solved)
+            lacks_housing = reason in (NO_HOUSING, solved.no_clearances)
+            return (not_evaluated if lacks_housing else not_applicable)(rule, reason)
         value, where = worst(listed, smallest=self.comparison == ">=")
         return hold(rule, self.unit.shown(value), where)
 

@@ -9,7 +9,6 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.checks.omissions import HEAT, of_gearboxes
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.checks.rules import Rule
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, HOUR, MICROMETRE, NUMBER, DisplayUnit
@@ -49,7 +48,7 @@ def _clearances(solved: SolvedRig) -> Values:
         (clearance, f"{name}, stage {point.point.stage}")
         for point in solved.points
         for name, clearance in point.last.coupling_state.bearing_clearance.items()
-        if not solved.rig.bearing(name).has_film
+        if not solved.rig.bearing(name).has_film and not solved.rig.bearing(name).induced_axial_load(1.0)
     )
 
 
@@ -98,11 +97,6 @@ class RollingRule(RuleFamily):
     limit: Callable[[Case], tuple[float | None, str]]
     """Limit [SI] and where it stands."""
     values: Callable[[SolvedRig], Values]
-    warn_only: bool = False
-
-    def rule(self, limit: float | None, place: str = "") -> Rule:
-        """The rule with its limit [SI]."""
-        return replace(super().rule(limit, place), warn_only=self.warn_only)
 
     def check(self, solved: SolvedRig) -> Check:
         """The check of the rig."""
@@ -151,7 +145,7 @@ RULES = (
     _rule(
         "minimum_load", "radial load of a rolling bearing over its least load", NUMBER,
         "Radial load at the held stages over the load below which rolling elements may slide, by the catalogue.",
-        source="catalogue: minimum load", comparison=">=", limit=_one("catalogue: minimum load"), warn_only=True,
+        source="catalogue: minimum load", comparison=">=", limit=_one("catalogue: minimum load"), advisory=True,
         values=_of_states(lambda state: state.load / state.minimum_load if state.minimum_load else math.inf),
         warm=False,
     ),
@@ -165,7 +159,7 @@ RULES = (
     _rule(
         "operating_clearance", "least clearance of a rolling bearing as it runs", MICROMETRE,
         "Radial internal clearance less what fits and temperatures of rings, rolling elements and seats take, at the "
-        "held stages; negative is preload.",
+        "held stages; negative is preload. Bearings with a contact angle are adjusted axially and do not count.",
         source="limits.bearing.operating_clearance_minimum", comparison=">=",
         limit=_stated("operating_clearance_minimum"), values=_clearances,
     ),

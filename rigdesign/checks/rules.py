@@ -1,10 +1,16 @@
-"""Design rules: a value held against a limit gives a Check with margin, utilisation and verdict.
+"""Design rules: a value held against a limit gives a Check with margin, distance, verdict and flags.
 
-Margins are in the unit of the value and positive when the rule holds. Utilisation is the used share of the
-limit, 1 at the limit: value/limit below an upper limit, limit/value above a lower one, the larger of both in a
-window. A temperature counts from 20 degC, the reference temperature of ISO 1, wherever it is held: the zero of its
-scale means nothing, and from a fixed temperature the utilisation can only rise with the temperature, whatever the
-room does. A value beyond a lower limit of zero or below zero is counted as 1 plus the shortfall in limits.
+Margins are in the unit of the value and positive when the rule holds. Distance is the one measure by which checks of
+all kinds are compared; it rises with the margin whatever the comparison, is 0 at the limit and 1 as far away as can be:
+
+    upper limit      margin / limit
+    lower limit      margin / value where it holds, so that a safety counts as the stress behind it; margin / limit
+                     where it is missed: -1.2 is missed by 120 % of the limit
+    window           the nearer of its two limits
+
+Temperatures count from 20 degC, the reference temperature of ISO 1: the zero of their scale means nothing. For a limit
+of zero the unit of the check stands in its place, for a negative one its size; an upper limit of zero that holds, where
+nothing can be less, has all of it left.
 """
 
 from collections.abc import Sequence
@@ -12,14 +18,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rigdesign.base.finite import finite
-from rigdesign.results.check import Check, Role
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Check, Flag, Role
 
 Comparison = Literal["<=", ">=", "within"]
-WARN_UTILISATION = 0.95
-"""A rule that holds with more than this share of its limit used is a warning."""
+CLOSE = 0.05
+"""A rule that holds with less than this share of its limit left is close to it."""
 REFERENCE_TEMPERATURE = 20.0
-"""From which every temperature [degC] is counted as used up (ISO 1)."""
+"""From which every temperature [degC] counts (ISO 1)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,22 +40,18 @@ class Rule:
     limit: float | None = None
     upper_limit: float | None = None
     comparison: Comparison = "<="
-    warn_only: bool = False
-    """A broken rule warns instead of failing (a rule of good practice, not a limit)."""
+    advisory: bool = False
+    """A rule of good practice or a hand check: a missed limit does not bind."""
     by_definition: bool = False
     """The case states the value as well: met to the digit it is met, not near its limit."""
 
-    @property
-    def datum(self) -> float:
-        """From where the utilisation of an upper limit counts, in ``unit``."""
-        return REFERENCE_TEMPERATURE if self.unit == "degC" else 0.0
 
-
-def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Check:
+def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "", undecided: str = "") -> Check:
     """Hold ``value``, in the unit of the rule, against ``rule``.
 
     reason : how the value came about
-    doubt : why a held rule is still only a warning (a formula outside its range, say)
+    doubt : what makes the value doubtful: a flag beside the verdict
+    undecided : why a held rule cannot be judged (a formula outside its range, say): the verdict is open
 
     Raises
     ------
@@ -60,12 +61,16 @@ def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Chec
         Value or limit is NaN or infinite.
     """
     if rule.limit is None:
-        raise ValueError(f"rule {rule.id} has no limit; give one or use not_applicable")
+        raise ValueError(f"rule {rule.id} has no limit; give one or use not_evaluated")
     finite(f"value of check {rule.id}", value)
     finite(f"limit of check {rule.id}", rule.limit)
     finite(f"upper limit of check {rule.id}", rule.limit if rule.upper_limit is None else rule.upper_limit)
-    margin = _margin(rule, value)
-    utilisation = _utilisation(rule, value)
+    margin, space = _margin(rule, value), distance(rule, value)
+    flags: list[Flag] = ["advisory"] if margin < 0.0 and rule.advisory else []
+    if margin >= 0.0 and space < CLOSE and not rule.by_definition:
+        flags.append("close")
+    if doubt:
+        flags.append("doubt")
     return Check(
         id=rule.id,
         title=rule.title,
@@ -75,11 +80,12 @@ def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Chec
         unit=rule.unit,
         comparison=rule.comparison,
         margin=margin,
-        utilisation=utilisation,
-        verdict=_verdict(rule, margin, utilisation, doubt),
+        distance=space,
+        verdict="fail" if margin < 0.0 else "open" if undecided else "pass",
+        flags=tuple(flags),
         source=rule.source,
         role=rule.role,
-        reason="; ".join(part for part in (reason, doubt) if part),
+        reason=joined(reason, undecided, doubt),
         group=rule.group,
         by_definition=rule.by_definition,
     )
@@ -96,7 +102,7 @@ def not_applicable(rule: Rule, reason: str) -> Check:
         unit=rule.unit,
         comparison=rule.comparison,
         margin=None,
-        utilisation=None,
+        distance=None,
         verdict="not applicable",
         source=rule.source,
         role=rule.role,
@@ -106,12 +112,29 @@ def not_applicable(rule: Rule, reason: str) -> Check:
     )
 
 
-def overall(checks: Sequence[Check]) -> Literal["pass", "warn", "fail"]:
-    """The worst verdict; rules that do not apply do not count."""
-    verdicts = {check.verdict for check in checks}
-    if "fail" in verdicts:
-        return "fail"
-    return "warn" if "warn" in verdicts else "pass"
+def not_evaluated(rule: Rule, reason: str) -> Check:
+    """The rig has what the rule asks for and the model of this run does not: open where there is a limit."""
+    check = not_applicable(rule, reason)
+    return check if rule.limit is None else replace(check, verdict="open")
+
+
+def joined(*parts: str) -> str:
+    """Parts of a reason as one text."""
+    return "; ".join(part for part in parts if part)
+
+
+def distance(rule: Rule, value: float) -> float:
+    """How far ``value`` is from the limit of ``rule`` [-], as the head of this module defines it."""
+    assert rule.limit is not None
+    datum = REFERENCE_TEMPERATURE if rule.unit == "degC" else 0.0
+    upper = rule.limit if rule.comparison == "<=" else rule.upper_limit
+    ends = []
+    if rule.comparison != "<=":
+        margin, scale = value - rule.limit, abs(rule.limit - datum) or 1.0
+        ends.append(margin / (scale + max(margin, 0.0)))
+    if upper is not None:
+        ends.append(1.0 if value <= upper == datum else (upper - value) / (abs(upper - datum) or 1.0))
+    return min(ends)
 
 
 def _margin(rule: Rule, value: float) -> float:
@@ -122,37 +145,6 @@ def _margin(rule: Rule, value: float) -> float:
         return value - rule.limit
     assert rule.upper_limit is not None
     return min(value - rule.limit, rule.upper_limit - value)
-
-
-def _utilisation(rule: Rule, value: float) -> float:
-    assert rule.limit is not None
-    if rule.comparison == "<=":
-        return _upper_share(value - rule.datum, rule.limit - rule.datum)
-    if rule.comparison == ">=":
-        return _lower_share(value, rule.limit)
-    assert rule.upper_limit is not None
-    return max(_lower_share(value, rule.limit), _upper_share(value, rule.upper_limit))
-
-
-def _upper_share(value: float, limit: float) -> float:
-    if limit > 0:
-        return max(0.0, value / limit)
-    return 0.0 if value <= limit else 1.0 + (value - limit)
-
-
-def _lower_share(value: float, limit: float) -> float:
-    if limit <= 0:
-        return 0.0 if value >= limit else 1.0 + (limit - value)
-    if value > 0:
-        return limit / value
-    return 1.0 + (limit - value) / limit
-
-
-def _verdict(rule: Rule, margin: float, utilisation: float, doubt: str) -> Verdict:
-    if margin < 0:
-        return "warn" if rule.warn_only else "fail"
-    near = utilisation > WARN_UTILISATION and not rule.by_definition
-    return "warn" if doubt or near else "pass"
 
 
 @dataclass(frozen=True)
@@ -167,38 +159,45 @@ class Omission:
 def with_omissions(check: Check, omissions: Sequence[Omission]) -> Check:
     """A check that knows what its value leaves out.
 
-    A held rule is then at best a warning, unless the omissions of known size together are less than the margin and
-    there are no others; a broken one stays as it is.
+    A held rule is then open, unless the omissions of known size together are less than the margin and there are no
+    others; a broken one stays as it is.
     """
     if check.margin is None or not omissions:
         return check
     sizes = [omission.size for omission in omissions]
     known = [size for size in sizes if size is not None]
-    open_ = len(known) < len(sizes) or sum(known) >= check.margin
+    undecided = len(known) < len(sizes) or sum(known) >= check.margin
     text = "leaves out " + "; leaves out ".join(omission.text for omission in omissions)
     return replace(
         check,
         left_out=tuple(omission.text for omission in omissions),
-        verdict="warn" if open_ and check.verdict == "pass" else check.verdict,
-        reason="; ".join(part for part in (check.reason, text) if part),
+        verdict="open" if undecided and check.verdict == "pass" else check.verdict,
+        reason=joined(check.reason, text),
     )
 
 
-def with_error(check: Check, error: float | None) -> Check:
-    """A check with the discretisation error of its value: a verdict that depends on the discretisation says so.
+def with_error(check: Check, error: float | None, cause: str = "the discretisation") -> Check:
+    """A check with the error of its value: one whose margin is smaller than it is open, held or missed.
 
-    A held rule whose margin is smaller than the error is a warning; a broken one stays as it is.
+    cause : what leaves the error, in words
     """
     if error is None or check.margin is None:
         return check
-    finite(f"discretisation error of check {check.id}", error)
-    known = replace(check, discretisation_error=error)
+    finite(f"error of check {check.id}", error)
+    known = replace(check, error=error)
     if abs(check.margin) >= error:
         return known
     unit = "K" if check.unit == "degC" else check.unit
-    doubt = f"the discretisation leaves {error:.2g} {unit} open, more than the margin: refine it"
-    return replace(
-        known,
-        verdict="warn" if check.verdict == "pass" else check.verdict,
-        reason="; ".join(part for part in (check.reason, doubt) if part),
-    )
+    return unjudged(known, f"{cause} leaves {error:.2g} {unit} open, more than the margin")
+
+
+def unjudged(check: Check, cause: str) -> Check:
+    """A check that has a value and cannot be judged for a cause outside it, held or missed."""
+    flags = tuple(flag for flag in check.flags if flag != "advisory")
+    return replace(check, verdict="open", flags=flags, reason=joined(check.reason, cause))
+
+
+def with_doubt(check: Check, cause: str) -> Check:
+    """A check with a cause to doubt its value, beside its verdict."""
+    flags = check.flags if "doubt" in check.flags else (*check.flags, "doubt")
+    return replace(check, flags=flags, reason=joined(check.reason, cause))

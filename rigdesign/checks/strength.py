@@ -1,8 +1,8 @@
 """Checks of the teeth: root stress by standard and over the path, a window or a safety, load cycles.
 
 Which stress governs: where the stress over the path comes from influence numbers it decides, as ISO 6336-1 ranks a
-comprehensive calculation (method A) above method B; the check by ISO 6336-3 is then a hand check beside it and warns at
-most. Where it comes from the factors of ISO 6336-3 itself, both count.
+comprehensive calculation (method A) above method B; the check by ISO 6336-3 is then a hand check beside it, whose limit
+is advisory. Where it comes from the factors of ISO 6336-3 itself, both count.
 """
 
 import math
@@ -14,7 +14,7 @@ from rigdesign.checks.influences import SPEEDS, Influence
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
 from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
 from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
@@ -145,10 +145,10 @@ def _window(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> C
         family.rule(low, f"{label}.{gear}"),
         role="specimen",
         upper_limit=None if high is None else MPA * high,
-        warn_only=_by_hand(solved, mesh, method),
+        advisory=_by_hand(solved, mesh, method),
     )
     if solved.loads is None or low is None:
-        return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
+        return not_applicable(rule, NO_LIMIT) if low is None else not_evaluated(rule, NO_LOADS)
     stress, how = _stress(solved, mesh, index, method)
     return hold(rule, stress, f"{how}{_beside(solved, mesh, index, method)}")
 
@@ -156,13 +156,13 @@ def _window(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> C
 def _safety(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> Check:
     family, limit = SAFETIES[method.name], solved.case.limits.strength.root_safety_minimum
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
-    rule = replace(family.rule(limit, f"{label}.{gear}"), warn_only=_by_hand(solved, mesh, method))
+    rule = replace(family.rule(limit, f"{label}.{gear}"), advisory=_by_hand(solved, mesh, method))
     if solved.loads is None or limit is None:
-        return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
+        return not_applicable(rule, NO_LIMIT) if limit is None else not_evaluated(rule, NO_LOADS)
     found = root_safety(solved, mesh, index, method)
     if found is None:
         material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
-        return not_applicable(rule, f"material {material.title} has no root strength")
+        return not_evaluated(rule, f"material {material.title} has no root strength")
     safety, how = found
     return hold(rule, safety, f"{how}{_beside(solved, mesh, index, method)}")
 

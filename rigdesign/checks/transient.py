@@ -8,7 +8,7 @@ from rigdesign.checks.influences import Influence
 from rigdesign.checks.omissions import constant_drag, coupled_shafts, given_losses
 from rigdesign.checks.places import couplings, housings
 from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic
-from rigdesign.checks.rules import Comparison, hold, not_applicable
+from rigdesign.checks.rules import Comparison, hold, not_evaluated
 from rigdesign.checks.temperatures import WALLS
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -133,7 +133,7 @@ def _soak(solved: SolvedRig, soak: Soak) -> Check:
     """The warm-up the case plans against the one it needs."""
     rule = replace(SOAK.rule(None, soak.gearbox), limit=solved.case.transient.warm_up / HOUR)
     if soak.soak_time_s is None:
-        return not_applicable(rule, soak.reason)
+        return not_evaluated(rule, soak.reason)
     return hold(rule, soak.soak_time_s / HOUR, soak.reason)
 
 

@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -63,7 +64,8 @@ def _launch(
     try:
         from rigdesign.cli.terminal.verbose import cache_use
 
-        with cache_use():
+        asked = tokens[:1] and not tokens[0].startswith("-")
+        with cache_use() if asked else nullcontext():
             return app(tokens, result_action="return_value")
     finally:
         verbosity.reset(before)
@@ -80,6 +82,8 @@ def _out_folder(_: Any, tokens: Sequence[Token]) -> Path:
     return Path(token.value)
 
 
+Several = Parameter(negative=())
+"""An option that may stand several times."""
 OutFolder = Annotated[Path, Parameter(converter=_out_folder)]
 """Folder that a command writes to."""
 OptionalOutFolder = Annotated[Path | None, Parameter(converter=_out_folder)]

@@ -6,12 +6,13 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 
 from cyclopts import CycloptsError
 
+from rigdesign.base.parallel import STOPS
 from rigdesign.base.version import __version__
 
 NOTHING_KEPT = "nothing was written; the same command starts again from the beginning"
@@ -23,23 +24,31 @@ CLEAN_UP = 10.0
 """Time after an interrupt in which others are ignored [s]."""
 
 
-def first_interrupt_counts() -> None:
-    """Ignore what follows an interrupt within `CLEAN_UP`, such as a second Ctrl-C: it would cut the clean-up short.
+class Stopped(KeyboardInterrupt):
+    """A signal that ends a command: Ctrl-C, the end of a session or job (SIGTERM), of a terminal (SIGHUP)."""
 
-    A process started with interrupts ignored, in the background of a shell, is left so.
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+
+
+def first_stop_counts() -> None:
+    """End at a signal of `STOPS`, and ignore others within `CLEAN_UP`: a second Ctrl-C would cut the clean-up short.
+
+    Those that a process was started to ignore, by a shell in its background or by nohup, are left so.
     """
-    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        return
     counted = -math.inf
 
-    def interrupt(number: int, frame: FrameType | None) -> None:
+    def stop(number: int, frame: FrameType | None) -> None:
         nonlocal counted
         now = time.monotonic()
         if now - counted >= CLEAN_UP:
             counted = now
-            raise KeyboardInterrupt
+            raise Stopped(number)
 
-    signal.signal(signal.SIGINT, interrupt)
+    for number in STOPS:
+        if signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL):
+            signal.signal(number, stop)
 
 
 @contextmanager
@@ -85,8 +94,13 @@ def exit_status(command: Callable[[], object]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt as stop:
-        print("; ".join(["rigdesign: interrupted", *getattr(stop, "__notes__", [])]), file=sys.stderr)
-        return 130
+        number = getattr(stop, "number", signal.SIGINT)
+        by = "" if number == signal.SIGINT else f" by {signal.Signals(number).name}"
+        with suppress(OSError):  # of a terminal that is gone
+            print(
+                "; ".join([f"rigdesign: interrupted{by}", *getattr(stop, "__notes__", [])]), file=sys.stderr
+            )
+        return 128 + number
     except Exception as error:
         print(_defect(error), file=sys.stderr)
         return 70

@@ -1,17 +1,18 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, calibrate, diff, validate, explain, new, import, mesh, schema,
-    doctor, completion; ``--verbose`` and ``--quiet`` go with each.
+Commands: check, report, study, compare, diagnose, calibrate, diff, validate, explain, list, new, import, mesh,
+    schema, doctor, completion; ``--verbose`` and ``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
-validate: no gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system
-library is missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen
-inside the commands, so that `--help` answers at once.
+report: the result can be read; validate: no gate missed), 1 a check fails or is open, or a gate is missed, 2 usage or
+case error, 3 no convergence, 4 a system library is missing, 5 measured data cannot be used, 70 a defect of the tool,
+128 + n stopped by signal n (130: Ctrl-C). Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
-import signal
+import os
 import sys
 
+from rigdesign.base.parallel import leave_interrupts, one_blas_thread
 from rigdesign.cli.application import app, run
 from rigdesign.cli.commands import (
     calibrate,
@@ -25,11 +26,12 @@ from rigdesign.cli.commands import (
     import_rexs,
     mesh,
     new,
+    report,
     schema,
     study,
     validate,
 )
-from rigdesign.cli.ending import exit_status, first_interrupt_counts
+from rigdesign.cli.ending import exit_status, first_stop_counts
 from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [
@@ -46,6 +48,7 @@ __all__ = [
     "main",
     "mesh",
     "new",
+    "report",
     "run",
     "schema",
     "study",
@@ -55,8 +58,9 @@ __all__ = [
 
 def main() -> None:
     """Entry point of the `rigdesign` command."""
+    os.environ.update(one_blas_thread())
     plain_streams()
-    first_interrupt_counts()
+    first_stop_counts()
     status = exit_status(lambda: run(sys.argv[1:]))
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the status stands; worker processes are waited for
+    leave_interrupts()  # the status stands; worker processes are waited for
     sys.exit(status)

@@ -57,8 +57,7 @@ def _hydraulic_length(box: Gearbox, sump: DipOil) -> float | None:
 
 def dipped_gear(box: Gearbox, gear: str, pair: GearPair, index: int) -> DippedGear:
     """Pinion (0) or wheel (1) of a pair as the bath sees it, with both halves of a double-helical gear."""
-    entry = box.gears[gear]
-    own = DippedGear.of_pair(pair, index, AXES, 0.5 * entry.bore_diameter)
+    own = DippedGear.of_pair(pair, index, AXES, 0.5 * box.seat_diameter(gear))
     return replace(own, face_width=box.body_width(gear))
 
 

@@ -27,6 +27,9 @@ SCALES = {
 }
 """Unit of each field of the coupling state in the vector [K, m, W, N m, rad]."""
 
+SHARES = {"bearing_heat": 1e-3, "wall_heat": 1e-3, "mesh_torque": 1e-3}
+"""Of fields that grow with the rig: share of a value that counts as one where it is above its unit."""
+
 
 def scaled(state: CouplingState) -> FloatArray:
     """(n,) the coupling state in units of `SCALES`, fields and names in their order."""
@@ -60,9 +63,9 @@ def ordered(state: CouplingState, like: CouplingState) -> CouplingState:
 
 
 def scaled_change(old: CouplingState, new: CouplingState) -> float:
-    """Largest change between two iterations in units of `SCALES` [-]."""
+    """Largest change between two iterations in units of `SCALES`, of large heats and torques by `SHARES` [-]."""
     changes = (
-        abs(getattr(new, name)[part] - value) / scale
+        abs(getattr(new, name)[part] - value) / max(scale, SHARES.get(name, 0.0) * abs(value))
         for name, scale in SCALES.items()
         for part, value in getattr(old, name).items()
     )

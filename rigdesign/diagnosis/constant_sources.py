@@ -45,6 +45,12 @@ SOURCES: Mapping[str, Source] = {
         "coordinate", "fit", "108 healthy sets of the virtual rig, three rigs"
     ),
     "decision.defaults.DRIFT": Source("-", "fit", _PAIRS, replaced=True),
+    "decision.defaults.DRIFT.sensors": Source(
+        "-",
+        "choice",
+        f"{_PRACTICE}: 0.15 K of a thermocouple good to 0.4 K, 0.3 % of a power good to 1 %",
+        replaced=True,
+    ),
     "decision.defaults.DRIFT.inflation": Source(
         "coordinate", "fit", "108 pairs of healthy sets of the virtual rig, three rigs"
     ),

@@ -92,12 +92,19 @@ def headline(difference: ResultsDifference) -> str:
         return f"nothing differs: {difference.a.verdict} in both"
     a, b = difference.a.verdict, difference.b.verdict
     verdict = f"{a} in both" if a == b else f"{a} → {b}"
-    now, no_longer, moved, single = (
+    failing, now, no_longer, moved, single = (
         len(difference.checks_that(*changes))
-        for changes in (("now applicable",), ("no longer applicable",), ("moved",), ("added", "removed"))
+        for changes in (
+            ("newly failing",),
+            ("now applicable",),
+            ("no longer applicable",),
+            ("moved",),
+            ("added", "removed"),
+        )
     )
     counts = [
         f"{_count(len(difference.inputs), 'input')} changed",
+        f"{_count(failing, 'check')} newly failing" if failing else "",
         f"{_count(len(difference.flipped), 'verdict')} flipped",
         f"{_count(now, 'check')} now applicable" if now else "",
         f"{_count(no_longer, 'check')} no longer applicable" if no_longer else "",
@@ -176,7 +183,7 @@ def _input(row: InputChange) -> dict[str, Any]:
 
 
 def _check(row: CheckChange) -> dict[str, Any]:
-    keys = ("verdict", "value", "limit", "margin", "utilisation", "reason")
+    keys = ("verdict", "value", "comparison", "limit", "upper_limit", "margin", "distance", "reason")
 
     def side(check: Any) -> dict[str, Any] | None:
         return None if check is None else {key: getattr(check, key) for key in keys}
@@ -188,7 +195,7 @@ def _check(row: CheckChange) -> dict[str, Any]:
         "change": row.change,
         "before": side(row.before),
         "after": side(row.after),
-        "utilisation_change": row.utilisation_change,
+        "distance_change": row.distance_change,
     }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from rigdesign.base.errors import WIDEST_PLACE, UsageError, shortened
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
+from rigdesign.results.check import status
 
 RESULTS = "results.json"
 TAKES = "diff takes two folders that `rigdesign check --out` wrote, or their results.json"
@@ -45,9 +46,11 @@ class CheckValue:
     unit: str
     verdict: str
     value: float | None
+    comparison: str
     limit: float | None
+    upper_limit: float | None
     margin: float | None
-    utilisation: float | None
+    distance: float | None
     reason: str
 
 
@@ -84,16 +87,8 @@ def read_results(path: Path) -> CheckedResults:
     UsageError
         If there is none, it is damaged, of another schema version or without inputs; says what to do.
     """
-    file = _file(path)
+    file, document = read_document(path)
     place = shortened(str(file), WIDEST_PLACE)
-    document = _document(file, place)
-    version = document.get("schema_version")
-    if version is None or "checks" not in document:
-        raise UsageError(f"{place}: is no results.json of a check; {TAKES}")
-    if str(version) != RESULTS_SCHEMA_VERSION:
-        raise UsageError(
-            f"{place}: schema_version {shortened(str(version))}, this version reads {RESULTS_SCHEMA_VERSION}; {AGAIN}"
-        )
     if "inputs" not in document:
         by = shortened(str(document.get("tool_version", "an earlier version")))
         raise UsageError(f"{place}: lists no inputs (written by rigdesign {by}); {AGAIN}")
@@ -105,30 +100,53 @@ def read_results(path: Path) -> CheckedResults:
         ) from None
 
 
-def _file(path: Path) -> Path:
+def read_document(path: Path, takes: str = TAKES) -> tuple[Path, dict[str, Any]]:
+    """The results.json of a folder, or the file itself, with its content.
+
+    takes : what the command takes, for its messages
+
+    Raises
+    ------
+    UsageError
+        If there is none, it is damaged or of another schema version; says what to do.
+    """
+    file = _file(path, takes)
+    place = shortened(str(file), WIDEST_PLACE)
+    document = _document(file, place, takes)
+    version = document.get("schema_version")
+    if version is None or "checks" not in document:
+        raise UsageError(f"{place}: is no results.json of a check; {takes}")
+    if str(version) != RESULTS_SCHEMA_VERSION:
+        raise UsageError(
+            f"{place}: schema_version {shortened(str(version))}, this version reads {RESULTS_SCHEMA_VERSION}; {AGAIN}"
+        )
+    return file, document
+
+
+def _file(path: Path, takes: str) -> Path:
     place = shortened(str(path), WIDEST_PLACE)
     try:
         if path.is_file():
             return path
         if not path.is_dir():
-            raise UsageError(f"{place}: no such file or folder; {TAKES}")
+            raise UsageError(f"{place}: no such file or folder; {takes}")
         if (path / RESULTS).is_file():
             return path / RESULTS
         found = (text for name, text in OTHER_FOLDERS.items() if (path / name).exists())
-        raise UsageError(f"{place}: {next(found, f'holds no {RESULTS}')}; {TAKES}")
+        raise UsageError(f"{place}: {next(found, f'holds no {RESULTS}')}; {takes}")
     except (OSError, ValueError) as error:
-        raise UsageError(f"{place}: {getattr(error, 'strerror', None) or error}; {TAKES}") from None
+        raise UsageError(f"{place}: {getattr(error, 'strerror', None) or error}; {takes}") from None
 
 
-def _document(file: Path, place: str) -> dict[str, Any]:
+def _document(file: Path, place: str, takes: str) -> dict[str, Any]:
     try:
         document = json.loads(file.read_text(encoding="utf-8"), parse_constant=_not_finite)
     except OSError as error:
-        raise UsageError(f"{place}: {error.strerror}; {TAKES}") from None
+        raise UsageError(f"{place}: {error.strerror}; {takes}") from None
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{place}: is damaged ({shortened(str(error))}); {AGAIN}") from None
     if not isinstance(document, dict):
-        raise UsageError(f"{place}: is no results.json of a check; {TAKES}")
+        raise UsageError(f"{place}: is no results.json of a check; {takes}")
     return document
 
 
@@ -164,11 +182,13 @@ def _check(row: Mapping[str, Any]) -> CheckValue:
         title=_text(row["title"]),
         group=_text(row["group"]),
         unit=_text(row["unit"]),
-        verdict=_text(row["verdict"]),
+        verdict=status(row["verdict"], row["flags"]),
         value=_number_or_none(row["value"]),
+        comparison=_text(row["comparison"]),
         limit=_number_or_none(row["limit"]),
+        upper_limit=_number_or_none(row["upper_limit"]),
         margin=_number_or_none(row["margin"]),
-        utilisation=_number_or_none(row["utilisation"]),
+        distance=_number_or_none(row["distance"]),
         reason=_text(row["reason"]),
     )
 

@@ -8,11 +8,14 @@ from rigdesign.difference.reading import CheckValue
 
 LEAST = 1e-6
 """Relative change from which a result counts as moved: above the last digits of another machine."""
-RANKS = {"pass": 1, "warn": 2, "fail": 3}
+RANKS = {"pass": 1, "advisory": 2, "open": 3, "fail": 4}
 NOT_APPLICABLE = "not applicable"
 
-Change = Literal["flipped", "now applicable", "no longer applicable", "moved", "added", "removed"]
-"""What became of a check: another verdict; it applies to one of the results only; other numbers; one result has it."""
+Change = Literal[
+    "newly failing", "flipped", "now applicable", "no longer applicable", "moved", "added", "removed"
+]
+"""What became of a check: it fails and did not apply before; another verdict; it applies to one of the results only;
+other numbers; one result has it."""
 CHANGES: tuple[Change, ...] = get_args(Change)
 """In the order in which they are listed."""
 
@@ -35,20 +38,22 @@ class CheckChange:
 
     @property
     def worse(self) -> bool:
-        """Whether the verdict flipped to a worse one."""
+        """Whether it newly fails, or its verdict flipped to a worse one."""
+        if self.change == "newly failing":
+            return True
         if self.before is None or self.after is None:
             return False
         ranks = (RANKS.get(side.verdict, 0) for side in (self.before, self.after))
         return self.change == "flipped" and next(ranks) < next(ranks)
 
     @property
-    def utilisation_change(self) -> float | None:
-        """Change of the utilisation, None where one has none."""
+    def distance_change(self) -> float | None:
+        """Change of the distance, None where one has none."""
         if self.before is None or self.after is None:
             return None
-        if self.before.utilisation is None or self.after.utilisation is None:
+        if self.before.distance is None or self.after.distance is None:
             return None
-        return self.after.utilisation - self.before.utilisation
+        return self.after.distance - self.before.distance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +77,7 @@ class QuantityChange:
 def changed_checks(
     before: Mapping[str, CheckValue], after: Mapping[str, CheckValue]
 ) -> tuple[CheckChange, ...]:
-    """Verdicts that flipped first, to the worse before the better, then by change of utilisation."""
+    """Checks that newly fail, verdicts that flipped (to the worse first), the others; each by change of distance."""
     found = []
     for identity in dict.fromkeys([*before, *after]):
         old, new = before.get(identity), after.get(identity)
@@ -85,7 +90,7 @@ def changed_checks(
             key=lambda row: (
                 CHANGES.index(row.change),
                 not row.worse,
-                -abs(row.utilisation_change or 0.0),
+                -abs(row.distance_change or 0.0),
                 row.id,
             ),
         )
@@ -94,13 +99,16 @@ def changed_checks(
 
 def _change(before: CheckValue | None, after: CheckValue | None) -> Change | None:
     """What became of a check; None where nothing did."""
+    applied = before is not None and before.verdict != NOT_APPLICABLE
+    if after is not None and after.verdict == "fail" and not applied:
+        return "newly failing"
     if before is None or after is None:
         return "added" if before is None else "removed"
     if before.verdict != after.verdict:
         if before.verdict == NOT_APPLICABLE:
             return "now applicable"
         return "no longer applicable" if after.verdict == NOT_APPLICABLE else "flipped"
-    numbers = ("value", "limit", "utilisation")
+    numbers = ("value", "limit", "distance")
     return "moved" if any(_moved(getattr(before, key), getattr(after, key)) for key in numbers) else None
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from rigdesign.base.errors import UsageError
 from rigdesign.base.files import RefusedFileError, read_regular
 from rigdesign.case.model import Case
+from rigdesign.results.check import status
 
 LARGEST = 500 * 1024 * 1024
 """Of a results.json that is read [bytes]."""
@@ -28,7 +29,7 @@ class FinishedCheck:
     value: float | None
     unit: str
     margin: float | None
-    utilisation: float | None
+    distance: float | None
     verdict: str
     reason: str
     same_case: bool
@@ -66,8 +67,8 @@ def finished_check(folder: Path, identity: str, case: Case) -> FinishedCheck:
             value=row["value"],
             unit=row["unit"],
             margin=row["margin"],
-            utilisation=row["utilisation"],
-            verdict=row["verdict"],
+            distance=row["distance"],
+            verdict=status(row["verdict"], row["flags"]),
             reason=row["reason"],
             same_case=document["case"]["hash"] == case.hash,
             ranged=ranges is not None,

@@ -137,9 +137,10 @@ def _kind(kind: Any, metadata: tuple[Any, ...]) -> str:
 
 
 def _bounds(slot: Slot) -> str:
-    """Limits of a number in words."""
+    """Possible and usual range of a number in words."""
+    usually = [f"usually {usual.words}" for usual in slot.usual[-1:]]
     if slot.quantity is not None:
-        return slot.quantity.bounds
+        return "; ".join(filter(None, (slot.quantity.bounds, *usually)))
     found = [
         f"{word} {getattr(item, name):g}"
         for _, metadata in slot.choices
@@ -147,7 +148,7 @@ def _bounds(slot: Slot) -> str:
         for name, (sign, word) in LIMITS.items()
         if isinstance(item, sign)
     ]
-    return " and ".join(dict.fromkeys(found))
+    return "; ".join(filter(None, (" and ".join(dict.fromkeys(found)), *usually)))
 
 
 def _constraints(metadata: tuple[Any, ...]) -> Iterator[Any]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from rigdesign.base.units import show
 from rigdesign.case.defaults.rule import BY_THE_TOOL
 from rigdesign.case.model import Case
+from rigdesign.case.usual import unusual_inputs
 from rigdesign.explanation.rules import declared_rules
 
 
@@ -41,6 +42,8 @@ class Overview:
     ranged: int
     checks: dict[str, tuple[str, ...]]
     unlimited: tuple[str, ...]
+    unusual: tuple[str, ...]
+    """Values outside of their usual range, each in words."""
 
 
 def overview(case: Case) -> Overview:
@@ -75,6 +78,7 @@ def overview(case: Case) -> Overview:
         ranged=sum(record.range is not None for record in case.assumptions),
         checks={group: tuple(found) for group, found in by_group.items()},
         unlimited=tuple(unlimited),
+        unusual=tuple(unusual_inputs(case).values()),
     )
 
 

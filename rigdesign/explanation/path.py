@@ -10,13 +10,14 @@ from rigdesign.case.kinds import kind_key, of_kind, variant_of
 from rigdesign.case.model import Case
 from rigdesign.case.paths import known_paths, nearest_paths, path_pattern, slot_at
 from rigdesign.case.provenance import take_off
+from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
 from rigdesign.explanation.rules import declared_checks, depends_on
 from rigdesign.explanation.station import Station
 from rigdesign.explanation.stations import entering
 
-BasisKind = Literal["measured", "assumed", "source", "stated", "default", "left out"]
+BasisKind = Literal["measured", "assumed", "source", "confirmed", "stated", "default", "left out"]
 """Where a value comes from: a measurement, an assumption, a printed source, the case alone, the tool."""
 
 
@@ -55,6 +56,8 @@ class PathExplanation:
     asked: str
     key: KeyEntry
     values: tuple[StatedValue, ...]
+    unusual: tuple[str, ...]
+    """Which of them are outside of their usual range, in words."""
     keys: tuple[StatedValue, ...]
     enters: tuple[Station, ...]
     influences: tuple[str, ...] | None
@@ -103,6 +106,7 @@ def explain_path(case: Case, path: str) -> PathExplanation:
         asked=path,
         key=entry,
         values=() if entry.table else tuple(_value(case, one, entry) for one in places),
+        unusual=tuple(text for one, text in unusual_inputs(case).items() if one in places),
         keys=below,
         enters=() if entry.table else entering(starred(entry.path)),
         influences=influences,

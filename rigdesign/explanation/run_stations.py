@@ -74,6 +74,7 @@ RUN_STATIONS: Mapping[str, tuple[Station, ...]] = {
     "limits.dynamics.dangerous_force_share": stations_at(
         records__resonances="which resonances are dangerous"
     ),
+    "limits.geometry": stations_at(checks__geometry=_LIMIT),
     "limits.strength": stations_at(checks__strength=_LIMIT),
     "limits.flanks": stations_at(checks__flanks=_LIMIT),
     "limits.specimen": stations_at(checks__strength=_LIMIT),

@@ -1,11 +1,11 @@
-"""The inputs that would turn the verdict: each moved alone until the governing check stands at its limit.
+"""The inputs that would turn failing checks, the worst first: each moved alone until the check stands at its limit.
 
 Root stress, root safety and flanks are solved again at the temperatures of the run: they follow torque and face width
 directly, and warm teeth hardly matter; against scuffing and for the film teeth that get colder with less torque would
 help, so that what is found is on the safe side. Temperatures, clearances and bearing films are solved again through the
 coupling loop.
 Teeth of another width take the influence numbers of the stated ones over, as slices far from the ends have them.
-Checks that need the time run or the response over speed are left out.
+Checks that need the time run or the response over speed are not looked at, and named.
 """
 
 import math
@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import partial
+from itertools import chain
 
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.parallel import BackgroundTasks
@@ -20,6 +21,7 @@ from rigdesign.base.units import number_match
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY
+from rigdesign.checks.rules import REFERENCE_TEMPERATURE
 from rigdesign.coupling.iteration import PointProblem, solve_loads
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import held_points
@@ -27,7 +29,7 @@ from rigdesign.reanalysis.modified_rig import coupled_again, with_records
 from rigdesign.records.dynamics import DynamicRun, dynamic_loads
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.flips import Flip
+from rigdesign.results.flips import Flip, FlipSearch
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
@@ -55,9 +57,10 @@ LEAST_EXCESS = 0.05
 FARTHEST = 5.0
 """Factor by which an input may move either way."""
 CLOSE = 0.01
-"""Distance of the utilisation from 1 at which the value is found."""
+"""Distance of the share of the limit from 1 at which the value is found."""
 STEPS = 4
 SHOWN = 3
+"""Checks looked at, and rows kept beside that of the limit."""
 
 
 @dataclass(frozen=True)
@@ -91,58 +94,66 @@ Solve = Callable[[Case], "Mapping[str, Check]"]
 
 
 def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
-    """The result with the inputs that would turn its verdict, the nearest first; as it was where none is known."""
-    targets = governing(result.checks)
+    """The result with the inputs that would turn its failing checks, each alone, and with what was looked at.
+
+    Without a failing check the one nearest to its limit is looked at.
+    """
+    failing = [check for check in sorted(result.checks, key=_order) if check.status == "fail"]
+    wanted = failing or [check for check in sorted(result.checks, key=_order) if _predicted(check)][:1]
+    targets = [check for check in wanted if _is(check, (*BY_LOADS, *BY_HEAT))][:SHOWN]
+    others = tuple(check.id for check in wanted if check not in targets)
     if not targets:
-        return result
+        return replace(result, flip_search=FlipSearch(not_searched=others))
     heat = any(_is(target, BY_HEAT) for target in targets)
     solve = partial(_checks, solved, through_heat=heat)
-    search = Search(targets, [check for check in result.checks if _held(check)], solve)
-    works = [
-        partial(_flip, solved.case, candidate, search) for candidate in _candidates(solved, targets, heat)
-    ]
+    search = Search(targets, [check for check in result.checks if _holds(check)], solve, final=not others)
+    candidates = list(_candidates(solved, targets, heat))
+    works = [partial(_flips, solved.case, candidate, search) for candidate in candidates]
     if heat:  # runs compiled threads, which a copy of this process has not
         rows = [work() for work in works]
     else:
         with BackgroundTasks(works) as tasks:
             rows = tasks.results()
-    found = sorted((row for row in rows if row is not None), key=lambda row: (not row[1].turns, row[0]))
-    edges = {(target.limit, target.upper_limit, target.unit) for target in targets}
-    limits = [_limit(targets)] if len(edges) == 1 else []
-    flips = [*(flip for _, flip in found[: SHOWN - len(limits)]), *limits]
-    return replace(result, flips=sorted(flips, key=lambda flip: not flip.turns))
+    nearest = [flip for _, flip in sorted(chain(*rows), key=lambda row: (not row[1].turns, row[0]))]
+    of_each = [next((flip for flip in nearest if flip.check == target.id), None) for target in targets]
+    leading = [flip for flip in of_each if flip is not None]
+    rest = [flip for flip in nearest if flip not in leading]
+    flips = [*[*leading, *rest][:SHOWN], _limit(targets[0], final=len(wanted) == 1)]
+    looked_at = FlipSearch(
+        inputs=tuple(candidate.title for candidate in candidates),
+        checks=tuple(target.id for target in targets),
+        not_searched=others,
+    )
+    return replace(result, flips=sorted(flips, key=lambda flip: not flip.turns), flip_search=looked_at)
+
+
+def _order(check: Check) -> float:
+    return math.inf if check.distance is None else check.distance
+
+
+def _predicted(check: Check) -> bool:
+    return check.distance is not None and not check.by_definition
 
 
 @dataclass(frozen=True)
 class Search:
-    """What an input has to turn: the governing checks, those that hold at the stated values, and how to solve them.
+    """What an input has to turn: the checks looked at, those that hold at the stated values, and how to solve them.
 
-    Each changed case is solved once.
+    Each changed case is solved once. final : no check fails but those looked at.
     """
 
     targets: Sequence[Check]
     held: Sequence[Check]
     solve: Solve
+    final: bool
     _solved: dict[str, Mapping[str, Check] | None] = field(default_factory=dict, compare=False, repr=False)
 
-    def utilisation(self, case: Case) -> float | None:
-        """Highest of the governing checks; None where one of them has none, or the case no result."""
-        found = self._checks(case)
-        if found is None:
-            return None
-        values = [found[target.id].utilisation if target.id in found else None for target in self.targets]
-        known = [value for value in values if value is not None]
-        return max(known) if len(known) == len(values) else None
+    def used(self, case: Case, target: Check) -> float | None:
+        """Share of its limit that one of the checks uses; None where it or the case has no result."""
+        checks = self.checks(case)
+        return None if checks is None or target.id not in checks else _used(checks[target.id])
 
-    def broken(self, case: Case) -> list[Check]:
-        """Checks that hold at the stated values and break in this case, which has a utilisation."""
-        found = self._checks(case)
-        assert found is not None
-        own = {target.id for target in self.targets}
-        ids = [check.id for check in self.held if check.id in found and check.id not in own]
-        return [found[name] for name in ids if not _held(found[name])]
-
-    def _checks(self, case: Case) -> Mapping[str, Check] | None:
+    def checks(self, case: Case) -> Mapping[str, Check] | None:
         """Checks of a changed case; None where it has no result."""
         if case.hash not in self._solved:
             try:
@@ -151,25 +162,26 @@ class Search:
                 self._solved[case.hash] = None
         return self._solved[case.hash]
 
+    def broken(self, case: Case) -> list[Check]:
+        """Checks that hold at the stated values and break in this case, which has a result."""
+        checks = self.checks(case) or {}
+        return [checks[held.id] for held in self.held if held.id in checks and not _holds(checks[held.id])]
 
-def _held(check: Check) -> bool:
-    return check.utilisation is not None and check.utilisation <= 1.0
+
+def _holds(check: Check) -> bool:
+    return check.margin is not None and check.margin >= 0.0
 
 
-def governing(checks: Sequence[Check]) -> list[Check]:
-    """All broken checks, the worst first; without one, the held one nearest to its limit.
-
-    Empty where one of them is not looked at: what turns the verdict is not known then.
-    """
-    used = sorted(
-        (check for check in checks if check.utilisation is not None),
-        key=lambda check: -(check.utilisation or 0.0),
-    )
-    broken = [check for check in used if check.verdict == "fail"]
-    if broken:
-        return broken if all(_is(check, (*BY_LOADS, *BY_HEAT)) for check in broken) else []
-    nearest = next((check for check in used if not check.by_definition), None)
-    return [nearest] if nearest is not None and _is(nearest, (*BY_LOADS, *BY_HEAT)) else []
+def _used(check: Check) -> float | None:
+    """Share of the limit used, 1 at the limit and in proportion to the load: of a safety limit over value."""
+    if check.value is None or check.limit is None:
+        return None
+    datum = REFERENCE_TEMPERATURE if check.unit == "degC" else 0.0
+    upper = check.limit if check.comparison == "<=" else check.upper_limit
+    shares = [] if upper is None or upper <= datum else [(check.value - datum) / (upper - datum)]
+    if check.comparison != "<=" and check.limit > 0.0:
+        shares.append(check.limit / check.value if check.value > 0.0 else math.inf)
+    return max(shares, default=None)
 
 
 def _is(check: Check, patterns: Sequence[str]) -> bool:
@@ -209,40 +221,46 @@ def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[
             yield f"face width of {name} ", [f"{own}.gears.{gear}.face_width" for gear in box.gears], False
 
 
-def _flip(case: Case, candidate: Candidate, search: Search) -> tuple[float, Flip] | None:
-    """How far the input has to move (a logarithm) and its row; None where it does not turn the checks."""
-    targets = search.targets
-    factor = _factor(case, candidate, search)
-    if factor is None:
-        return None
+def _flips(case: Case, candidate: Candidate, search: Search) -> list[tuple[float, Flip]]:
+    """For every check that the input turns: how far it has to move (a logarithm), and the row."""
+    rows = []
+    for target in search.targets:
+        factor = _factor(case, candidate, search, target)
+        if factor is not None:
+            rows.append((abs(math.log(factor)), _flip(candidate, search, target, case, factor)))
+    return rows
+
+
+def _flip(candidate: Candidate, search: Search, target: Check, case: Case, factor: float) -> Flip:
     moved = candidate.case_at(case, factor)
-    broken = [] if _held(targets[0]) else search.broken(moved)
+    broken = [] if _holds(target) else search.broken(moved)
+    checks = search.checks(moved) or {}
+    still = [other for other in search.targets if other.id in checks and not _holds(checks[other.id])]
     then = f"; then {broken[0].title} breaks its limit" if broken else ""
-    row = Flip(
+    return Flip(
         path=candidate.paths[0] if len(candidate.paths) == 1 else _shared(candidate.paths),
         title=candidate.title,
         stated=candidate.written(candidate.stated),
         needed=candidate.written(candidate.moved(factor)),
-        check=targets[0].id,
-        holds=_held(targets[0]),
-        turns=not broken,
-        effect=f"{_what(targets)} {_turn(targets)}{then}",
+        check=target.id,
+        holds=_holds(target),
+        turns=_holds(target) or (search.final and not broken and not still),
+        effect=f"{target.title} {_turn(target)}{then}",
     )
-    return abs(math.log(factor)), row
 
 
-def _factor(case: Case, candidate: Candidate, search: Search) -> float | None:
-    """Factor of the input that brings the utilisation to 1, just beyond; by secants on the logarithms."""
-    stated = search.targets[0].utilisation
-    if not stated:
+def _factor(case: Case, candidate: Candidate, search: Search, target: Check) -> float | None:
+    """Factor of the input that brings the check to its limit, just beyond; by secants on the logarithms."""
+    stated = _used(target)
+    if not stated or math.isinf(stated):
         return None
 
     def at(logarithm: float) -> float | None:
         try:
-            found = search.utilisation(candidate.case_at(case, math.exp(logarithm)))
+            used = search.used(candidate.case_at(case, math.exp(logarithm)), target)
         except CaseError:
             return None
-        return math.log(found) if found else None
+        return math.log(used) if used and math.isfinite(used) else None
 
     before, y_before = 0.0, math.log(stated)
     here, y_here = math.log(PROBE), at(math.log(PROBE))
@@ -305,19 +323,19 @@ def _at_stated_temperatures(rig: Rig, stated: SolvedRig, number: int) -> PointRe
     return replace(near, point=point, last=replace(near.last, **vars(loads)), setting=problem.bracing)
 
 
-def _limit(targets: Sequence[Check]) -> Flip:
-    """The limit that the checks share, moved just past the value of the governing one."""
-    target = targets[0]
+def _limit(target: Check, *, final: bool) -> Flip:
+    """The limit of a check, moved just past its value; ``final``: no other check fails."""
     assert target.value is not None and target.margin is not None
     upper = target.comparison == "<="
     limit = target.limit
     if target.upper_limit is not None and target.margin == target.upper_limit - target.value:
         limit, upper = target.upper_limit, True
     unit = "" if target.unit in ("1", "-") else target.unit
-    needed = _rounded(target.value, up=upper != _held(target))
+    needed = _rounded(target.value, up=upper != _holds(target))
     return Flip(
         path="", title="limit of the check", stated=f"{limit:.4g} {unit}".strip(), needed=f"{needed:g} {unit}".strip(),
-        check=target.id, holds=_held(target), turns=True, effect=f"{_what(targets)} {_turn(targets)}",
+        check=target.id, holds=_holds(target), turns=final or _holds(target),
+        effect=f"{target.title} {_turn(target)}",
     )  # fmt: skip
 
 
@@ -329,15 +347,8 @@ def _rounded(value: float, *, up: bool) -> float:
     return (math.ceil if up else math.floor)(value / unit) * unit
 
 
-def _what(targets: Sequence[Check]) -> str:
-    more = len(targets) - 1
-    return targets[0].title + (f" and {more} more" if more else "")
-
-
-def _turn(targets: Sequence[Check]) -> str:
-    if (targets[0].utilisation or 0.0) <= 1.0:
-        return "breaks its limit"
-    return "holds" if len(targets) == 1 else "hold"
+def _turn(target: Check) -> str:
+    return "breaks its limit" if _holds(target) else "holds"
 
 
 def _shared(paths: Sequence[str]) -> str:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigdesign.case.schedule import StageValues
-from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import dwell_stages
 from rigdesign.records.near_dwell import (
@@ -14,8 +13,10 @@ from rigdesign.records.near_dwell import (
     Bounds,
     NearDwell,
     bounds_of,
+    mesh_resonances,
     mesh_shares,
     order_resonances,
+    root_shares,
     shaft_shares,
 )
 from rigdesign.records.ramp_steps import RampLimits, ramp_steps
@@ -51,13 +52,11 @@ def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
     """Bands over all speeds of the governing curve; speeds above the limit of the rig are none to dwell at."""
     bounds, limit = bounds_of(rig), speed_limit(rig)
     speeds = found.torques.speeds
-    shares = [
-        *mesh_shares(rig, run),
-        *_root_shares(rig, found.loads),
-        *shaft_shares(rig, speeds, found.torques.curves),
-    ]
+    others = [*root_shares(rig, found.loads), *shaft_shares(rig, speeds, found.torques.curves)]
     low, high = speeds[0], speeds[-1]
-    avoided = bands([*bounds.resonances(shares), *_orders(found, bounds)])
+    avoided = bands(
+        [*mesh_resonances(rig, run, found.loads), *bounds.resonances(others), *_orders(found, bounds)]
+    )
     safe = safe_windows(avoided, low, high if limit is None else min(high, limit.speed))
     limits = RampLimits(
         run=run,
@@ -82,7 +81,7 @@ def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
         stages=tuple(_stages(rig, limits)),
         ramp=tuple(ramp_steps(rig, limits)),
         speeds=speeds,
-        highest=_highest(shares, speeds),
+        highest=_highest([*mesh_shares(rig, run), *others], speeds),
     )
 
 
@@ -113,18 +112,6 @@ def _highest(
         values = np.interp(speeds, one.speed, one.share, left=0.0, right=0.0)
         found[one.kind] = np.maximum(found.get(one.kind, np.zeros(len(speeds))), values)
     return {kind: tuple(values.tolist()) for kind, values in found.items()}
-
-
-def _root_shares(rig: Rig, loads: DynamicLoads) -> Iterator[DynamicShare]:
-    """Ratio of dynamic to quasi-static root stress less one, of every gear."""
-    for mesh, name in enumerate(rig.mesh_names):
-        label = rig.mesh_labels[name]
-        ratios = loads.meshes[label].root_stress_ratios
-        if len(ratios) > 1:
-            speed = np.array([ratio.speed for ratio in ratios]) / own_ratio(rig, mesh)
-            for gear in ("pinion", "wheel"):
-                values = np.array([getattr(ratio, gear) for ratio in ratios]) - 1.0
-                yield DynamicShare("root stress", f"{label} {gear}", speed, values)
 
 
 def _stages(rig: Rig, found: RampLimits) -> Iterator[DwellStage]:

@@ -1,4 +1,4 @@
-"""What peaks near a dwell speed: the same list for the check, the table of the stages and the reason of the ramp."""
+"""What peaks near a dwell speed: the same list for the checks, the table of the stages and the ramp."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -8,13 +8,15 @@ import numpy as np
 
 from dynamics.drivetrain.modes import LoopMode
 from rigdesign.records.campbell import excitation_orders
+from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_modes import modes_at
 from rigdesign.records.loop_states import dwell_speeds, state_at
 from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
 from rigdesign.records.torques_over_speed import AROUND, LoopOverSpeed, is_around, torques_over_speed
 from rigdesign.results.campbell import CampbellCrossing
-from rigdesign.results.dwell import AvoidedResonance, NearResonance
+from rigdesign.results.dwell import AvoidedResonance, NearResonance, nearer
+from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.section_torques import TorqueOverSpeed
 from rigdesign.rig.model import Rig
 
@@ -52,49 +54,102 @@ def bounds_of(rig: Rig) -> Bounds:
 
 @dataclass(frozen=True)
 class NearDwell:
-    """What lies near a dwell: the nearest resonance, and all shaft orders that meet a lively mode of the loop there."""
+    """What a dwell is held against, and all shaft orders that meet a lively mode of the loop there.
 
-    nearest: NearResonance
-    orders: tuple[AvoidedResonance, ...]
+    speed : of the first pinion [rad/s]; margin : share of it that a resonance keeps away
+    """
+
+    speed: float
+    margin: float
+    resonances: tuple[AvoidedResonance, ...]
+    orders: tuple[AvoidedResonance, ...] = ()
+
+    @property
+    def nearest(self) -> NearResonance:
+        """Of all resonances."""
+        return self.nearest_of(self.resonances)
+
+    def nearest_of(self, some: Iterable[AvoidedResonance]) -> NearResonance:
+        """The nearest of some resonances; the range searched where none is in it."""
+        reach = min(REACH * self.margin, AROUND)
+        found = min(some, key=lambda one: (self.distance(one), abs(one.speed - self.speed)), default=None)
+        if found is None or self.distance(found) > reach:
+            return NearResonance(distance=reach, resonance=None)
+        return NearResonance(distance=self.distance(found), resonance=found)
+
+    def distance(self, resonance: AvoidedResonance) -> float:
+        """Of the dwell from a resonance, as a share of its speed."""
+        return resonance.distance(self.speed, self.margin)
 
 
-def near_dwells(rig: Rig, run: DynamicRun) -> dict[float, NearDwell]:
+def near_dwells(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> dict[float, NearDwell]:
     """Of every dwell whose response is computed, by the speed of the first pinion [rad/s], rising."""
     low, high = run.curves.response.speeds[0], run.curves.response.speeds[-1]
     stated = {rig.pinion_speed(speed): speed for speed in dwell_speeds(rig)}
-    margin = bounds_of(rig).margin
+    bounds = bounds_of(rig)
+    meshes = [*mesh_resonances(rig, run, loads), *bounds.resonances(root_shares(rig, loads))]
     found = {}
     for speed in sorted(own for own in stated if low <= own <= high):
-        orders = tuple(held_orders(rig, modes_at(rig, run.test, stated[speed]), margin))
-        found[speed] = NearDwell(near_dwell(rig, run, orders, speed), orders)
+        orders = tuple(held_orders(rig, modes_at(rig, run.test, stated[speed]), bounds.margin))
+        shafts = bounds.resonances(_near_shafts(rig, run, speed))
+        found[speed] = NearDwell(speed, bounds.margin, (*meshes, *shafts, *orders), orders)
     return found
 
 
-def near_dwell(rig: Rig, run: DynamicRun, orders: Iterable[AvoidedResonance], speed: float) -> NearResonance:
-    """The resonance nearest to a dwell.
-
-    orders : that meet a lively mode of the closed loop as it runs there; speed : of the first pinion [rad/s]
-    """
+def mesh_resonances(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Iterator[AvoidedResonance]:
+    """Dangerous peaks of every mesh at every torque of the curves, and what is above the share without a peak."""
     bounds = bounds_of(rig)
-    reach = min(REACH * bounds.margin, AROUND)
-    found = [
-        *bounds.resonances(mesh_shares(rig, run)),
-        *bounds.resonances(_near_shafts(rig, run, speed)),
-        *orders,
-    ]
-    nearest = min(found, key=lambda one: one.distance(speed, bounds.margin), default=None)
-    if nearest is None or nearest.distance(speed, bounds.margin) > reach:
-        return NearResonance(distance=reach, resonance=None)
-    return NearResonance(distance=nearest.distance(speed, bounds.margin), resonance=nearest)
+    shares = {share.where: share for share in mesh_shares(rig, run)}
+    for mesh, name in enumerate(rig.mesh_names):
+        label, ratio = rig.mesh_labels[name], own_ratio(rig, mesh)
+        for torque in run.curves.named:
+            where = at_torque(label, torque)
+            spans = list(bounds.resonances([shares[where]])) if where in shares else []
+            peaked: set[int] = set()
+            for peak in loads.meshes[label].resonances:
+                if peak.torque != torque or not peak.dangerous:
+                    continue
+                speed = peak.speed / ratio
+                own = [number for number, span in enumerate(spans) if span.low < speed < span.high]
+                peaked.update(own)
+                low, high = nearer(speed, bounds.margin)
+                yield AvoidedResonance(
+                    kind="dynamic factor",
+                    where=where,
+                    mode=peak.mode,
+                    speed=speed,
+                    share=peak.force_share,
+                    low=min([low, *(spans[number].low for number in own)]),
+                    high=max([high, *(spans[number].high for number in own)]),
+                )
+            yield from (span for number, span in enumerate(spans) if number not in peaked)
+
+
+def at_torque(label: str, torque: str) -> str:
+    """Place of the resonances of a mesh on the curve of a torque."""
+    return f"{label} at {torque}"
 
 
 def mesh_shares(rig: Rig, run: DynamicRun) -> Iterator[DynamicShare]:
-    """K_V - 1 of every mesh at every torque of the curves."""
+    """Dynamic torque of every mesh, half peak-to-peak, over the mean at every torque of the curves."""
     for torque, (_, curve) in run.curves.named.items():
         for mesh, name in enumerate(rig.mesh_names):
             if len(curve.points) > 1:
-                where = f"{rig.mesh_labels[name]} at {torque}"
-                yield DynamicShare("dynamic factor", where, curve.speeds, curve.dynamic_factor(mesh) - 1.0)
+                share = [0.5 * (p.maximum[mesh] - p.minimum[mesh]) / abs(p.mean[mesh]) for p in curve.points]
+                where = at_torque(rig.mesh_labels[name], torque)
+                yield DynamicShare("dynamic factor", where, curve.speeds, np.array(share))
+
+
+def root_shares(rig: Rig, loads: DynamicLoads) -> Iterator[DynamicShare]:
+    """Ratio of dynamic to quasi-static root stress less one, of every gear."""
+    for mesh, name in enumerate(rig.mesh_names):
+        label = rig.mesh_labels[name]
+        ratios = loads.meshes[label].root_stress_ratios
+        if len(ratios) > 1:
+            speed = np.array([ratio.speed for ratio in ratios]) / own_ratio(rig, mesh)
+            for gear in ("pinion", "wheel"):
+                values = np.array([getattr(ratio, gear) for ratio in ratios]) - 1.0
+                yield DynamicShare("root stress", f"{label} {gear}", speed, values)
 
 
 def shaft_shares(
@@ -150,12 +205,13 @@ def order_resonances(
     """Turning and coupling orders that meet a lively mode; names : of the modes by number."""
     for crossing in crossings:
         if crossing.kind != "mesh" and crossing.damping_ratio < LIVELY:
+            low, high = nearer(crossing.speed, margin)
             yield AvoidedResonance(
                 kind="shaft order",
                 where=f"{crossing.kind} {', '.join(crossing.of)}, order {crossing.harmonic:g}, mode {crossing.mode} "
                 f"({names[crossing.mode]})",
                 speed=crossing.speed,
                 share=None,
-                low=crossing.speed * (1.0 - margin),
-                high=crossing.speed * (1.0 + margin),
+                low=low,
+                high=high,
             )

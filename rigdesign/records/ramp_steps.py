@@ -50,7 +50,8 @@ class RampLimits:
 def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
     """From rest to the test point and back."""
     case = rig.case
-    test, torque = rig.pinion_speed(case.schedule.test_speed), case.schedule.test_torque
+    wanted, torque = rig.pinion_speed(case.schedule.test_speed), case.schedule.test_torque
+    test = _dwell_speed(found, wanted)
     start = start_torque(rig)
     top = _highest_resonance(found)
     yield RampStep(
@@ -85,7 +86,7 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
     yield RampStep(
         action="raise to the test torque", speed=test, torque=torque, reason=_full(found, top, test)
     )
-    yield RampStep(action="dwell", speed=test, torque=torque, reason=_dwell(found, test))
+    yield RampStep(action="dwell", speed=test, torque=torque, reason=_dwell(found, wanted))
     if test > first:
         yield RampStep(
             action="relieve",
@@ -107,6 +108,13 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
             ["at most the start torque while the bearings lose their film", *_passed(found.down)]
         ),
     )
+
+
+def _dwell_speed(found: RampLimits, wanted: float) -> float:
+    """Where the ramp dwells: at the test speed, or outside the avoided band in which it lies, where there is such a
+    speed."""
+    safe = None if found.band_at(wanted) is None else nearest_safe(found.safe, wanted)
+    return wanted if safe is None else safe
 
 
 def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
@@ -207,7 +215,7 @@ def _dwell(found: RampLimits, test: float) -> str:
     band = found.band_at(test)
     if band is None:
         return f"{beyond}outside all avoided bands"
-    why = f"{beyond}lies in the avoided band {_span(band)}"
+    why = f"{beyond}the test speed, {_rpm(test)}, lies in the avoided band {_span(band)}"
     if near.resonance is not None:
         one = near.resonance
         why += (
@@ -218,7 +226,8 @@ def _dwell(found: RampLimits, test: float) -> str:
 
 
 def _instead(found: RampLimits, test: float) -> str:
-    """The nearest safe speed; that there is none above within the limit of the rig, where it lies below."""
+    """The nearest safe speed, at which the ramp dwells; that there is none above within the limit of the rig, where it
+    lies below."""
     safe = nearest_safe(found.safe, test)
     none_above = (
         f"none above it up to the limit of the rig, {_limit(found.limit)}"

@@ -1,4 +1,4 @@
-"""Speeds around the peaks of the response: where the dynamic part exceeds a stated share, and a margin on both sides.
+"""Speeds around the peaks of the response: where the dynamic part exceeds a stated share, and nearer than a margin.
 
 The share is ``limits.dynamics.dangerous_force_share``, the margin ``limits.dynamics.resonance_distance_minimum``.
 """
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, ResonanceKind
+from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, ResonanceKind, nearer
 
 Array = NDArray[np.float64]
 USUAL_MARGIN = 0.1
@@ -27,7 +27,7 @@ class DynamicShare:
 
 
 def resonances(quantity: DynamicShare, limit: float, margin: float) -> Iterator[AvoidedResonance]:
-    """One for each interval in which the share exceeds the limit, widened to the margin on both sides of its peak."""
+    """One for each interval in which the share exceeds the limit, widened to the margin round its peak."""
     speed, share = quantity.speed, quantity.share
     above = np.concatenate(([False], share > limit, [False]))
     edges = np.flatnonzero(np.diff(above.astype(int)))
@@ -36,13 +36,14 @@ def resonances(quantity: DynamicShare, limit: float, margin: float) -> Iterator[
         at = float(speed[peak])
         low = _crossing(speed, share, first - 1, limit) if first else float(speed[0])
         high = _crossing(speed, share, last - 1, limit) if last < speed.size else float(speed[-1])
+        near = nearer(at, margin)
         yield AvoidedResonance(
             kind=quantity.kind,
             where=quantity.where,
             speed=at,
             share=float(share[peak]),
-            low=min(low, at * (1.0 - margin)),
-            high=max(high, at * (1.0 + margin)),
+            low=min(low, near[0]),
+            high=max(high, near[1]),
         )
 
 

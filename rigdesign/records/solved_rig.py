@@ -82,7 +82,7 @@ class SolvedRig:
     def near_dwells(self) -> Mapping[float, NearDwell]:
         """What lies near every dwell whose response is computed, by the speed of the first pinion [rad/s]; empty
         without a dynamic run."""
-        return {} if self.run is None else near_dwells(self.rig, self.run)
+        return {} if self.run is None or self.loads is None else near_dwells(self.rig, self.run, self.loads)
 
     @cached_property
     def part_torques(self) -> tuple[PartTorque, ...]:

@@ -19,6 +19,7 @@ __all__ = [
     "prepare_output",
     "results_document",
     "write_failure",
+    "write_report",
     "write_results",
     "write_whole",
 ]
@@ -41,12 +42,15 @@ def write_results(result: RunResult, out: Path, issue: Issue | None = None, *, p
     MissingLibraryError
         With ``pdf``: WeasyPrint or Pango is not installed.
     """
+    from rigdesign.report.junit import write_junit
+
     document = results_document(result)
     earlier = _published_before(out)
     with staged(out) as scratch:
         document["fields"] = _write_fields(result, scratch)
         _write_curves(result, scratch)
-        _write_report(result, scratch, issue, pdf=pdf)
+        _write_pages(result, scratch, issue, pdf=pdf)
+        write_junit(result, scratch / "junit.xml")
         files = [path.relative_to(scratch).as_posix() for path in scratch.rglob("*") if path.is_file()]
         document["files"] = sorted([*files, "results.json"])
         (scratch / "results.json").write_text(to_text(document), encoding="utf-8", newline="\n")
@@ -72,13 +76,35 @@ def _write_curves(result: RunResult, folder: Path) -> None:
         (folder / "curves" / name).write_text(text, encoding="utf-8", newline="\n")
 
 
-def _write_report(result: RunResult, folder: Path, issue: Issue | None, *, pdf: bool) -> None:
-    from rigdesign.report.junit import write_junit
+def write_report(result: RunResult, out: Path, issue: Issue, *, html: bool, pdf: bool) -> list[Path]:
+    """Write the report alone, into a folder that may hold the result; the files written.
+
+    A results.json there lists them from then on, so that the next run in this folder replaces them.
+
+    Raises
+    ------
+    OutputError, MissingLibraryError
+        As `write_results`.
+    """
+    listed = _published_before(out)
+    with staged(out) as scratch:
+        _write_pages(result, scratch, issue, html=html, pdf=pdf)
+        names = sorted(path.name for path in scratch.iterdir())
+        if set(names) - set(listed) and listed:
+            document = json.loads((out / "results.json").read_text(encoding="utf-8"))
+            document["files"] = sorted({*listed, *names})
+            (scratch / "results.json").write_text(to_text(document), encoding="utf-8", newline="\n")
+    return [out / name for name in names]
+
+
+def _write_pages(
+    result: RunResult, folder: Path, issue: Issue | None, *, html: bool = True, pdf: bool = False
+) -> None:
     from rigdesign.report.pages.report import report_html
 
-    write_junit(result, folder / "junit.xml")
     page = report_html(result, issue)
-    (folder / "report.html").write_text(page, encoding="utf-8", newline="\n")
+    if html:
+        (folder / "report.html").write_text(page, encoding="utf-8", newline="\n")
     if pdf:
         from rigdesign.report.pdf import write_pdf
 

@@ -10,7 +10,7 @@ from rigdesign.results.ranges import RangesResult
 from rigdesign.results.result import RunResult
 
 NEAR = 0.9
-"""Utilisation from which a check counts as near its limit."""
+"""Distance from which a check counts as near its limit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +18,7 @@ class AssumptionLine:
     """One assumption, or several that say the same of like parts.
 
     path : relative to its group, names of like parts in braces
-    moved : largest shift of a utilisation over its range; None where the range was not evaluated
+    moved : largest shift of a distance over its range; None where the range was not evaluated
     near : checks at or beyond their limit, or near it, that depend on it; checks : all that do
     """
 
@@ -57,17 +57,17 @@ def most_influential(result: RunResult, number: int) -> list[AssumptionLine]:
 
 
 def _is_near(check: Check) -> bool:
-    return check.verdict == "fail" or (check.utilisation or 0.0) > NEAR
+    return check.verdict == "fail" or (check.distance or 0.0) > NEAR
 
 
 def _moved(ranges: RangesResult | None) -> dict[str, float]:
-    """Largest shift of a utilisation by path."""
+    """Largest shift of a distance by path."""
     if ranges is None:
         return {}
-    stated = {row.check: row.utilisation or 0.0 for row in ranges.checks}
+    stated = {row.check: row.distance or 0.0 for row in ranges.checks}
     found: dict[str, float] = {}
     for row in ranges.margins:
-        ends = (end for end in (row.utilisation_low, row.utilisation_high) if end is not None)
+        ends = (end for end in (row.distance_low, row.distance_high) if end is not None)
         shift = max((abs(end - stated.get(row.check, 0.0)) for end in ends), default=0.0)
         found[row.path] = max(found.get(row.path, 0.0), shift)
     return found

@@ -1,16 +1,18 @@
 """Fields for ParaView and the like: all cells of a gearbox in one .vtu, and by name as blocks of a .vtm."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.base.output_folder import file_stem
 from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.results.thermal import TemperatureField
-from thermal.fe.mesh import FloatArray, IndexArray
+from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh
 
 FACET_NAMES = {6: "triangle6", 8: "quad8", 9: "quad9"}
 """Number of nodes of a side of a cell -> its name in meshio."""
@@ -60,6 +62,58 @@ def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:
         "surfaces": list(mesh.surfaces),
         "blocks": f"fields/{blocks.name}",
     }
+
+
+def read_fields(entries: Sequence[Mapping[str, Any]], folder: Path) -> list[TemperatureField]:
+    """The fields that results.json lists and whose files stand below ``folder``; damaged ones are left out."""
+    from meshio import ReadError  # noqa: TID251 - as above
+
+    found = []
+    for entry in entries:
+        with suppress(OSError, KeyError, IndexError, ValueError, ReadError):
+            found.append(_read_field(entry, folder))
+    return found
+
+
+def _read_field(entry: Mapping[str, Any], folder: Path) -> TemperatureField:
+    """A field as `write_field` wrote it; its mesh is numbered as the file.
+
+    Facets of a block are found by the single-precision data of their nodes.
+    """
+    path = folder / entry["file"]
+    whole = _read(path)
+    body = whole.cell_data["body"][0]
+    nodes = {row.tobytes(): number for number, row in enumerate(_single(whole))}
+    surfaces = {}
+    for number, name in enumerate(entry["surfaces"], start=1):
+        block = _read(path.with_suffix("") / "surfaces" / f"{number:02d}_{file_stem(name)}.vtu")
+        own = np.array([nodes[row.tobytes()] for row in _single(block)], dtype=np.int32)
+        surfaces[name] = own[block.cells[0].data]
+    bodies = {
+        name: np.flatnonzero(body == number).astype(np.int32) for number, name in enumerate(entry["bodies"])
+    }
+    mesh = NamedMesh(whole.points, whole.cells[0].data.astype(np.int32), bodies, surfaces)
+    data = whole.point_data
+    return TemperatureField(
+        gearbox=entry["gearbox"],
+        stage=entry["stage"],
+        mesh=mesh,
+        temperature=data["temperature_degC"] + ZERO_CELSIUS,
+        displacement=data["displacement_m"],
+        heat_flux=data.get("heat_flux_W_m2"),
+    )
+
+
+def _read(path: Path) -> Any:
+    import meshio  # noqa: TID251 - as above
+
+    return meshio.read(path, file_format="vtu")
+
+
+def _single(mesh: Any) -> NDArray[np.float32]:
+    """Coordinates and data of the nodes, one row each, in single precision."""
+    columns = [mesh.points, *mesh.point_data.values()]
+    return np.column_stack([np.asarray(column, dtype=np.float32) for column in columns])
 
 
 def _point_data(field: TemperatureField) -> dict[str, FloatArray]:

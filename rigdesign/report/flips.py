@@ -6,7 +6,7 @@ from rigdesign.results.flips import Flip
 from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
 from rigdesign.results.result import RunResult
 
-SHOWN = 3
+SHOWN = 4
 """Inputs on the first page."""
 
 
@@ -15,6 +15,31 @@ def flips(result: RunResult) -> list[Flip]:
     if result.flips or result.ranges is None:
         return result.flips[:SHOWN]
     return from_ranges(result.ranges)[:SHOWN]
+
+
+def searched(result: RunResult) -> str:
+    """What was moved to turn which checks, for how long, and what was not looked at; empty where nothing was asked."""
+    search, titles = result.flip_search, {check.id: check.title for check in result.checks}
+    if search is None:
+        return ""
+    said = []
+    if search.checks:
+        subject = (
+            "the nearest to its limit" if not any(c.status == "fail" for c in result.checks) else "failing"
+        )
+        wanted = ", ".join(titles[name] for name in search.checks)
+        turned = {flip.check for flip in result.flips if flip.path}
+        outcome = "" if turned else "; none turns it within a factor of five"
+        said.append(
+            f"Moved, each alone: {', '.join(search.inputs) or 'no input'} (of the checks {subject}: {wanted}); "
+            f"{number_text(result.timings_s.get('flips', 0.0), 2)} s{outcome}."
+        )
+        if any(c.status == "fail" for c in result.checks) and not any(flip.turns for flip in result.flips):
+            said.append("None of them alone turns the verdict.")
+    if search.not_searched:
+        listed = ", ".join(titles[name] for name in search.not_searched)
+        said.append(f"Not looked at, as each input would take the whole run again: {listed}.")
+    return " ".join(said)
 
 
 def within_ranges(result: RunResult) -> list[Flip]:

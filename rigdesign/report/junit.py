@@ -31,8 +31,8 @@ GROUPS_OF_PARTS: Mapping[str, frozenset[str]] = {
 def write_junit(result: RunResult, path: Path) -> None:
     """Write junit.xml: a suite per group of checks.
 
-    fail -> failure with value, limit and margin; warn -> passed, the reason in system-out; not applicable ->
-    skipped with the reason.
+    fail -> failure with value, limit and margin; open -> error with the reason; an advisory limit that is missed and
+    not applicable -> skipped with the reason; pass -> passed, its flags in system-out.
     """
     from junitparser import JUnitXml, TestSuite
 
@@ -60,33 +60,34 @@ def check_seconds(checks: Sequence[Check], timings: Mapping[str, float]) -> dict
 
 
 def _testcase(check: Check, case: str, seconds: float):  # type: ignore[no-untyped-def]  # junitparser has no types
-    from junitparser import Failure, Skipped, TestCase
+    from junitparser import Error, Failure, Skipped, TestCase
 
     classname = _clean(f"{case}.{check.group or 'checks'}")
     testcase = TestCase(_clean(check.id), classname=classname, time=round(seconds, 3))
     summary = _clean(check_summary(check))
-    if check.verdict == "fail":
-        failure = Failure(summary, type_="limit exceeded")
+    if check.status in ("fail", "open"):
+        kind, what = (Failure, "limit exceeded") if check.status == "fail" else (Error, "not judged")
+        failure = kind(summary, type_=what)
         failure.text = _clean(f"{check.reason}\nsource: {check.source}\nrole: {check.role}".strip())
         testcase.result = [failure]
-    elif check.verdict == "not applicable":
+    elif check.status == "advisory":
+        testcase.result = [Skipped(f"advisory limit missed: {summary}")]
+    elif check.status == "not applicable":
         testcase.result = [Skipped(_clean(check.reason) or "not applicable")]
     else:
-        lines = [summary]
-        if check.verdict == "warn":
-            lines.insert(0, f"warning: {check.reason}")
-        testcase.system_out = _clean("\n".join(lines))
+        flags = [f"{flag}: {check.reason}" for flag in check.flags]
+        testcase.system_out = _clean("\n".join([*flags, summary]))
     return testcase
 
 
 def check_summary(check: Check) -> str:
-    """One line: title, value, limit, margin, utilisation."""
+    """One line: title, value, limit, margin, distance."""
     value = quantity_text(check.value, check.unit)
     parts = [f"{check.title}: {value}, limit {limit_text(check)}"]
     if check.margin is not None:
         parts.append(f"margin {margin_text(check)}")
-    if check.utilisation is not None:
-        parts.append(f"utilisation {100 * check.utilisation:.0f} %")
+    if check.distance is not None:
+        parts.append(f"distance {100 * check.distance:.0f} %")
     return ", ".join(parts)
 
 

@@ -2,9 +2,14 @@
 
 import math
 import re
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from rigdesign.results.check import Check
+
+if TYPE_CHECKING:
+    from rigdesign.difference.reading import CheckValue
+    from rigdesign.difference.results import CheckChange
 
 UNIT_SIGNS = {
     "degC": "°C", "deg": "°", "um": "µm", "N/mm2": "N/mm²", "MPa": "N/mm²", "m2": "m²", "m2/s": "m²/s",
@@ -82,9 +87,9 @@ def _stated_number(found: re.Match[str]) -> str:
 def percent_text(share: float) -> str:
     """A share in per cent: three digits above 1 %, one decimal below, nothing finer than 0.1 %."""
     percent = 100.0 * share
-    if 0.0 < abs(percent) < 0.1:
+    if 0.0 < percent < 0.1:
         return "< 0.1 %"
-    return f"{number_text(percent, 3) if abs(percent) >= 1.0 else f'{percent:.1g}'} %"
+    return f"{number_text(percent, 3 if abs(percent) >= 1.0 else 1)} %"
 
 
 def counted(number: int, noun: str) -> str:
@@ -109,10 +114,33 @@ LEAST_KILOWATT = 1e4
 
 def quantity_text(value: float | None, unit: str, digits: int = 4) -> str:
     """Number and unit; a dimensionless number has none, a large power stands in kilowatts."""
-    if value is None:
-        return "–"
-    if unit == "W" and abs(value) >= LEAST_KILOWATT:
-        value, unit = 1e-3 * value, "kW"
+    return quantity_texts((value,), unit, digits)[0]
+
+
+def quantity_texts(values: Sequence[float | None], unit: str, digits: int = 4) -> list[str]:
+    """Numbers that are compared, all in the unit of the largest."""
+    values, unit = _in_one_unit(values, unit)
+    return ["–" if value is None else _with_unit(value, unit, digits) for value in values]
+
+
+def change_text(before: float | None, after: float | None, unit: str) -> str:
+    """Two numbers in one unit, in the least digits from three that show a difference."""
+    (first, second), unit = _in_one_unit((before, after), unit)
+    for digits in (3, 4, 5, 6):
+        if number_text(first, digits) != number_text(second, digits):
+            break
+    return f"{number_text(first, digits)} → {quantity_texts((second,), unit, digits)[0]}"
+
+
+def _in_one_unit(values: Sequence[float | None], unit: str) -> tuple[list[float | None], str]:
+    """Powers in kilowatts where the largest is printed so."""
+    largest = max((abs(value) for value in values if value is not None), default=0.0)
+    if unit != "W" or largest < LEAST_KILOWATT:
+        return list(values), unit
+    return [None if value is None else 1e-3 * value for value in values], "kW"
+
+
+def _with_unit(value: float, unit: str, digits: int) -> str:
     text = number_text(value, digits)
     if unit in ("", "1", "-"):
         return text
@@ -129,7 +157,7 @@ def value_text(check: Check) -> str:
     return text
 
 
-def limit_text(check: Check) -> str:
+def limit_text(check: "Check | CheckValue") -> str:
     """The limit with its comparison sign, or both ends of a window."""
     if check.limit is None:
         return "–"
@@ -137,6 +165,16 @@ def limit_text(check: Check) -> str:
         return f"{number_text(check.limit)} … {quantity_text(check.upper_limit, check.unit)}"
     sign = {"<=": "≤", ">=": "≥", "within": "within"}[check.comparison]
     return f"{sign} {quantity_text(check.limit, check.unit)}"
+
+
+def limit_change_text(change: "CheckChange") -> str:
+    """The limit of a check of two results, both where they differ."""
+    sides = [
+        limit_text(side)
+        for side in (change.before, change.after)
+        if side is not None and side.limit is not None
+    ]
+    return " → ".join(dict.fromkeys(sides)) or "–"
 
 
 def margin_text(check: Check) -> str:

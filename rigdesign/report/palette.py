@@ -13,7 +13,8 @@ GRID = "#d9dfe4"
 MUTED = "#5d6b77"
 SERIES = ("#0072b2", "#be4c00", "#03916e", "#781674", "#d38100", "#170f9a", "#b387a7", "#243536")
 """Curves and bars by number: the hues of Okabe and Ito (jfly.uni-koeln.de/color), darker where white is behind them."""
-VERDICT_COLOURS = {"pass": "#0b8556", "warn": "#9d6a09", "fail": "#930b16", "not applicable": "#697683"}
+VERDICT_COLOURS = {"pass": "#0b8556", "open": "#6a4c93", "fail": "#930b16",
+                   "advisory": "#9d6a09", "not applicable": "#697683"}  # fmt: skip
 """Text on white, or background of white text: contrast at least 4.5 (WCAG 2.1, 1.4.3)."""
 WARM, COLD = SERIES[1], SERIES[0]
 """The two sides of a middle: above and below, warmer and colder."""

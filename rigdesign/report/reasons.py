@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rigdesign.report.numbers import limit_text, number_text, percent_text, quantity_text, value_text
+from rigdesign.report.numbers import counted, limit_text, number_text, percent_text, value_text
 from rigdesign.report.views import applicable, sorted_checks
 from rigdesign.results.check import Check
 from rigdesign.results.dynamics import GearboxDynamics
@@ -13,6 +13,8 @@ from rigdesign.results.stress_source import FROM_INFLUENCE
 
 AGREEMENT = 1.15
 """Ratio of two root stresses up to which the methods agree."""
+MOST_NAMED = 3
+"""Failing checks that are named beside the worst."""
 CARRIES = 0.01
 """Share of the highest root stress above which a tooth counts as loaded."""
 
@@ -37,22 +39,22 @@ def why(result: RunResult) -> Why:
         return Why(
             sentences=("No check applies: the case states no limit that this run could be held against.",)
         )
-    if checks[0].verdict == "fail":
-        failing = [check for check in checks if check.verdict == "fail"]
-        methods = next((pair for check in failing if (pair := _two_methods(result.checks, check))), None)
+    failing = [check for check in checks if check.status == "fail"]
+    if failing:
+        methods = _two_methods(result.checks, failing[0])
         if methods:
             return _methods_differ(result, failing, *methods)
         return replace(_limit_missed(failing), root_stress=governing_stress(result))
-    held = _reserved(checks) if checks[0].verdict == "warn" else _all_hold(checks)
+    held = _undecided(checks) if checks[0].status == "open" else _all_hold(checks)
     return replace(held, root_stress=governing_stress(result))
 
 
 def governing_stress(result: RunResult) -> str:
-    """Which root stress governs and why: of the gear with most of its limit used, specimens first; empty if none."""
+    """Which root stress governs and why: of the gear nearest to its limit, specimens first; empty if none."""
     pairs = [pair for check in applicable(result.checks) if (pair := _two_methods(result.checks, check))]
     if not pairs:
         return ""
-    iso, path = max(pairs, key=lambda pair: (pair[1].role == "specimen", pair[1].utilisation or 0.0))
+    iso, path = max(pairs, key=lambda pair: (pair[1].role == "specimen", -(pair[1].distance or 0.0)))
     subject = _capital(iso.title.partition(",")[0])
     if _from_field(result, path):
         return (
@@ -139,8 +141,15 @@ def _methods_differ(result: RunResult, failing: Sequence[Check], iso: Check, pat
 
 
 def _others(failing: Sequence[Check], *named: Check) -> str:
-    more = len([check for check in failing if check not in named])
-    return f"; {more} more {'check fails' if more == 1 else 'checks fail'}" if more else ""
+    """The other failing checks, the worst by name."""
+    others = [check for check in failing if check not in named]
+    if not others:
+        return ""
+    listed = [
+        f"{check.title} ({value_text(check)} against {limit_text(check)})" for check in others[:MOST_NAMED]
+    ]
+    listed += [f"{len(others) - MOST_NAMED} more"] if len(others) > MOST_NAMED else []
+    return f"; {'fails' if len(others) == 1 else 'fail'} as well: {', '.join(listed)}"
 
 
 def _mesh(result: RunResult, label: str) -> GearboxDynamics | None:
@@ -183,14 +192,11 @@ LEAVES_OUT = "leaves out "
 def _limit_missed(failing: Sequence[Check]) -> Why:
     """The governing check and how it came about."""
     worst = failing[0]
-    used = "" if worst.utilisation is None else f" ({percent_text(worst.utilisation)} of the limit used)"
-    first = f"{_capital(worst.title)}: {value_text(worst)} against {limit_text(worst)}{used}{_others(failing, worst)}."
+    missed = "" if worst.distance is None else f", missed by {percent_text(-worst.distance)}"
+    values = f"{value_text(worst)} against {limit_text(worst)}{missed}"
+    first = f"{_capital(worst.title)}: {values}{_others(failing, worst)}."
     reason = worst.reason.partition(LEAVES_OUT)[0].rstrip("; ")
     sentences = (first, f"{_capital(reason)}.") if reason else (first,)
-    error, margin = worst.discretisation_error, worst.margin
-    if error is not None and margin is not None and abs(margin) < error:
-        text = f"A finer mesh: it leaves {quantity_text(error, worst.unit)} open, more than is missing."
-        return Why(sentences=sentences, decided_by=text)
     if worst.by_definition:
         return Why(sentences=sentences, decided_by="The case itself: it states value and limit.")
     if not worst.assumptions:
@@ -201,34 +207,44 @@ def _limit_missed(failing: Sequence[Check]) -> Why:
     return Why(sentences=sentences, decided_by=text)
 
 
-def _reserved(checks: Sequence[Check]) -> Why:
-    """Every limit is kept, and some checks say that they do not know enough."""
-    warned = [check for check in checks if check.verdict == "warn"]
-    reasons = Counter(text for check in warned for text in check.left_out)
-    partial = sum(bool(check.left_out) for check in warned)
-    words = f"No limit is missed; {len(warned)} of {len(checks)} checks carry a reservation"
-    if partial:
-        words += f", {partial} of them because the value leaves out a known contributor"
+def _undecided(checks: Sequence[Check]) -> Why:
+    """Every limit that binds is kept, and some checks could not be judged."""
+    undecided = [check for check in checks if check.verdict == "open"]
+    reasons = Counter(text for check in undecided for text in check.left_out)
+    near = [c for c in undecided if c.error is not None and c.margin is not None and abs(c.margin) < c.error]
+    causes = {
+        "leaving out a known contributor": sum(bool(check.left_out) for check in undecided),
+        "not evaluated": sum(check.value is None for check in undecided),
+        "nearer to the limit than the error of the value": len(near),
+    }
+    listed = ", ".join(f"{number} {cause}" for cause, number in causes.items() if number)
+    words = f"No limit that binds is missed; {len(undecided)} of {len(checks)} checks are open"
+    words += f": {listed}" if listed else ""
     often = reasons.most_common(1)
     decided = f"A model of what is left out most often: {often[0][0]}." if often else ""
+    if not often and undecided[0].reason:
+        decided = f"{_capital(undecided[0].title)}: {undecided[0].reason}."
     return Why(sentences=(f"{words}.", _nearest(checks)), decided_by=decided)
 
 
 def _all_hold(checks: Sequence[Check]) -> Why:
     """Nothing is missed and nothing is open."""
-    return Why(sentences=(f"All {len(checks)} checks that apply hold.", _nearest(checks)))
+    advisory = sum(check.status == "advisory" for check in checks)
+    words = "All limits that bind hold" if advisory else f"All {len(checks)} checks that apply hold"
+    words += f"; {counted(advisory, 'advisory limit')} missed" if advisory else ""
+    return Why(sentences=(f"{words}.", _nearest(checks)))
 
 
 def _nearest(checks: Sequence[Check]) -> str:
-    """The check with the most of its limit used, those of the case against itself left out."""
-    real = [check for check in checks if not check.by_definition and check.utilisation is not None]
+    """The check nearest to its limit, those of the case against itself left out."""
+    real = [c for c in checks if not c.by_definition and c.distance is not None and c.distance >= 0.0]
     if not real:
         return "No check comes near its limit."
-    first = max(real, key=lambda check: check.utilisation or 0.0)
-    assert first.utilisation is not None
+    first = min(real, key=lambda check: check.distance or 0.0)
+    assert first.distance is not None
     return (
         f"Nearest to its limit is {first.title}: {value_text(first)} against {limit_text(first)}, "
-        f"{percent_text(first.utilisation)} used."
+        f"{percent_text(first.distance)} of it left."
     )
 
 

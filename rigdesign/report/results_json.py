@@ -1,11 +1,20 @@
-"""results.json: every result but the nodal fields, the same bytes for the same case."""
+"""results.json: every result but the nodal fields, the same bytes for the same case; and read again."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, get_type_hints
 
+from rigdesign.base.errors import WIDEST_PLACE, UsageError, shortened
 from rigdesign.base.json_text import to_plain
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
+from rigdesign.difference.reading import AGAIN, read_document
+from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import CouplingHistory, RunResult
+
+WITHOUT_DYNAMICS: Mapping[str, Any] = {"gearboxes": {}}
+"""What stands for the dynamics of a rig without drivetrain."""
+
+TAKES = "report takes a folder that `rigdesign check --out` wrote, or its results.json"
 
 
 def results_document(result: RunResult) -> dict[str, Any]:
@@ -25,7 +34,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "fidelity": result.fidelity,
         "verdict": result.verdict,
         "checks": result.checks,
-        "dynamics": result.dynamics if result.dynamics is not None else {"gearboxes": {}},
+        "dynamics": result.dynamics if result.dynamics is not None else WITHOUT_DYNAMICS,
         "losses": result.losses,
         "oil": result.oil,
         "cooler": result.cooler,
@@ -41,6 +50,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "not_modelled": result.not_modelled,
         "warnings": result.warnings,
         "flips": result.flips,
+        "flip_search": result.flip_search,
         "timings_s": result.timings_s,
     }
     if result.events:
@@ -71,3 +81,48 @@ def _coupling(histories: Sequence[CouplingHistory]) -> dict[str, Any]:
             for number, residual in enumerate(history.residuals, start=1)
         ],
     }
+
+
+def read_result(path: Path) -> tuple[RunResult, Path]:
+    """The result that a folder of `rigdesign check --out`, or its results.json, holds; and that file.
+
+    Numbers have the ten digits of the file. ``fields`` holds those whose .vtu files stand beside it.
+
+    Raises
+    ------
+    UsageError
+        If there is none, it is damaged or of another schema version; says what to do.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    from rigdesign.report.fields import read_fields
+
+    file, document = read_document(
+        path, "report takes a folder that `rigdesign check --out` wrote, or its results.json"
+    )
+    try:
+        values = {
+            **document,
+            "dynamics": None if document["dynamics"] == WITHOUT_DYNAMICS else document["dynamics"],
+            "expansion": document["growth"],
+            "coupling": _histories(document["coupling"]["residuals"]),
+        }
+        own = {
+            name: TypeAdapter(kind).validate_python(values[name])
+            for name, kind in get_type_hints(RunResult).items()
+            if name in values and name not in ("checks", "fields")
+        }
+        checks = Checks(TypeAdapter(list[Check]).validate_python(values["checks"]))
+        return RunResult(**own, checks=checks, fields=read_fields(document["fields"], file.parent)), file
+    except (KeyError, TypeError, ValidationError) as error:
+        what = shortened(f"{type(error).__name__}: {error}".replace("\n", " "))
+        raise UsageError(f"{shortened(str(file), WIDEST_PLACE)}: is damaged ({what}); {AGAIN}") from None
+
+
+def _histories(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Residuals of every iteration by stage."""
+    by_stage: dict[str, list[dict[str, float]]] = {}
+    for row in rows:
+        residuals = {key: value for key, value in row.items() if key not in ("stage", "pass")}
+        by_stage.setdefault(row["stage"], []).append(residuals)
+    return [{"stage": stage, "iterations": len(own), "residuals": own} for stage, own in by_stage.items()]

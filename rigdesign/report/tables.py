@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rigdesign.report.csv_text import csv_text
+from rigdesign.base.json_text import csv_text
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import HeatRow
 
@@ -29,7 +29,7 @@ def _checks(result: RunResult) -> str:
         "upper_limit",
         "unit",
         "margin",
-        "utilisation",
+        "distance",
         "verdict",
         "reason",
         "source",

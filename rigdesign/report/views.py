@@ -1,23 +1,25 @@
 """What the pages show, picked and ordered from a result: pure functions, no drawing and no markup."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.report.numbers import unit_text
-from rigdesign.results.check import Check
+from rigdesign.results.check import STATUSES, Check
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import LossRow
 
-VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
 BAR_END = 1.5
-"""Utilisation at the right end of a bar in the table of checks."""
+"""Share of a limit used up at the right end of a bar in the table of checks."""
 MAX_DRIVERS = 4
 
 
 def sorted_checks(checks: Sequence[Check]) -> list[Check]:
-    """Failing checks first, then warnings; the most used-up first within each verdict."""
-    return sorted(checks, key=lambda c: (VERDICT_ORDER.index(c.verdict), -(c.utilisation or 0.0)))
+    """Failing checks first, then open ones and advisory limits; within each the farthest beyond its limit first."""
+    return sorted(
+        checks, key=lambda c: (STATUSES.index(c.status), math.inf if c.distance is None else c.distance)
+    )
 
 
 def applicable(checks: Sequence[Check]) -> list[Check]:
@@ -45,17 +47,21 @@ def inapplicable(checks: Sequence[Check]) -> dict[str, list[Check]]:
 
 
 def reservations(checks: Sequence[Check]) -> dict[str, list[Check]]:
-    """Warning checks by what their value leaves out, the commonest first; a check may stand under several."""
+    """Open checks by what their value leaves out, the commonest first; a check may stand under several."""
     found: dict[str, list[Check]] = {}
     for check in checks:
-        for text in check.left_out if check.verdict == "warn" else ():
+        for text in check.left_out if check.verdict == "open" else ():
             found.setdefault(text, []).append(check)
     return dict(sorted(found.items(), key=lambda item: -len(item[1])))
 
 
-def own_warnings(checks: Sequence[Check]) -> list[Check]:
-    """Warning checks with a reason of their own, most used-up first."""
-    return [check for check in sorted_checks(checks) if check.verdict == "warn" and not check.left_out]
+def remarked(checks: Sequence[Check]) -> list[Check]:
+    """Checks that are open for a reason of their own or carry a flag, in the order of `sorted_checks`."""
+    return [
+        check
+        for check in sorted_checks(checks)
+        if check.flags or (check.verdict == "open" and not check.left_out)
+    ]
 
 
 def specific(result: RunResult, check: Check) -> list[AssumptionRecord]:
@@ -68,11 +74,11 @@ def specific(result: RunResult, check: Check) -> list[AssumptionRecord]:
 def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
     """The checks that decide the verdict, each with the assumptions its value depends on.
 
-    Every failing check, filled up with the most used-up other ones to ``MAX_DRIVERS``.
+    Every failing check, filled up with the others nearest to their limits to ``MAX_DRIVERS``.
     """
     records = {record.path: record for record in result.assumptions}
     ordered = sorted_checks(predicted(result.checks)) or sorted_checks(stated(result.checks))
-    failing = sum(check.verdict == "fail" for check in ordered)
+    failing = sum(check.status == "fail" for check in ordered)
     chosen = ordered[: max(MAX_DRIVERS, failing)]
     return [
         (check, [records.get(p, AssumptionRecord(path=p, value="", reason="")) for p in check.assumptions])
@@ -88,9 +94,9 @@ def main_stage(result: RunResult) -> str:
     return max(totals, key=lambda stage: totals[stage]) if totals else ""
 
 
-def bar_width(utilisation: float) -> float:
-    """Width of a utilisation bar [%]; it ends at ``BAR_END``."""
-    return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END
+def bar_width(distance: float) -> float:
+    """Width of the bar of a check [%], which ends at ``BAR_END``: what of its limit is used up."""
+    return 100 * min(max(1.0 - distance, 0.0), BAR_END) / BAR_END
 
 
 def mesh_errors(result: RunResult) -> list[dict[str, Any]]:
@@ -101,12 +107,12 @@ def mesh_errors(result: RunResult) -> list[dict[str, Any]]:
     shifts = {entry.id: entry.shift for entry in result.reference_shift}
     rows = []
     for check in result.checks:
-        if check.discretisation_error is None or check.value is None:
+        if check.error is None or check.value is None:
             continue
-        share = abs(check.discretisation_error / check.margin) if check.margin else None
+        share = abs(check.error / check.margin) if check.margin else None
         row = {
             "check": check.title, "value": check.value, "unit": unit_text(check.unit), "margin": check.margin,
-            "mesh_error": check.discretisation_error, "error_over_margin": share,
+            "error": check.error, "error_over_margin": share,
         }  # fmt: skip
         rows.append(row | ({"shift_on_fine_mesh": shifts[check.id]} if check.id in shifts else {}))
     return sorted(rows, key=lambda row: -(row["error_over_margin"] or 0.0))

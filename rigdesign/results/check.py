@@ -1,15 +1,18 @@
-"""Design rules held against a result."""
+"""Design rules held against a result: verdicts, flags, and the checks of a run."""
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Literal, SupportsIndex, overload
+from typing import Literal, SupportsIndex, get_args, overload
 
-from rigdesign.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    pass
-
-
+Verdict = Literal["pass", "open", "fail", "not applicable"]
+"""``open``: the rule could not be judged; the reason says why."""
+Flag = Literal["advisory", "close", "doubt"]
+"""Beside a verdict: a missed limit that does not bind; little margin left; a cause to doubt the value."""
+Status = Literal["fail", "open", "advisory", "pass", "not applicable"]
+"""Under which a check is counted and sorted, the gravest first: its verdict, or ``advisory`` for a missed limit that
+does not bind."""
+STATUSES: tuple[Status, ...] = get_args(Status)
 Role = Literal["specimen", "rig"]
 
 
@@ -17,8 +20,13 @@ Role = Literal["specimen", "rig"]
 class Check:
     """One design rule held against the result.
 
-    ``margin`` is the distance to the limit in the unit of the value, positive when held; ``utilisation`` is
-    the share of the limit used up, 1 at the limit. Both are None when the rule is not applicable.
+    margin : to the limit in the unit of the value, positive when held
+    distance : margin as a share of the limit (`rigdesign.checks.rules`): 0 at the limit, 0.2 with a fifth of it left,
+        -0.2 where it is missed by a fifth of it
+    error : how far the value may be from that of an infinitely fine model, or of the law beside it, in its unit; None
+        where nothing tells
+
+    Margin and distance are None when the rule has no value.
     """
 
     id: str
@@ -28,8 +36,9 @@ class Check:
     unit: str
     comparison: Literal["<=", ">=", "within"]
     margin: float | None
-    utilisation: float | None
+    distance: float | None
     verdict: Verdict
+    flags: tuple[Flag, ...] = ()
     source: str
     role: Role
     reason: str = ""
@@ -42,10 +51,29 @@ class Check:
     by_definition: bool = False
     """Value and limit are both stated by the case: the check shows that it agrees with itself and predicts nothing."""
     left_out: tuple[str, ...] = ()
-    """Known contributors that the value does not count: the check is at best a warning, unless they are small."""
-    discretisation_error: float | None = None
-    """How far the value may be from that of an infinitely fine housing mesh, in its unit; None where no housing
-    mesh enters, or where there is no coarser one to tell."""
+    """Known contributors that the value does not count: a held rule is open, unless they are small."""
+    error: float | None = None
+
+    @property
+    def status(self) -> Status:
+        """Under which the check is counted."""
+        return status(self.verdict, self.flags)
+
+    @property
+    def missed(self) -> bool:
+        """Whether the value misses the limit, whatever the verdict."""
+        return self.margin is not None and self.margin < 0.0
+
+
+def status(verdict: Verdict, flags: Collection[str]) -> Status:
+    """Under which a check with this verdict and these flags is counted."""
+    return "advisory" if verdict == "fail" and "advisory" in flags else verdict
+
+
+def overall(checks: Sequence[Check]) -> Literal["pass", "open", "fail"]:
+    """Verdict of a run: fail before open before pass; advisory limits and rules that do not apply do not count."""
+    statuses = {check.status for check in checks}
+    return "fail" if "fail" in statuses else "open" if "open" in statuses else "pass"
 
 
 class Checks(list[Check]):

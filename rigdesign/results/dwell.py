@@ -8,13 +8,23 @@ from typing import Literal
 ResonanceKind = Literal["dynamic factor", "root stress", "shaft torque", "shaft order"]
 
 
+def nearer(peak: float, margin: float) -> tuple[float, float]:
+    """Speeds between which a peak is nearer than a margin, a share of the speed [rad/s]."""
+    return peak / (1.0 + margin), peak / (1.0 - margin) if margin < 1.0 else math.inf
+
+
 @dataclass(frozen=True, kw_only=True)
 class AvoidedResonance:
-    """Speeds around one peak of the response, or a crossing of a shaft order with a mode."""
+    """Speeds around one peak of the response, or a crossing of a shaft order with a mode.
+
+    low, high : between which a speed is nearer than the margin (`nearer`), or the response itself above the share
+    """
 
     kind: ResonanceKind
     where: str
     """Gearbox, gear, place of a torque, or mode."""
+    mode: str = ""
+    """What vibrates, of a peak of a mesh."""
     speed: float
     """Of the peak [rad/s]."""
     share: float | None
@@ -24,14 +34,11 @@ class AvoidedResonance:
     high: float
     """[rad/s]"""
 
-    def distance(self, speed: float, margin: float = math.inf) -> float:
-        """Of a speed from the peak, as a share of that speed [-].
-
-        margin : by which the band goes beyond the peak at least; within the band and beyond it the response itself is
-            above the stated share, and the distance 0
-        """
-        beyond = abs(speed - self.speed) > margin * self.speed
-        return 0.0 if beyond and self.low < speed < self.high else abs(speed - self.speed) / speed
+    def distance(self, speed: float, margin: float) -> float:
+        """Of a speed from the peak, as a share of that speed [-]; 0 in the band beyond the margin, where the response
+        itself is above the stated share. Below the margin just where the speed is in the band."""
+        away = abs(speed - self.speed) / speed
+        return 0.0 if away >= margin and self.low < speed < self.high else away
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Verdict
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +38,8 @@ class RangeMargin:
     unit: str
     margin_low: float | None
     margin_high: float | None
-    utilisation_low: float | None
-    utilisation_high: float | None
+    distance_low: float | None
+    distance_high: float | None
     verdict_low: Verdict | None
     verdict_high: Verdict | None
 
@@ -53,7 +53,7 @@ class CheckRange:
     verdict_stated: Verdict
     """With every input as stated."""
     verdict: Verdict
-    """Over the ranges: a check that holds as stated and not everywhere in them is a warning."""
+    """Over the ranges: a check that holds as stated and not everywhere in them is open."""
     margin: float | None
     worst_margin: float | None
     """Least margin with one input at an end; as stated where none lowers it."""
@@ -61,9 +61,9 @@ class CheckRange:
     worst_value: str | None
     best_margin: float | None
     best_path: str | None
-    utilisation: float | None
-    worst_utilisation: float | None
-    best_utilisation: float | None
+    distance: float | None
+    worst_distance: float | None
+    best_distance: float | None
     all_worst_margin: float | None
     """Margin with every input at its worse end, the single shifts added: an estimate, they are not moved together."""
     decided_by: tuple[str, ...]

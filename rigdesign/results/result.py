@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass, field
 from html import escape
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.inputs import InputRow
-from rigdesign.results.check import Checks
+from rigdesign.results.check import STATUSES, Checks, Status
 from rigdesign.results.curves import Columns, curves_of
 from rigdesign.results.dynamics import DynamicsResult
-from rigdesign.results.flips import Flip
+from rigdesign.results.flips import Flip, FlipSearch
 from rigdesign.results.lateral_curves import lateral_curves
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.thermal import ExpansionResult, LossRow, OilRow, TemperatureField, ThermalResult
 from rigdesign.results.transient import TransientResult
-from rigdesign.results.verdict import Verdict
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -82,7 +81,7 @@ class RunResult:
     case: dict[str, str]
     """{name, path, hash, title}"""
     fidelity: str
-    verdict: Literal["pass", "warn", "fail"]
+    verdict: Literal["pass", "open", "fail"]
     checks: Checks
     dynamics: DynamicsResult | None
     losses: list[LossRow]
@@ -135,7 +134,9 @@ class RunResult:
     ranges: RangesResult | None = None
     """With `--ranges`: verdicts and margins over the ranges of the assumed inputs."""
     flips: list[Flip] = field(default_factory=list)
-    """Inputs that would turn the verdict, the nearest first."""
+    """Inputs that would turn failing checks, or the one nearest to its limit."""
+    flip_search: FlipSearch | None = None
+    """What was looked at for ``flips``; None where nothing was asked."""
     fields: list[TemperatureField] = field(repr=False)
 
     def __repr__(self) -> str:
@@ -146,22 +147,20 @@ class RunResult:
         """Verdict and checks as a table, for notebooks."""
         rows = "".join(
             f"<tr><td>{escape(check.id)}</td><td>{_shown(check.value)}</td><td>{_shown(check.limit)}</td>"
-            f"<td>{escape(check.unit)}</td><td>{_shown(check.utilisation)}</td><td>{check.verdict}</td></tr>"
+            f"<td>{escape(check.unit)}</td><td>{_shown(check.distance)}</td><td>{check.status}</td></tr>"
             for check in self.checks
         )
         head = "".join(
-            f"<th>{name}</th>" for name in ("check", "value", "limit", "unit", "utilisation", "verdict")
+            f"<th>{name}</th>" for name in ("check", "value", "limit", "unit", "distance", "verdict")
         )
         return (
             f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         )
 
     @property
-    def counts(self) -> dict[Verdict, int]:
-        """How many checks end with each verdict."""
-        return {
-            verdict: sum(check.verdict == verdict for check in self.checks) for verdict in get_args(Verdict)
-        }
+    def counts(self) -> dict[Status, int]:
+        """How many checks end with each verdict, missed advisory limits apart."""
+        return {status: sum(check.status == status for check in self.checks) for status in STATUSES}
 
     @property
     def columns(self) -> dict[str, Columns]:

@@ -55,7 +55,7 @@ class SeatedBearing:
 
 def bearing_tables(origins: Origins, stage: GearStage) -> Iterator[CaseTable]:
     """The bearings of both shafts; a shaft with less than two gets what the user has to give."""
-    helical = bool(stage.pinion.gear.helix_angle)
+    helical = bool(stage.pinion.gear.helix_angle) and not stage.double_helical
     for seated in stage.gears:
         for seat in _seats(seated, helical):
             path = f"gearboxes.test.bearings.{seat.name}"
@@ -79,7 +79,6 @@ def _at(seated: SeatedGear, side: str) -> str:
 
 def _seats(seated: SeatedGear, helical: bool) -> Iterator[SeatedBearing]:
     places = [seated.bearing_at(bearing) for bearing in seated.bearings]
-    known = _ordered(seated, places)
     holds = _locating(seated.bearings)
     able = [number for number, bearing in enumerate(seated.bearings) if can_hold(bearing)]
     wanted = able[-1] if helical and holds is None and able else None
@@ -90,7 +89,7 @@ def _seats(seated: SeatedGear, helical: bool) -> Iterator[SeatedBearing]:
             shaft=f"test_{seated.name}",
             side=SIDES[number],
             bearing=bearing,
-            position=places[number] if known else None,
+            position=places[number] if seated.position is not None else None,
             diameter=_section_diameter(seated, places[number]),
             locating="stated" if number == holds else "assumed" if number == wanted else "",
             has_to_hold=number == last,
@@ -99,19 +98,6 @@ def _seats(seated: SeatedGear, helical: bool) -> Iterator[SeatedBearing]:
 
 def _section_diameter(seated: SeatedGear, place: float | None) -> float | None:
     return None if seated.shaft is None or place is None else diameter_at(seated.shaft, place)
-
-
-def _ordered(seated: SeatedGear, places: list[float | None]) -> bool:
-    """Whether front bearing, gear and rear bearing stand on the shaft in this order, counted from its start."""
-    front_to_rear = [places[0] if places else None, seated.gear.position, *places[1:]]
-    known = [place for place in front_to_rear if place is not None]
-    return seated.direction > 0.0 and len(known) == 3 and 0.0 <= known[0] < known[1] < known[2]
-
-
-def gear_position(seated: SeatedGear) -> float | None:
-    """Middle of the face from the start of the shaft, where its bearings have places as well."""
-    places = [seated.bearing_at(bearing) for bearing in seated.bearings]
-    return seated.gear.position if _ordered(seated, places) else None
 
 
 def _locating(bearings: tuple[UnitBearing, ...]) -> int | None:

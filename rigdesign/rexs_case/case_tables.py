@@ -6,13 +6,13 @@ from math import ceil
 
 from rigdesign.rexs.gear_unit import GearUnit, UnitMaterial
 from rigdesign.rexs.gear_unit_import import GearUnitImport
-from rigdesign.rexs_case.bearing_keys import bearing_tables, gear_position
+from rigdesign.rexs_case.bearing_keys import bearing_tables
 from rigdesign.rexs_case.entries import CaseTable, Entry, Origins, millimetres, quoted
 from rigdesign.rexs_case.gear_keys import gear_entries, material_entry, mesh_entries, toothing_of
 from rigdesign.rexs_case.operation_keys import oil_tables, operation_of, schedule_tables
 from rigdesign.rexs_case.pinion_load import pinion_loads
 from rigdesign.rexs_case.shaft_keys import shaft_tables
-from rigdesign.rexs_case.stage import GearStage, SeatedGear
+from rigdesign.rexs_case.stage import GearStage, SeatedGear, left_out
 
 LIKE_THE_TEST = (
     "the slave gearbox equals the test gearbox, without a housing; a REXS file holds one unit, no rig"
@@ -40,24 +40,27 @@ def _tables(imported: GearUnitImport, stage: GearStage, origins: Origins) -> Ite
         "name", quoted(_name(named)), "stated", f"{origins.file}: name of the gear unit", markable=False
     )
     version = Entry("schema_version", "1", "stated", "form of this file", markable=False)
-    yield CaseTable("", (version, head))
+    missing = tuple(f"not in this case: {text}" for text in left_out(unit, stage))
+    yield CaseTable("", (version, head), missing)
     toothing = toothing_of(stage)
     for seated in stage.gears:
         entries = list(gear_entries(origins, stage, seated))
         material = material_entry(origins, _material(unit, seated.gear.material))
         entries += [material] if material is not None else []
-        if (position := gear_position(seated)) is not None:
-            target = f"gears[{seated.gear.id}].position"
-            entries.append(origins.stated("position", millimetres(position), target))
+        if seated.position is not None:
+            notes = ["middle of both halves"] if stage.double_helical else []
+            notes += ["from the other end of the shaft"] if seated.direction < 0.0 else []
+            target, place = f"gears[{seated.gear.id}].position", millimetres(seated.position)
+            entries.append(origins.stated("position", place, target, note=", ".join(notes)))
         remark: tuple[str, ...] = (f"gear {seated.gear.id} {seated.gear.name}",)
         if seated is stage.wheel and toothing.contradiction:
             remark += ("its profile shift in the file contradicts the centre distance, which counts",)
         yield CaseTable(f"gearboxes.test.gears.{seated.name}", tuple(entries), remark)
-    mesh_remark = f"cylindrical_stage {stage.mesh.id} {stage.mesh.name}"
-    yield CaseTable("gearboxes.test.meshes.main", tuple(mesh_entries(origins, stage)), (mesh_remark,))
+    halves = tuple(f"cylindrical_stage {mesh.id} {mesh.name}" for mesh in stage.meshes)
+    yield CaseTable("gearboxes.test.meshes.main", tuple(mesh_entries(origins, stage)), halves)
     yield from bearing_tables(origins, stage)
     yield from shaft_tables(origins, stage)
-    operation = operation_of(stage, () if imported.epicyclic else pinion_loads(unit, stage.mesh))
+    operation = operation_of(stage, () if imported.epicyclic else pinion_loads(unit, stage.meshes))
     yield from oil_tables(origins, unit, stage, operation)
     like = Entry("like", '"test"', "assumed", LIKE_THE_TEST, markable=False)
     yield CaseTable("gearboxes.slave", (like,), tuple(_housing_remarks(stage)))
@@ -91,7 +94,7 @@ def _tip(seated: SeatedGear) -> float | None:
 
 def _room(seated: SeatedGear) -> float | None:
     """Between the inner faces of the two bearings of a shaft [m]."""
-    if gear_position(seated) is None:
+    if seated.position is None:
         return None
     front, rear = (seated.bearing_at(bearing) or 0.0 for bearing in seated.bearings)
     return rear - front - 0.5 * sum(bearing.width or 0.0 for bearing in seated.bearings)

@@ -91,7 +91,7 @@ def gear_entries(origins: Origins, stage: GearStage, seated: SeatedGear) -> Iter
         yield origins.stated("tip_shortening", millimetres(cut), f"{at}.tip_diameter", note=note)
     if gear.bore_diameter:
         yield origins.stated("bore_diameter", millimetres(gear.bore_diameter), f"{at}.bore_diameter")
-    if side == 0 and gear.helix_angle:
+    if side == 0 and gear.helix_angle and not stage.double_helical:
         hand = '"right"' if gear.helix_angle > 0.0 else '"left"'
         yield origins.stated("helix_hand", hand, f"{at}.helix_angle")
     if gear.quality_grade is not None and gear.quality_grade <= 11:
@@ -138,6 +138,9 @@ def mesh_entries(origins: Origins, stage: GearStage) -> Iterator[Entry]:
         yield origins.stated("helix_angle", value, f"{pinion}.helix_angle")
     else:
         yield assumed("helix_angle", '"0 deg"', "not stated: spur gears")
+    if stage.double_helical:
+        targets = [f"gears[{other.pinion}].helix_angle" for other in stage.meshes]
+        yield origins.stated("double_helical", "true", *targets, note="halves of opposite hand")
     if toothing.addendum > 1.0 + 1e-6:
         tips = [f"gears[{seated.gear.id}].tip_diameter" for seated in stage.gears]
         note = "the higher of the two tips, in modules"

@@ -157,7 +157,8 @@ def schedule_tables(origins: Origins, unit: GearUnit, operation: Operation) -> I
             )
         )
     else:
-        entries.append(needed("test_torque", '"300 N m"', "torque of the pinion"))
+        why = f"; {load.undetermined}" if load is not None and load.undetermined else ""
+        entries.append(needed("test_torque", '"300 N m"', f"torque of the pinion{why}"))
     remarks = ["the test, counted at the pinion"]
     if len(operation.loads) > 1:
         remarks[0] += ": the load case with the most torque; the others of the file:"

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from rigdesign.rexs.gear_unit import ShaftSection, UnitBearing, UnitShaft
 from rigdesign.rexs_case.bearing_choice import tabled_bearing
-from rigdesign.rexs_case.bearing_keys import gear_position
 from rigdesign.rexs_case.entries import CaseTable, Entry, Origins, assumed, millimetres
 from rigdesign.rexs_case.stage import SAME, GearStage, SeatedGear, diameter_at, mean_diameter
 
@@ -25,7 +24,7 @@ def shaft_tables(origins: Origins, stage: GearStage) -> Iterator[CaseTable]:
 
 
 def _sections(origins: Origins, seated: SeatedGear) -> Entry | None:
-    position, shaft = gear_position(seated), seated.shaft
+    position, shaft = seated.position, seated.shaft
     if position is None or shaft is None:
         return None
     front, rear = (seated.bearing_at(bearing) or 0.0 for bearing in seated.bearings)
@@ -43,11 +42,16 @@ def _sections(origins: Origins, seated: SeatedGear) -> Entry | None:
         ]
         note = f"and {len(shaft.sections) - 1} further sections" if shaft.sections[1:] else ""
         return origins.stated("sections", value, *origins.under(first), *targets, note=note)
-    if abs(bores[0] - bores[1]) <= SAME:
+    between = front < position < rear
+    if abs(bores[0] - bores[1]) <= SAME and between and not shaft.sections:
         return None
-    end = max(rear + STUB * bores[1], shaft.length)
-    value = _written([(position, bores[0], 0.0), (end - position, bores[1], 0.0)])
-    return assumed("sections", value, "as thick as in its bearings, stepped at the gear")
+    step, place = (position, "at the gear") if between else (0.5 * (front + rear), "between them")
+    end = max(rear + STUB * bores[1], shaft.length, position + 0.5 * (seated.gear.face_width or 0.0))
+    value = _written([(step, bores[0], 0.0), (end - step, bores[1], 0.0)])
+    cause = "the file has none"
+    if shaft.sections:
+        cause = "those of the file leave gaps or have other diameters in the bearings"
+    return assumed("sections", value, f"as thick as in its bearings, stepped {place}: {cause}")
 
 
 def _bore(bearing: UnitBearing) -> float | None:

@@ -15,7 +15,7 @@ from rigdesign.rexs.gear_unit_import import GearUnitImport, import_gear_unit
 from rigdesign.rexs.reader import read_rexs
 from rigdesign.rexs_case.case_tables import LIKE_THE_TEST, case_tables
 from rigdesign.rexs_case.entries import CaseTable, Entry, toml_text
-from rigdesign.rexs_case.stage import chosen_stage
+from rigdesign.rexs_case.stage import chosen_stage, left_out
 
 OTHER_PART = "of another stage, or a value that the case works out itself"
 REASONS = {
@@ -47,7 +47,7 @@ class ImportedCase:
     assumed : in place of what the file lacks
     defaults : further defaults of the tool, not of the test gearbox
     needed : what the user has to give, with the reason or remedy
-    left_out : parts of the file that no case has
+    left_out : parts of the file at this stage or beside it that a case does not have, each with the reason
     """
 
     path: Path
@@ -82,11 +82,16 @@ def import_case(file: Path, out: Path, stage: int | None = None) -> ImportedCase
     if path.exists() or path.is_symlink():
         raise OutputError(f"{path} is there already; remove it or give another folder with --out")
     imported = import_gear_unit(read_rexs(file))
-    tables = case_tables(imported, chosen_stage(imported.unit, stage, printable(str(file))), file.name)
+    chosen = chosen_stage(imported.unit, stage, printable(str(file)))
+    tables = case_tables(imported, chosen, file.name)
     tried = _tried(toml_text(tables, with_examples=True))
     with staged(out) as scratch:
         (scratch / CASE_FILE).write_text(_head(file.name) + toml_text(tables), encoding="utf-8", newline="\n")
-    return _account(path, imported, tables, tried)
+    missing = (
+        *(f"{part}: a case has no such stage" for part in imported.other_stages),
+        *left_out(imported.unit, chosen),
+    )
+    return _account(path, imported, tables, tried, missing)
 
 
 def _head(file: str) -> str:
@@ -108,7 +113,11 @@ def _tried(text: str) -> Case | CaseError:
 
 
 def _account(
-    path: Path, imported: GearUnitImport, tables: tuple[CaseTable, ...], tried: Case | CaseError
+    path: Path,
+    imported: GearUnitImport,
+    tables: tuple[CaseTable, ...],
+    tried: Case | CaseError,
+    missing: tuple[str, ...],
 ) -> ImportedCase:
     placed = [(table.place(entry), entry) for table in tables for entry in table.entries]
     used = {target for _, entry in placed for target in entry.targets}
@@ -145,7 +154,7 @@ def _account(
             [item for item in defaults if not item.path.startswith(("gearboxes.test.", "gearboxes.slave."))]
         ),
         needed=tuple(needed),
-        left_out=imported.other_stages,
+        left_out=missing,
     )
 
 

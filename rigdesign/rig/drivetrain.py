@@ -23,6 +23,7 @@ from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
 from rigdesign.case.elastic_shafts import disc_mass
 from rigdesign.case.gear_seats import Spline
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.gears import Gear
 from rigdesign.case.model import Case
 from rigdesign.case.rotation import pinion_hand
 from rigdesign.properties.materials import Material
@@ -147,21 +148,21 @@ def gear_inertia(
     case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
 ) -> float:
     """Polar inertia of a gear body [kg m2]: as the case states it, else that of bored disc, or rim and web; times its
-    factor."""
+    factor. Of a gear without a bore that round its section of the shaft, which has its own."""
     gearbox = case.gearboxes[box]
     part = gearbox.gears[gear]
-    inertia = part.inertia
+    inertia, bore = part.inertia, _bore(case, part)
     if inertia is None:
         toothing, density = _toothing(gear, box, case, pairs), materials[part.material].density
         halves = gearbox.carrying_halves(gear)
         outer, width = 2.0 * toothing.reference_radius, halves * part.face_width
-        inner = part.bore_diameter
+        inner = bore
         if part.rim_thickness is not None and part.web_thickness is not None:
             inner = max(2.0 * (toothing.root_radius - part.rim_thickness), inner)
         inertia = disc_inertia(outer, inner, width, density)
-        if inner > part.bore_diameter:
+        if inner > bore:
             web = (part.web_thickness or 0.0) * halves
-            inertia += disc_inertia(inner, part.bore_diameter, web, density)
+            inertia += disc_inertia(inner, bore, web, density)
     return part.inertia_factor * inertia
 
 
@@ -171,8 +172,20 @@ def gear_mass(
     """Mass of a gear body [kg] that goes with its inertia: at the radius of gyration of its bored disc, or rim and
     web."""
     mesh, side = case.gearboxes[box].first_meshes()[gear]
-    pair = pairs[f"{box}.{mesh}"]
-    return gear_inertia(case, box, gear, pairs, materials) * pair.masses[side] / pair.inertias[side]
+    pair, bore = pairs[f"{box}.{mesh}"], _bore(case, case.gearboxes[box].gears[gear])
+    per_inertia = pair.masses[side] / pair.inertias[side]
+    if bore > pair.bore_diameters[side]:
+        per_inertia = 2.0 / (pair.gears[side].reference_radius ** 2 + 0.25 * bore**2)
+    return gear_inertia(case, box, gear, pairs, materials) * per_inertia
+
+
+def _bore(case: Case, part: Gear) -> float:
+    """Bore of a gear body [m]; of one cut into its shaft the diameter of the shaft there, where that is stated."""
+    train = case.drivetrain
+    if part.bore_diameter or part.seat_position is None or train is None:
+        return part.bore_diameter
+    section = train.shafts[part.shaft].section_at(part.seat_position)
+    return 0.0 if section is None else section.outer_diameter
 
 
 def _flexibility(coupling: CouplingInput) -> JointStiffness:

@@ -8,8 +8,6 @@ Deleting the folder loses time only. A gear is computed by one process at a time
 import hashlib
 import io
 import json
-import os
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -22,8 +20,9 @@ from numpy.typing import NDArray
 from dynamics.influence.build import influence_numbers
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers, RootFillet
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.base.file_lock import FileLock, HeldError
+from rigdesign.base.output_folder import replace_whole
+from thermal.fe.kernel_cache import cache_folder
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -68,11 +67,14 @@ class InfluenceStore:
         """Numbers of a gear that are stored, or None; ``say`` is called for a file that cannot be used."""
         file = self.file(model)
         try:
-            found = _read(file, identity(model))
+            found = _numbers_in(file.read_bytes(), identity(model))
+            fault = "" if found is not None else "is damaged or of another gear"
         except ABSENT:
             return None
-        if found is None:
-            say(f"{file} is damaged or of another gear: its influence numbers are computed again")
+        except OSError as error:
+            found, fault = None, f"cannot be read ({error.strerror})"
+        if fault:
+            say(f"{file} {fault}: its influence numbers are computed again")
         return found
 
     def compute(self, model: GearModel) -> InfluenceNumbers:
@@ -177,17 +179,8 @@ def _seal(key: str, archive: bytes) -> bytes:
     return hashlib.sha256(key.encode() + archive).hexdigest().encode()
 
 
-def _read(file: Path, key: str) -> InfluenceNumbers | None:
-    """Numbers of a file; None for one that is damaged or of another gear.
-
-    Raises one of `ABSENT` where there is none.
-    """
-    try:
-        content = file.read_bytes()
-    except ABSENT:
-        raise
-    except OSError:
-        return None
+def _numbers_in(content: bytes, key: str) -> InfluenceNumbers | None:
+    """Numbers of a file; None for one that is damaged or of another gear."""
     seal, archive = content[:SEAL], content[SEAL:]
     if seal != _seal(key, archive):
         return None
@@ -200,12 +193,4 @@ def _write(file: Path, key: str, numbers: InfluenceNumbers) -> None:
     stream = io.BytesIO()
     np.savez(stream, allow_pickle=False, **_entries(numbers))
     archive = stream.getvalue()
-    file.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=file.parent, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as part:
-            part.write(_seal(key, archive) + archive)
-        Path(name).replace(file)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    replace_whole(file, _seal(key, archive) + archive)

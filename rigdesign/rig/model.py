@@ -281,6 +281,14 @@ class Rig:
         )
 
     @property
+    def reduced(self) -> bool:
+        """Whether fidelity quick has other teeth or shafts than the case asks for."""
+        drivetrain = self.case.drivetrain
+        return drivetrain is not None and (
+            self.shaft_model != drivetrain.shaft_model or self.mesh_stiffness != drivetrain.mesh_stiffness
+        )
+
+    @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
         return tuple(self.pairs)

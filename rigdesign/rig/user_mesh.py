@@ -4,10 +4,11 @@ Shafts and gears that the file lacks and of which ``boundary`` speaks are drawn 
 box, and so is the field under a foot with a ``foot_contact``.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -21,25 +22,31 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.rules.surfaces import boundary_faults
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.face_rules import FaceRule
-from thermal.housing.fitted import fitted_model
+from thermal.housing.fitted import ROUND, fit_cylinder, fitted_model
 from thermal.housing.gearbox import build_field, build_shaft
 from thermal.housing.geometry import HousingGeometry
 from thermal.housing.housing_surfaces import FOOT
+from thermal.housing.measures import MINIMUM_LAND, SIDES
 from thermal.housing.mesh_file import read_mesh
-from thermal.housing.parametric_stations import seal_stations
+from thermal.housing.parametric_stations import bearing_stations, seal_stations
 from thermal.housing.shaft_geometry import ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import MeshSizes
 from thermal.housing.stations import GearboxModel, Point
-from thermal.housing.step_file import StepPart, part_size, read_part, read_step
+from thermal.housing.step_file import BODY, StepPart, part_size, read_part, read_step
 from thermal.housing.surfaces import body_names, joined_surfaces
 
 LARGEST_MESH = 2_000_000_000
 """Bytes of a mesh file; a gearbox of a million nodes has a tenth."""
 LARGEST_STEP = 200_000_000
 """Bytes of a STEP file; a gearbox with every fillet has a tenth."""
-LARGEST_RATIO = 3.0
-"""Of the height and width of a STEP file and those of the case; beyond it the part has another unit."""
+LARGEST_RATIO, BORE_RATIO, PLACE_RATIO, AXES_RATIO = 2.0, 1.5, 1.5, 1.05
+"""Of width and height, of diameters of bores, and of the distances of bearings and of axes, found in a part over those
+of the case: feet, bushes and covers are in it, no other unit."""
+MOST_NAMED = 4
+"""Measures that a fault names one by one."""
+SAME_FACTOR = 1.25
+"""Of the ratios of all measures to their median, up to which one factor brings the part to its size."""
 
 NamedRules = tuple[tuple[str, tuple[FaceRule, ...]], ...]
 """Rules that pick faces, by surface."""
@@ -67,10 +74,12 @@ def user_model(
     with _file_faults(at, given, case):
         check_regular(file, LARGEST_MESH if key == "mesh_file" else LARGEST_STEP)
         step = key == "step_file"
-        if step and (wrong := _size_faults(at, given, housing, part_size(file))):
-            raise CaseError(wrong, str(case))
+        if step and (wrong := _size_faults(at, given, _outside(housing, part_size(file)))):
+            raise CaseError(wrong, str(case))  # meshed by mistake it would never end
         part = _Part(file, file.stat().st_mtime_ns, _face_rules(housing), sizes.wall, sizes.circle, step)
         mesh = _read(part)
+        if wrong := _size_faults(at, given, _measures(mesh, geometry, housing)):
+            raise CaseError(wrong, str(case))
         drawn = _Drawn(_drawn_shafts(housing, geometry, mesh), _foot_width(geometry, mesh))
         model = _whole(part, geometry, drawn, sizes)
     faults = _part_faults(at, given, gearbox, geometry, model)
@@ -135,19 +144,88 @@ def _foot_width(geometry: HousingGeometry, mesh: NamedMesh) -> float | None:
     return 2.0 * float(np.abs(mesh.points[np.unique(mesh.surfaces[FOOT]), 1]).max())
 
 
-def _size_faults(at: str, given: str, housing: Housing, size: Point) -> list[Fault]:
-    """A part far from the size of the case was drawn in another unit; meshed by mistake it would never end."""
-    _, width, height = size
+@dataclass(frozen=True)
+class _Measure:
+    """A length of a part beside that of the case [m].
+
+    most : of their ratio, either way, between a part of another shape and one in another unit
+    """
+
+    what: str
+    found: float
+    stated_as: str
+    stated: float
+    most: float
+
+    @property
+    def ratio(self) -> float:
+        """Of the part over the case."""
+        return self.found / self.stated
+
+    @property
+    def text(self) -> str:
+        """Both lengths in words."""
+        found, stated = (show(length, "length", digits=4) for length in (self.found, self.stated))
+        return f"{self.what} is {found}, {self.stated_as} {stated}"
+
+
+def _outside(housing: Housing, size: Point) -> list[_Measure]:
+    """Width and height of a housing."""
     return [
-        Fault(
-            at, given, f"is {show(found, 'length', digits=4)} {word}, housing.{key} is {show(stated, 'length')}",
-            "check the unit of the STEP file, its axes (x along the shafts, z up) and the key",
+        _Measure("width", size[1], "housing.width", housing.width, LARGEST_RATIO),
+        _Measure("height", size[2], "housing.height", housing.height, LARGEST_RATIO),
+    ]
+
+
+def _measures(mesh: NamedMesh, geometry: HousingGeometry, housing: Housing) -> list[_Measure]:
+    """Everything of a part that the case states as well."""
+    found = []
+    if BODY in mesh.bodies:
+        size = np.ptp(mesh.points[np.unique(mesh.cells[mesh.bodies[BODY]])], axis=0).tolist()
+        found = _outside(housing, (size[0], size[1], size[2]))
+    return [*found, *_bores(mesh, geometry)]
+
+
+def _bores(mesh: NamedMesh, geometry: HousingGeometry) -> Iterator[_Measure]:
+    """Diameters of the bores that the mesh names and that are cylinders about an axis along x, and their distances."""
+    fits = {
+        one.bore_surface: fit
+        for one in bearing_stations(geometry)
+        if one.bore_surface in mesh.surfaces
+        and (fit := fit_cylinder(mesh.points[np.unique(mesh.surfaces[one.bore_surface])])).roundness <= ROUND
+    }
+    found = [one for one in bearing_stations(geometry) if one.bore_surface in fits]
+    radii = {
+        f"{shaft.name}_{side}": shaft.bearing(side).bore_radius for shaft in geometry.shafts for side in SIDES
+    }
+    for one in found:
+        diameter, needed = 2.0 * fits[one.bore_surface].radius, 2.0 * radii[one.name]
+        yield _Measure(f"diameter of {one.bore_surface}", diameter, "its bearing", needed, BORE_RATIO)
+    for one, other in combinations(found, 2):
+        names = f"distance from {one.bore_surface} to {other.bore_surface}"
+        pairs = zip(
+            (one.centre, fits[one.bore_surface].centre), (other.centre, fits[other.bore_surface].centre)
         )
-        for key, word, found, stated in (
-            ("width", "wide", width, housing.width), ("height", "high", height, housing.height)
-        )
-        if not 1.0 / LARGEST_RATIO <= found / stated <= LARGEST_RATIO
-    ]  # fmt: skip
+        stated, measured = (np.abs(np.subtract(*pair)) for pair in pairs)
+        if one.shaft == other.shaft:
+            yield _Measure(names, float(measured[0]), "that of its bearings", float(stated[0]), PLACE_RATIO)
+        elif stated[0] < MINIMUM_LAND:
+            apart = float(np.hypot(*measured[1:]))
+            yield _Measure(names, apart, "that of their axes", float(stated[1]), AXES_RATIO)
+
+
+def _size_faults(at: str, given: str, measures: Collection[_Measure]) -> list[Fault]:
+    """A part of another size than the case says, with the factor that fits all its measures, if there is one."""
+    wrong = [one for one in measures if not 1.0 / one.most <= one.ratio <= one.most]
+    if not wrong:
+        return []
+    ratio = float(np.median([one.ratio for one in measures]))
+    if all(1.0 / SAME_FACTOR <= one.ratio / ratio <= SAME_FACTOR for one in measures):
+        remedy = f"scale the part by {1.0 / ratio:.4g}: check its unit"
+    else:
+        remedy = "check its unit, its axes (x along the shafts, z up) and the keys"
+    more = f" and {len(wrong) - MOST_NAMED} more" if len(wrong) > MOST_NAMED else ""
+    return [Fault(at, given, f"{', '.join(one.text for one in wrong[:MOST_NAMED])}{more}", remedy)]
 
 
 def _part_faults(

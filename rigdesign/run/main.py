@@ -17,8 +17,8 @@ from rigdesign.base.finite import require_finite
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
+from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks import all_checks
-from rigdesign.checks.rules import overall
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
@@ -33,7 +33,7 @@ from rigdesign.records.housing import compared_temperatures, fields_of
 from rigdesign.records.rolling_bearings import rolling_bearings
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.records.undamped import held_crossings, require_damping
-from rigdesign.results.check import Check, Checks
+from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.events import event_row
@@ -49,7 +49,7 @@ from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
 from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
-from rigdesign.run.warnings import not_modelled, unanswered, warnings_of
+from rigdesign.run.warnings import not_modelled, warnings_of
 from thermal.fe.kernels import one_thread
 
 Progress = Callable[[str], None]
@@ -161,7 +161,8 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
     case, rig, points = solved.case, solved.rig, list(solved.points)
     _ = solved.lateral
     clock.lap("lateral")
-    checks = all_checks(solved)
+    hand = hand_checks(solved)
+    checks = all_checks(solved, hand)
     clock.lap("checks")
     losses = losses_by_stage(rig, points)
     result = RunResult(
@@ -185,12 +186,12 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         coupling=[coupling_row(p) for p in points],
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),
-        hand_checks=hand_checks(solved),
+        hand_checks=hand,
         inputs=list(case.inputs),
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(solved),
-        warnings=[*_doubts(case), *warnings_of(solved, losses), *unanswered(checks)],
+        warnings=[*_doubts(case), *warnings_of(solved, losses)],
         timings_s=clock.laps,
         fields=[field for p in points for field in fields_of(rig, p)],
     )
@@ -206,12 +207,12 @@ def _case_record(case: Case) -> dict[str, str]:
 
 
 def _doubts(case: Case) -> list[Finding]:
-    """What the case says against itself."""
-    reason = case.schedule.simulation_only
-    if reason is None:
-        return []
-    text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
-    return [Finding(id="simulation_only", text=text)]
+    """What speaks against the case itself: values outside of their usual range, a schedule that no rig can run."""
+    found = [Finding(id="unusual_input", text=text) for text in unusual_inputs(case).values()]
+    if (reason := case.schedule.simulation_only) is not None:
+        text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
+        found.append(Finding(id="simulation_only", text=text))
+    return found
 
 
 def losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[PlacedLoss]]:

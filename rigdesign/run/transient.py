@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.checks import all_checks
-from rigdesign.checks.rules import overall
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.check import Check, Checks
+from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.extremes import Extreme, HistoryExtremes
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.history import UNITS, worst_moment_row
@@ -50,7 +49,7 @@ def with_transient(
         return replace(result, warnings=[*result.warnings, Finding(id="transient", text=text)])
     run = run_transient(solved.rig, solved.points, say)
     history = history_extremes(solved, run)
-    checks: list[Check] = all_checks(replace(solved, history=history))
+    checks: list[Check] = all_checks(replace(solved, history=history), result.hand_checks)
     return replace(
         result,
         transient=transient_result(solved, run, history),

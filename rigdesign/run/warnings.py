@@ -1,6 +1,6 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
-from rigdesign.results.check import Check
 from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
@@ -58,19 +57,6 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="heat_audit", text=text) for text in heat_audits(solved)),
     ]
     return list(dict.fromkeys(found))
-
-
-def unanswered(checks: Iterable[Check]) -> list[Finding]:
-    """Limits that the case states and no verdict answers: the model lacks what they are about."""
-    return [
-        Finding(
-            id="limit_not_answered",
-            text=f"{check.id}: the case states a limit of {check.limit:.4g} {check.unit}, and no verdict answers it: "
-            f"{check.reason}",
-        )
-        for check in checks
-        if check.verdict == "not applicable" and check.limit is not None
-    ]
 
 
 def _gears(solved: SolvedRig) -> Iterator[str]:

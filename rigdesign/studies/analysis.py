@@ -51,8 +51,19 @@ def computed_so_far(case: "Case", fidelity: str, plan: Plan, points: Sequence[St
         variations=plan.variations,
         points=points,
         checks=plan.selection,
-        warnings=list(_failed(plan, points)),
+        warnings=[*kept_by_copies(case, plan), *_failed(plan, points)],
     )
+
+
+def kept_by_copies(case: "Case", plan: Plan) -> Iterator[Finding]:
+    """Varied keys that gearboxes made ``like`` another one do not follow."""
+    varied = [variation.path for variation in plan.variations]
+    for path in varied:
+        copies = [copy for copy in case.copies_of(path) if copy not in varied]
+        if copies:
+            all_boxes = ".".join(["gearboxes", "*", *path.split(".")[2:]])
+            text = f"{path} is varied alone: {', '.join(copies)}, taken from it by `like` in the case, keeps its value"
+            yield Finding(id="not_carried", text=f"{text}; vary {all_boxes} to move all")
 
 
 def _wide_brackets(crossings: Sequence[Crossing], tolerance: float) -> Iterator[Finding]:

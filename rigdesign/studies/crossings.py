@@ -20,13 +20,11 @@ class CheckState:
 def holds(check: Record | None) -> bool | None:
     """Whether a check holds; None where there is no result or the check does not apply.
 
-    A utilisation of at most 1 holds, also where contributors that are left out make the verdict a warning.
+    A margin of at least 0 holds, also where contributors that are left out make the verdict open.
     """
     if check is None or check["verdict"] == "not applicable":
         return None
-    if check["utilisation"] is None:
-        return bool(check["verdict"] != "fail")
-    return bool(check["utilisation"] <= 1.0)
+    return None if check["margin"] is None else bool(check["margin"] >= 0.0)
 
 
 def check_states(identity: str, places: Sequence[tuple[float, StudyPoint]]) -> list[CheckState]:
@@ -47,7 +45,7 @@ def changes(states: Sequence[CheckState]) -> Iterator[tuple[CheckState, CheckSta
 def interpolated(left: CheckState, right: CheckState) -> float:
     """The value at which the margin is zero, by a straight line; halfway where a margin is missing.
 
-    The margin follows the value of a check; its utilisation does not where the limit is a lower one.
+    The margin follows the value of a check; its distance does not where the limit is a lower one.
     """
     if left.margin is None or right.margin is None:
         return 0.5 * (left.value + right.value)

@@ -1,15 +1,16 @@
 """What a study computes: the design asked for, and the points it makes of a case."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rigdesign.base.errors import UsageError
+from rigdesign.base.errors import CaseError, UsageError
 from rigdesign.studies.boundary import DEFAULT_PARTS, BoundarySearch
 from rigdesign.studies.grid import MAX_POINTS, Variation, combinations, parse_variation
 from rigdesign.studies.ranges import ASSUMED, InputRange, parse_ranges, require_number, tolerance_in
 from rigdesign.studies.result import Design, StudyPoint, check_ids
-from rigdesign.studies.selection import CheckSelection
+from rigdesign.studies.selection import CheckSelection, declared_ids
 from rigdesign.studies.tornado import ends, stated_values
 
 if TYPE_CHECKING:
@@ -96,18 +97,21 @@ class Plan:
     indices: bool = False
     seed: int = 0
 
-    def require(self, checks: Sequence[str]) -> None:
-        """Refuse a pattern of checks that matches none, as soon as one point says which there are.
-
-        Not where a name is varied: another law or part may have other checks.
+    def require_checks(self, case: "Case") -> None:
+        """Refuse a pattern that matches no check of any point, known before one is computed.
 
         Raises
         ------
         UsageError
             With the nearest ids.
         """
-        if all(variation.numbers() is not None for variation in self.variations):
-            self.selection.of(checks)
+        named = [variation.path for variation in self.variations if variation.numbers() is None]
+        of_names = {tuple(point.values[path] for path in named): point for point in self.points}
+        cases = [case]
+        for point in of_names.values() if named else ():
+            with suppress(CaseError):
+                cases.append(case.with_values(point.changes))
+        self.selection.of(list(dict.fromkeys(identity for each in cases for identity in declared_ids(each))))
 
     def more(self, points: Sequence[StudyPoint]) -> list[DesignPoint]:
         """Points to compute after those computed; only a boundary search has some."""

@@ -12,9 +12,9 @@ from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.checks import estimated_checks
-from rigdesign.checks.rules import overall
 from rigdesign.reanalysis.affected_parts import Reanalysis, reanalysis
 from rigdesign.reanalysis.reference import Reference, reanalysed, restored, solve_reference
+from rigdesign.results.check import overall
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.reuse import same_housings
 from rigdesign.run.main import run_case

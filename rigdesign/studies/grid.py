@@ -7,7 +7,7 @@ from decimal import Decimal
 from itertools import product
 
 from rigdesign.base.errors import UsageError, shortened
-from rigdesign.base.units import number_match
+from rigdesign.base.units import kind_of, number_match
 
 MAX_POINTS = 100_000
 KELVIN_STEPS = {"degC", "°C", "celsius", "degree_Celsius"}
@@ -43,9 +43,9 @@ def parse_variation(text: str) -> Variation:
     """Read one ``--vary`` argument.
 
     ``PATH=START:STOP:STEP`` counts from START to STOP, both included; STOP must lie a whole number of steps
-    from START. The unit stands at every number ('90 degC:140 degC:10 K'), or once at the end
-    ('90:140:10 degC'), or nowhere for a dimensionless input; a temperature in degC may be stepped in K.
-    ``PATH=v1,v2`` lists values; a value that holds a comma stands in double quotes.
+    from START. ``PATH=v1,v2`` lists values; a value that holds a comma stands in double quotes. The unit stands
+    at every number ('90 degC:140 degC:10 K', '90 degC,140 degC'), or once at the end ('90:140:10 degC',
+    '90,140 degC'), or nowhere for a dimensionless input; a temperature in degC may be stepped in K.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def parse_variation(text: str) -> Variation:
         values = _range(text, [(Decimal(part[1]), part[2]) for part in bounds if part])
     else:
         try:
-            values = [value.strip() for value in next(csv.reader([right], skipinitialspace=True))]
+            values = _in_last_unit(next(csv.reader([right], skipinitialspace=True)))
         except csv.Error as error:
             raise UsageError(f"--vary '{text}': {error}; {EXAMPLE}") from None
     if not all(values):
@@ -73,6 +73,16 @@ def parse_variation(text: str) -> Variation:
             f"--vary '{text}': the value {shortened(twice[0])} stands twice; give each value once"
         )
     return Variation(path, tuple(values))
+
+
+def _in_last_unit(values: Sequence[str]) -> list[str]:
+    """Listed values; a unit that stands at the last one only is that of all."""
+    stripped = [value.strip() for value in values]
+    *others, last = (number_match(value) for value in stripped)
+    plain = all(other and not other[2] for other in others)
+    if last is None or not last[2] or not plain or kind_of(stripped[-1]) is None:
+        return stripped
+    return [f"{value} {last[2]}" for value in stripped[:-1]] + [stripped[-1]]
 
 
 def _range(text: str, bounds: list[tuple[Decimal, str]]) -> list[str]:

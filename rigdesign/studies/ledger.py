@@ -18,7 +18,7 @@ from rigdesign.base.errors import OutputError
 from rigdesign.base.version import __version__
 from rigdesign.studies.result import Record
 
-FORMAT = 3
+FORMAT = 4
 """Of the table below, kept in the file as user_version; raise it with any change."""
 SYNCHRONOUS = "EXTRA"
 """A stored point is on the disk and not with the operating system: it stays when the power fails."""

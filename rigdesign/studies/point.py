@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rigdesign.case import Case
 
 CHECK_KEYS = (
-    "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
-    "by_definition",
+    "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "distance", "verdict",
+    "flags", "by_definition",
 )  # fmt: skip
 NO_MEMORY = "the worker has no memory left; give it more, or start fewer workers"
 
@@ -54,6 +54,11 @@ class PointSetup:
     run: Run | None = None
     prepare: Prepare | None = None
 
+    @property
+    def functions(self) -> tuple[Run | Prepare | None, ...]:
+        """Of the user."""
+        return self.run, self.prepare
+
     def packed(self) -> bytes:
         """As `compute_point` takes it."""
         return pickle.dumps(self, protocol=pickle.HIGHEST_PROTOCOL)
@@ -78,8 +83,13 @@ _ONE_POINT = threading.Lock()
 """Meshing and compiled threads allow one point at a time in a process, whatever threads the executor has."""
 
 
-def compute_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
-    """Compute the case of ``setup`` with some of its values changed; never raises an `Exception`."""
+def compute_point(
+    changes: Mapping[str, str], *, setup: bytes, loaded: tuple[Run | Prepare | None, ...] = ()
+) -> PointOutcome:
+    """Compute the case of ``setup`` with some of its values changed; never raises an `Exception`.
+
+    loaded : functions in ``setup``, so that a worker that cannot load them fails before it computes
+    """
     return replace(_computed(changes, setup), version=__version__)
 
 

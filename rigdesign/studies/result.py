@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-from rigdesign.results.check import Check
+from rigdesign.results.check import Check, Verdict
 from rigdesign.results.result import Finding, RunResult
-from rigdesign.results.verdict import Verdict
 from rigdesign.studies.grid import Variation
 from rigdesign.studies.selection import CheckSelection
 
@@ -89,16 +88,16 @@ class Crossing:
 class Swing:
     """A check with one input at its two ends, all others as stated: a bar of a tornado plot.
 
-    A utilisation is None where the point has no result, or the check none there.
+    A distance is None where the point has no result, or the check none there.
     """
 
     check: str
     path: str
     low: str
     high: str
-    utilisation_stated: float | None
-    utilisation_low: float | None
-    utilisation_high: float | None
+    distance_stated: float | None
+    distance_low: float | None
+    distance_high: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +117,7 @@ class PassProbability:
 
 @dataclass(frozen=True, kw_only=True)
 class SobolIndex:
-    """Share of the variance of a check's utilisation that an input causes: alone, and with all its interactions."""
+    """Share of the variance of a check's distance that an input causes: alone, and with all its interactions."""
 
     check: str
     path: str

@@ -11,7 +11,7 @@ from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers, Workers, worker_count
-from rigdesign.studies.analysis import analysed, computed_so_far
+from rigdesign.studies.analysis import analysed, computed_so_far, kept_by_copies
 from rigdesign.studies.design import Plan, StudyDesign, planned
 from rigdesign.studies.earlier import replaced_pages
 from rigdesign.studies.point import PointSetup, Prepare, Run
@@ -151,7 +151,9 @@ def run_study(
         )
     plan = planned(case, design)
     if execution.run is None and execution.prepare is None:
-        plan.require(_check_ids(case))
+        plan.require_checks(case)
+    for finding in kept_by_copies(case, plan):
+        execution.tell(finding.text)
     execution.say(f"{len(plan.points)} points: are they valid cases")
     tasks = tasks_of(case, plan.points, fidelity)
     workers = _workers(execution)
@@ -195,13 +197,6 @@ def _prepare_teeth(case: "Case", fidelity: Fidelity, say: Callable[[str], None])
             rig.prepare_teeth(say)
 
 
-def _check_ids(case: "Case") -> list[str]:
-    """Ids of the checks of a point, known before anything is computed: all but those of the thermal history."""
-    from rigdesign.explanation.rules import declared_rules
-
-    return [rule.id for _, rule in declared_rules(case) if not rule.id.startswith("transient.")]
-
-
 def _workers(execution: Execution) -> Workers:
     if execution.executor is not None:
         return Workers(execution.executor)
@@ -216,7 +211,7 @@ def _compute(plan: Plan, tasks: list[PointTask], solver: PointSolver, execution:
     """Compute what is missing, round by round: a boundary search adds to ``tasks`` what it needs next."""
     missing = len(solver.missing(tasks))
     execution.say(f"{len(tasks)} points, {len(tasks) - missing} of them known already, {solver.workers}")
-    listeners = Listeners(count=execution.finished, checks=plan.require, remark=execution.tell)
+    listeners = Listeners(count=execution.finished, remark=execution.tell)
     new = list(tasks)
     while new:
         solver.solve(new, listeners, left=plan.left(solver.points(tasks)))

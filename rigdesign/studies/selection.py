@@ -1,14 +1,23 @@
-"""Which checks a study is read for: patterns on their ids, as ``--checks`` gives them."""
+"""Which checks a run or study is read for: patterns on their ids, as ``--checks`` gives them."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import UsageError, shortened
+
+if TYPE_CHECKING:
+    from rigdesign.case import Case
+    from rigdesign.records.solved_rig import SolvedRig
+    from rigdesign.results.result import RunResult
 
 EXAMPLE = (
     "write --checks 'temperature.*,clearance.*' to take checks, '!specimen.root_stress*' to leave some out"
 )
+NOT_SELECTED = "not selected"
+"""Why a check that ``rigdesign check --checks`` leaves out does not apply."""
 NEAREST = 3
 """Ids that a message names for a pattern that matches none."""
 
@@ -45,6 +54,36 @@ class CheckSelection:
         """Whether there is no pattern."""
         return not self.patterns
 
+    def require(self, case: "Case", *, transient: bool) -> None:
+        """Refuse what :meth:`of` refuses before anything is computed; ``transient``: with the thermal history."""
+        self.of(declared_ids(case, transient=transient))
+
+    def applied(self, solved: "SolvedRig", result: "RunResult") -> "RunResult":
+        """The result of a run in which the checks that are not selected do not apply, and its verdict then."""
+        from rigdesign.checks.rules import not_applicable
+        from rigdesign.explanation.rules import declared_rules
+        from rigdesign.results.check import Checks, overall
+        from rigdesign.results.result import Finding
+
+        if self.selects_all:
+            return result
+        selected = self.of([check.id for check in result.checks])
+        rules = {rule.id: rule for _, rule in declared_rules(solved.case)}
+        checks = [
+            check if check.id in selected else not_applicable(rules[check.id], NOT_SELECTED)
+            for check in result.checks
+        ]
+        text = f"{len(selected)} of {len(checks)} checks are judged, those that --checks {self} selects"
+        return replace(
+            result,
+            checks=Checks(checks),
+            verdict=overall(checks),
+            warnings=[
+                Finding(id="checks_selected", text=f"{text}; the others do not count"),
+                *result.warnings,
+            ],
+        )
+
     def of(self, identities: Sequence[str]) -> tuple[str, ...]:
         """The selected ids, in their order.
 
@@ -63,6 +102,17 @@ class CheckSelection:
         if identities and not left:
             raise UsageError(f"--checks {shortened(str(self))!r}: no check is left over; leave fewer out")
         return tuple(identity for identity in identities if identity in left)
+
+
+def declared_ids(case: "Case", *, transient: bool = False) -> list[str]:
+    """Ids of the checks of a case, known before anything is computed.
+
+    transient : with those of the thermal history
+    """
+    from rigdesign.explanation.rules import declared_rules
+
+    ids = [rule.id for _, rule in declared_rules(case)]
+    return ids if transient else [identity for identity in ids if not identity.startswith("transient.")]
 
 
 def _matches(pattern: str, identities: Iterable[str]) -> list[str]:

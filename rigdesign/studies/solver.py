@@ -69,12 +69,10 @@ class Listeners:
     """Callbacks for finished points.
 
     count : called with points done, points in all, and the last one in words
-    checks : called with the ids of the checks of the first point that has a result
     remark : called with what is to know of the workers
     """
 
     count: Callable[[int, int, str], None]
-    checks: Callable[[Sequence[str]], None]
     remark: Callable[[str], None]
 
 
@@ -136,30 +134,20 @@ class PointSolver:
             If the ledger cannot be written.
         """
         missing = self.missing(tasks)
-        named = self._name_checks(tasks, listeners)
         if not missing:
             return
-        self.workers.open()
+        work = partial(compute_point, setup=self._setup.packed(), loaded=self._setup.functions)
+        changes = [dict(task.point.changes) for task in missing]
+        self.workers.open(work, changes)
         if self.workers.remark and not self.computed:
             listeners.remark(self.workers.remark)
-        work = partial(compute_point, setup=self._setup.packed())
         whole = len(self.computed) + len(missing) + left
-        with closing(self.workers.compute(work, [dict(task.point.changes) for task in missing])) as finished:
+        with closing(self.workers.compute(work, changes)) as finished:
             for index, outcome in finished:
                 task = missing[index]
                 failed, record = _entry(task, outcome)
                 self._store(task, failed, record)
                 listeners.count(len(self.computed), whole, _progress_line(task, failed, record))
-                named = named or self._name_checks([task], listeners)
-
-    def _name_checks(self, tasks: Sequence[PointTask], listeners: Listeners) -> bool:
-        """Pass on the ids of the checks of the first of ``tasks`` with a result; False if none has one."""
-        for task in tasks:
-            failed, record = self.known.get(task.key, (True, {}))
-            if not failed:
-                listeners.checks([check["id"] for check in record["checks"]])
-                return True
-        return False
 
     def points(self, tasks: Sequence[PointTask]) -> list[StudyPoint]:
         """The tasks that are known, with what came of them."""

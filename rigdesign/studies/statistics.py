@@ -16,7 +16,7 @@ RESAMPLES = 500
 ALL = "all"
 """Stands for every selected check together."""
 NO_SPREAD = 1e-9
-"""Standard deviation of a utilisation below which nothing causes it."""
+"""Standard deviation of a distance below which nothing causes it."""
 
 
 def pass_probability(check: str, held: int, samples: int, failed: int) -> PassProbability:
@@ -57,7 +57,7 @@ def probability_of_all(points: Sequence[StudyPoint], checks: Sequence[str]) -> P
 def variance_shares(
     points: Sequence[StudyPoint], checks: Sequence[str], paths: Sequence[str], seed: int
 ) -> Iterator[SobolIndex]:
-    """Sobol indices of the utilisation of every check that has one in all points and is spread at all.
+    """Sobol indices of the distance of every check that has one in all points and is spread at all.
 
     points : the design of `saltelli_points` in its order, all of them computed
     seed : of the bootstrap
@@ -66,7 +66,7 @@ def variance_shares(
     over the rows of the design.
     """
     size = len(points) // (len(paths) + 2)
-    named = {identity: _utilisations(points, identity) for identity in checks}
+    named = {identity: _distances(points, identity) for identity in checks}
     spread = {
         identity: values
         for identity, values in named.items()
@@ -93,10 +93,10 @@ def variance_shares(
             )
 
 
-def _utilisations(points: Sequence[StudyPoint], identity: str) -> Array | None:
-    """Utilisation of a check in every point; None where one has none."""
+def _distances(points: Sequence[StudyPoint], identity: str) -> Array | None:
+    """Distance of a check in every point; None where one has none."""
     checks = [point.check(identity) for point in points]
-    values = [None if check is None else check["utilisation"] for check in checks]
+    values = [None if check is None else check["distance"] for check in checks]
     return None if any(value is None for value in values) else np.array(values, dtype=float)
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rigdesign.case import Case
 
 LEAST_SWING = 1e-6
-"""Change of a utilisation below which an input does not move a check."""
+"""Change of a distance below which an input does not move a check."""
 NOT_STATED = "as stated"
 """Shown for an input that the case leaves to its default, or that stands for several."""
 
@@ -46,16 +46,16 @@ def swings(
                     path=entry.path,
                     low=low.values[entry.path],
                     high=high.values[entry.path],
-                    utilisation_stated=_utilisation(stated, identity),
-                    utilisation_low=_utilisation(low, identity),
-                    utilisation_high=_utilisation(high, identity),
+                    distance_stated=_distance(stated, identity),
+                    distance_low=_distance(low, identity),
+                    distance_high=_distance(high, identity),
                 )
 
 
 def _moves(identity: str, stated: StudyPoint, low: StudyPoint, high: StudyPoint) -> bool:
-    reference = _utilisation(stated, identity)
+    reference = _distance(stated, identity)
     for point in (low, high):
-        found = _utilisation(point, identity)
+        found = _distance(point, identity)
         if holds(point.check(identity)) != holds(stated.check(identity)) or (found is None) != (
             reference is None
         ):
@@ -65,6 +65,6 @@ def _moves(identity: str, stated: StudyPoint, low: StudyPoint, high: StudyPoint)
     return False
 
 
-def _utilisation(point: StudyPoint, identity: str) -> float | None:
+def _distance(point: StudyPoint, identity: str) -> float | None:
     check = point.check(identity)
-    return None if check is None else check["utilisation"]
+    return None if check is None else check["distance"]

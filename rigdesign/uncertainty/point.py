@@ -14,8 +14,7 @@ from rigdesign.reanalysis.reference import (
     result_of,
     solve_reference,
 )
-from rigdesign.results.check import Check
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Check, Verdict
 from rigdesign.uncertainty.plan import RangeEnd
 
 FIDELITY: Fidelity = "quick"
@@ -28,7 +27,7 @@ class CheckAtEnd:
 
     value: float | None
     margin: float | None
-    utilisation: float | None
+    distance: float | None
     verdict: Verdict
 
 
@@ -73,6 +72,4 @@ def _outcome(found: ReanalysisResult) -> EndResult:
 
 
 def _at_end(check: Check) -> CheckAtEnd:
-    return CheckAtEnd(
-        value=check.value, margin=check.margin, utilisation=check.utilisation, verdict=check.verdict
-    )
+    return CheckAtEnd(value=check.value, margin=check.margin, distance=check.distance, verdict=check.verdict)

@@ -13,9 +13,8 @@ from functools import partial
 
 from rigdesign.base.worker_pool import DIED, compute_all, worker_count
 from rigdesign.case.model import Case
-from rigdesign.checks.rules import overall
 from rigdesign.reanalysis.reference import Reference
-from rigdesign.results.check import Checks
+from rigdesign.results.check import Checks, overall
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
 from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
@@ -43,7 +42,7 @@ def with_ranges(
 ) -> RunResult:
     """The result of a run with its verdicts over the ranges of the assumed inputs.
 
-    A check passes only if it holds at both ends of every range, else it warns and says which assumption decides
+    A check passes only if it holds at both ends of every range, else it is open and says which assumption decides
     it. An end without a result (an invalid case, an iteration that does not converge) makes the checks that depend on
     its input warn.
 
@@ -64,23 +63,27 @@ def with_ranges(
     processes, began = worker_count(workers), time.perf_counter()
     ends, left = plan(case, result.checks)
     wanted = [end for end in ends if end.case is not None and not end.same]
-    if progress is not None:
-        progress(f"stated rig at {FIDELITY} fidelity")
+    say = progress or (lambda line: None)
+    say(f"stated rig at {FIDELITY} fidelity")
     reference, stated = solve_stated(case)
-    solved = _solve(wanted, reference, processes, count or (lambda done, whole, path: None))
+    solved = _solve(wanted, reference, processes, count or (lambda done, whole, path: None), say)
     outcomes = [_outcome(end, stated, solved) for end in ends]
     found = joined(result, stated, list(zip(ends, outcomes, strict=True)), left)
     return replace(found, timings_s={**result.timings_s, "ranges": round(time.perf_counter() - began, 3)})
 
 
 def _solve(
-    ends: Sequence[RangeEnd], reference: Reference, workers: int, count: Count
+    ends: Sequence[RangeEnd],
+    reference: Reference,
+    workers: int,
+    count: Count,
+    say: Callable[[str], None],
 ) -> dict[tuple[str, str], EndResult]:
     """Results by path and end; the longest ones first, so that no worker waits for another at the end."""
     order = sorted(ends, key=lambda end: -len(end.parts))
     found: dict[tuple[str, str], EndResult] = {}
     work = partial(solve_end, reference=reference)
-    for index, outcome in compute_all(work, order, workers):
+    for index, outcome in compute_all(work, order, workers, say):
         end = order[index]
         found[end.path, end.end] = outcome or EndResult(checks={}, max_temperature=None, error=DIED)
         count(len(found), len(order), f"{end.path} = {end.value}")

@@ -7,16 +7,15 @@ stated rig at the same fidelity; added to the margin of the run, it leaves out w
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rigdesign.results.check import Check
+from rigdesign.results.check import Check, Verdict
 from rigdesign.results.ranges import CheckRange, RangeMargin
-from rigdesign.results.verdict import Verdict
 from rigdesign.uncertainty.plan import RangeEnd
 from rigdesign.uncertainty.point import CheckAtEnd, EndResult
 
 SOLVED_BY = 1e-9
 """Share of the value below which a difference of two solutions is round-off."""
 LEAST_MOVE = 1e-3
-"""Shift of the utilisation from which a pair of check and input is listed: of the order of the loop's tolerances."""
+"""Shift of the distance from which a pair of check and input is listed: of the order of the loop's tolerances."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +24,7 @@ class Shifted:
 
     end: RangeEnd
     margin: float
-    utilisation: float
+    distance: float
     verdict: Verdict
 
 
@@ -59,15 +58,15 @@ def ranged_checks(
 
 
 def _shifted(check: Check, reference: CheckAtEnd, at_end: CheckAtEnd, end: RangeEnd) -> Shifted:
-    assert check.margin is not None and check.utilisation is not None
+    assert check.margin is not None and check.distance is not None
     margin = check.margin + _difference(at_end.margin, reference.margin)
-    utilisation = check.utilisation + _difference(at_end.utilisation, reference.utilisation)
+    distance = check.distance + _difference(at_end.distance, reference.distance)
     verdict = check.verdict if at_end.verdict == reference.verdict else at_end.verdict
     if margin < 0.0:
         verdict = "fail"
     elif verdict == "fail":
-        verdict = "warn"
-    return Shifted(end=end, margin=margin, utilisation=max(0.0, utilisation), verdict=verdict)
+        verdict = "pass"
+    return Shifted(end=end, margin=margin, distance=distance, verdict=verdict)
 
 
 def _difference(at_end: float | None, reference: float | None) -> float:
@@ -78,7 +77,7 @@ def _difference(at_end: float | None, reference: float | None) -> float:
 
 
 def judged(ranged: Ranged) -> Check:
-    """The check over the ranges: it passes only if it holds at every end, else it warns and names what decides it.
+    """The check over the ranges: it passes only if it holds at every end, else it is open and names what decides it.
 
     A check that fails as stated stays failed; an end at which it would hold is named.
     """
@@ -96,7 +95,7 @@ def judged(ranged: Ranged) -> Check:
         f"no result at {end.path} = {end.value}, on which it depends: {error.partition(chr(10))[0]}"
         for end, error in ranged.unsolved
     ]
-    return replace(check, verdict="warn", reason=_joined(check.reason, doubts)) if doubts else check
+    return replace(check, verdict="open", reason=_joined(check.reason, doubts)) if doubts else check
 
 
 def _words(shifted: Shifted, check: Check, does: str) -> str:
@@ -131,9 +130,9 @@ def check_range(ranged: Ranged, final: Check) -> CheckRange:
         worst_value=None if worst is None else worst.end.value,
         best_margin=check.margin if best is None else best.margin,
         best_path=None if best is None else best.end.path,
-        utilisation=check.utilisation,
-        worst_utilisation=max((end.utilisation for end in ranged.ends), default=check.utilisation),
-        best_utilisation=min((end.utilisation for end in ranged.ends), default=check.utilisation),
+        distance=check.distance,
+        worst_distance=min((end.distance for end in ranged.ends), default=check.distance),
+        best_distance=max((end.distance for end in ranged.ends), default=check.distance),
         all_worst_margin=check.margin + sum(lost.values()),
         decided_by=tuple(deciding(ranged)),
     )
@@ -149,12 +148,12 @@ def deciding(ranged: Ranged) -> list[str]:
 def moving_margins(ranged: Ranged) -> list[RangeMargin]:
     """The inputs that move the check, the strongest first."""
     check = ranged.check
-    assert check.utilisation is not None
+    assert check.distance is not None
     by_path: dict[str, dict[str, Shifted]] = {}
     for end in ranged.ends:
         by_path.setdefault(end.end.path, {})[end.end.end] = end
     moves = {
-        path: max(abs(end.utilisation - check.utilisation) for end in ends.values())
+        path: max(abs(end.distance - check.distance) for end in ends.values())
         for path, ends in by_path.items()
     }
     listed = [path for path in by_path if moves[path] > LEAST_MOVE]
@@ -171,8 +170,8 @@ def _margin(check: Check, path: str, ends: Mapping[str, Shifted]) -> RangeMargin
         unit=check.unit,
         margin_low=None if low is None else low.margin,
         margin_high=None if high is None else high.margin,
-        utilisation_low=None if low is None else low.utilisation,
-        utilisation_high=None if high is None else high.utilisation,
+        distance_low=None if low is None else low.distance,
+        distance_high=None if high is None else high.distance,
         verdict_low=None if low is None else low.verdict,
         verdict_high=None if high is None else high.verdict,
     )

@@ -1,13 +1,12 @@
 """The rows as a document and as the text of files."""
 
-import csv
-import io
 import json
 import math
 from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, get_args
 
+from rigdesign.base.json_text import csv_text
 from rigdesign.base.version import __version__
 from rigdesign.validation.rows import Basis, ValidationRow
 
@@ -72,12 +71,8 @@ def validation_json(rows: Sequence[ValidationRow]) -> str:
 
 def validation_csv(rows: Sequence[ValidationRow]) -> str:
     """Text of validation.csv, a row each; published numbers as printed."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
     names = [field.name for field in fields(ValidationRow) if field.name not in ("published", "window")]
-    writer.writerow(names)
-    writer.writerows([_cell(getattr(row, name)) for name in names] for row in rows)
-    return table.getvalue()
+    return csv_text(names, ([getattr(row, name) for name in names] for row in rows))
 
 
 def _plain(row: ValidationRow) -> dict[str, Any]:
@@ -90,7 +85,3 @@ def _json(value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def _cell(value: object) -> object:
-    return "" if value is None else value

@@ -2,8 +2,7 @@
 
 import json
 
-from rigdesign.results.check import Check
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Check, Verdict
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"
@@ -12,7 +11,7 @@ EXPECTED = json.loads((PROTOTYPE / "expected.json").read_text(encoding="utf-8"))
 
 def check(identity: str, source: str = "", verdict: Verdict = "pass") -> Check:
     return Check(
-        id=identity, title="", value=1.0, limit=2.0, unit="-", comparison="<=", margin=1.0, utilisation=0.5,
+        id=identity, title="", value=1.0, limit=2.0, unit="-", comparison="<=", margin=1.0, distance=0.5,
         verdict=verdict, source=source, role="rig",
     )  # fmt: skip
 

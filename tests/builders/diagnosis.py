@@ -316,10 +316,11 @@ def story(name: str) -> Result:
             return result_of(write_set(folder, Rig({"angle_zero": (0.02,)})))
         case "one point":
             return result_of(write_set(folder, Rig(points=1, repeats=1)))
-        case "fretting":  # heat in the gear that no effect of the catalogue gives
+        case "fretting" | "no fretting":  # heat in the gear that no effect of the catalogue gives, or takes
+            heat = FRETTING if name == "fretting" else -FRETTING
 
             def fret(point, values):
-                return {**values, "P": values["P"] + FRETTING, "T_gear": values["T_gear"] + FRETTING / 60.0}
+                return {**values, "P": values["P"] + heat, "T_gear": values["T_gear"] + heat / 60.0}
 
             write_set(folder / "healthy", Rig(seed=7), title="as new")
             return result_of(write_set(folder / "set", Rig(), baseline="../healthy", spoil=fret))

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 
 from rigdesign.case.assumptions import AssumptionRecord
+from rigdesign.checks.rules import Rule, distance
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.dynamics import (
     DynamicFactorPoint,
@@ -84,9 +85,9 @@ def gearbox_field(spacing=0.025):
 
 
 def make_check(identity, value, limit, *, verdict=None, comparison="<=", unit="mm", **more):
-    """A check with margin and utilisation from value and limit."""
+    """A check with margin and distance from value and limit."""
     margin = limit - value if comparison == "<=" else value - limit
-    utilisation = value / limit if comparison == "<=" else limit / value
+    rule = Rule(id=identity, title="", unit=unit, source="", group="", limit=limit, comparison=comparison)
     given = {
         "title": identity.replace("_", " "),
         "source": "P2, text",
@@ -101,7 +102,7 @@ def make_check(identity, value, limit, *, verdict=None, comparison="<=", unit="m
         unit=unit,
         comparison=comparison,
         margin=margin,
-        utilisation=utilisation,
+        distance=distance(rule, value),
         verdict=verdict or ("pass" if margin >= 0 else "fail"),
         **given,
     )
@@ -134,7 +135,7 @@ def checks():
             0.062,
             0.06,
             comparison=">=",
-            verdict="warn",
+            flags=("close",),
             title="Axial play, hot",
             reason="holds, but only 3 % of the limit are left",
         ),
@@ -155,7 +156,7 @@ def checks():
             unit="Nm",
             comparison="<=",
             margin=None,
-            utilisation=None,
+            distance=None,
             verdict="not applicable",
             source="datasheet",
             role="rig",
@@ -170,7 +171,7 @@ def checks():
             unit="1",
             comparison="within",
             margin=1.1e9,
-            utilisation=0.48,
+            distance=0.52,
             verdict="pass",
             source="P2, Figure 1",
             role="specimen",

@@ -9,8 +9,8 @@ def ranges():
     def row(name, verdict, margin, decided):
         return CheckRange(
             check=name, unit="mm", verdict_stated=verdict, verdict=verdict, margin=margin, worst_margin=margin,
-            worst_path=None, worst_value=None, best_margin=None, best_path=None, utilisation=0.5,
-            worst_utilisation=None, best_utilisation=None, all_worst_margin=None, decided_by=decided,
+            worst_path=None, worst_value=None, best_margin=None, best_path=None, distance=0.5,
+            worst_distance=None, best_distance=None, all_worst_margin=None, decided_by=decided,
         )  # fmt: skip
 
     def given(path, stated, low, high):
@@ -21,8 +21,8 @@ def ranges():
 
     def margin(check, path, low, high):
         return RangeMargin(
-            check=check, path=path, unit="mm", margin_low=low, margin_high=high, utilisation_low=0.4,
-            utilisation_high=0.9, verdict_low=None, verdict_high=None,
+            check=check, path=path, unit="mm", margin_low=low, margin_high=high, distance_low=0.6,
+            distance_high=0.1, verdict_low=None, verdict_high=None,
         )  # fmt: skip
 
     return RangesResult(

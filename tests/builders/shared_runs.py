@@ -5,7 +5,6 @@ by one of them is read by the others, which wait for it meanwhile.
 """
 
 import fcntl
-import json
 import os
 import pickle
 import shutil
@@ -16,7 +15,6 @@ from pathlib import Path
 from typing import TypeVar
 
 from rigdesign import load_case
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.reanalysis.flips import with_flips
 from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.solved_rig import SolvedRig
@@ -24,6 +22,7 @@ from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
+from thermal.fe.kernel_cache import cache_folder
 
 VARIABLE = "RIGDESIGN_TEST_RUN_FOLDER"
 """Environment variable with the folder of the test run."""
@@ -76,26 +75,25 @@ class ShippedRun:
 
 
 def shipped_run(name: str) -> RunResult:
-    """A shipped case as `rigdesign check` computes it, at the fidelity of its expected.json."""
+    """A shipped case as `rigdesign check` computes it at its default fidelity."""
     return shipped(name).result
 
 
 def shipped(name: str) -> ShippedRun:
-    """The same with the contact in the loop, empty at fidelity quick."""
+    """The same; of the prototype with the contact in the loop."""
     return shared(f"{name}-shipped", lambda: _shipped(name))
 
 
 def _shipped(name: str) -> ShippedRun:
-    expected = json.loads((CASES / name / "expected.json").read_text(encoding="utf-8"))
     looped = [ContactInLoop()]
 
     def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
-        if solved.run is not None and solved.rig.fidelity == "standard":
+        if solved.run is not None and name == "uhcf_prototype":
             looped.append(contact_in_loop(solved.rig, solved.run))
         return result
 
     follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}
-    result = run_case(load_case(CASES / name), expected["fidelity"], follow_ups=follow_ups)
+    result = run_case(load_case(CASES / name), "standard", follow_ups=follow_ups)
     return ShippedRun(result, looped[-1])
 
 

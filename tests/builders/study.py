@@ -70,6 +70,9 @@ class ExampleCase:
             return None
         return {"oil.name": "other", "gear.teeth": "whole number"}.get(path, "number")
 
+    def copies_of(self, path):
+        return ()
+
     @property
     def inputs(self):
         return tuple(InputRow(path=path, value=value) for path, value in self.values.items())

@@ -45,6 +45,9 @@ class NumberCase:
             return None
         return "other" if path in self.names else "whole number" if path in self.whole else "number"
 
+    def copies_of(self, path):
+        return ()
+
     def number(self, path):
         return float(self.values[path].split()[0])
 
@@ -60,10 +63,10 @@ class NumberCase:
         )
 
 
-def result_of(**utilisations):
-    """A result whose checks have these utilisations of a limit of 1."""
-    checks = [make_check(name, value, 1.0, unit="1") for name, value in utilisations.items()]
-    verdict = "fail" if any(value > 1.0 for value in utilisations.values()) else "pass"
+def result_of(**values):
+    """A result whose checks have these values against a limit of 1."""
+    checks = [make_check(name, value, 1.0, unit="1") for name, value in values.items()]
+    verdict = "fail" if any(value > 1.0 for value in values.values()) else "pass"
     return replace(_template(), checks=checks, verdict=verdict)
 
 

@@ -21,14 +21,14 @@ class ExampleStudyCase:
 
 
 def check_record(identity, value, limit, *, comparison="<=", group="temperatures", title=None):
-    """A check as the ledger holds it: utilisation as `rigdesign.checks.rules` counts it, from zero."""
+    """A check as the ledger holds it: distance as `rigdesign.checks.rules` counts it, from zero."""
     upper = comparison == "<="
     margin = limit - value if upper else value - limit
-    utilisation = value / limit if upper else limit / value if value > 0 else 1.0 + margin / -limit
+    distance = margin / limit if upper or margin < 0.0 else margin / value
     return {
         "id": identity, "title": title or identity.replace(".", " "), "group": group, "value": value, "limit": limit,
-        "upper_limit": None, "unit": "mm", "comparison": comparison, "margin": margin, "utilisation": utilisation,
-        "verdict": "pass" if margin >= 0 else "fail",
+        "upper_limit": None, "unit": "mm", "comparison": comparison, "margin": margin, "distance": distance,
+        "verdict": "pass" if margin >= 0 else "fail", "flags": [],
     }  # fmt: skip
 
 

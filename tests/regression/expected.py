@@ -2,9 +2,9 @@
 
     python -m tests.regression.expected [NAME ...] [--all]
 
-from the root of the project runs the named cases (all without a name), carries over every verdict, and every
-utilisation outside its tolerance, with ``--all`` every one; the reasons stay. What it changed is printed, and the
-diff is to be read: a commit that moves a utilisation says why, and a reason that no longer holds is written anew. A
+from the root of the project runs the named cases (all without a name) at their default fidelity, carries over every
+verdict, and every value outside its tolerance, with ``--all`` every one; the reasons stay. What it changed is printed,
+and the diff is to be read: a commit that moves a value says why, and a reason that no longer holds is written anew. A
 check that is new gets an empty reason, which tests/regression/test_cases.py refuses until it is written.
 """
 
@@ -14,19 +14,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from rigdesign import load_case, run_case
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.results.check import Check
-from rigdesign.results.result import RunResult
 from tests.builders.paths import CASES
 
 NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting", "fzg", "strain_gauge_rig")
-UTILISATION_TOLERANCE = 0.005
-"""Relative. A wrong formula among many seldom moves a check by more than a few per cent."""
+FIDELITY: Fidelity = "standard"
+"""The default of `rigdesign check`."""
+TOLERANCE = 0.005
+"""Relative. A wrong formula among many seldom moves a value by more than a few per cent."""
 ROUNDING = 5e-4
-"""Absolute, for what is nearly zero: inclinations and skew of axes there are how the surfaces happen to be divided."""
-DECIMALS = 4
+"""Share of the limit, for what is nearly zero: inclinations and skew of axes there are how surfaces are divided."""
+DIGITS = 6
 
 Document = dict[str, Any]
-"""{fidelity, verdict, checks: {id: {verdict, utilisation, reason}}}"""
+"""{verdict, checks: {id: {verdict, value, reason}}} of the checks that apply; verdict: `Check.status`."""
 
 
 def read(name: str) -> Document:
@@ -35,34 +37,32 @@ def read(name: str) -> Document:
     return document
 
 
-def run(name: str) -> RunResult:
-    """A shipped case at the fidelity its expected results hold for."""
-    return run_case(load_case(CASES / name), fidelity=read(name)["fidelity"])
+def applying(checks: Sequence[Check]) -> list[Check]:
+    """Those that an expected.json lists."""
+    return [check for check in checks if check.verdict != "not applicable"]
 
 
-def agrees(expected: float | None, found: float | None) -> bool:
-    """Whether a utilisation is the expected one; None is one that does not exist."""
-    if expected is None or found is None:
-        return expected is found
-    return abs(found - expected) <= max(UTILISATION_TOLERANCE * abs(expected), ROUNDING)
+def agrees(expected: float | None, check: Check) -> bool:
+    """Whether the value of a check is the expected one; None is one that does not exist."""
+    if expected is None or check.value is None:
+        return expected is check.value
+    return abs(check.value - expected) <= max(TOLERANCE * abs(expected), ROUNDING * abs(check.limit or 0.0))
 
 
 def renewed(document: Document, verdict: str, checks: Sequence[Check], *, every: bool = False) -> Document:
-    """The document with the verdicts of ``checks`` and the utilisations that left their tolerance; with ``every``
-    all of them. Reasons are kept, fidelity too."""
-    return document | {
+    """The document with the verdicts of ``checks`` and the values that left their tolerance; with ``every`` all."""
+    old = document["checks"]
+    return {
         "verdict": verdict,
-        "checks": {check.id: _entry(document["checks"].get(check.id), check, every) for check in checks},
+        "checks": {check.id: _entry(old.get(check.id), check, every) for check in applying(checks)},
     }
 
 
 def _entry(old: Mapping[str, Any] | None, check: Check, every: bool) -> Document:
-    if old is None:
-        old = {"utilisation": None, "reason": ""}
-    found = None if check.utilisation is None else round(check.utilisation, DECIMALS)
-    keeps = agrees(old["utilisation"], check.utilisation) and not every
-    utilisation = old["utilisation"] if keeps else found
-    return {"verdict": check.verdict, "utilisation": utilisation, "reason": old["reason"]}
+    keeps = old is not None and not every and agrees(old["value"], check)
+    found = None if check.value is None else float(f"{check.value:.{DIGITS}g}")
+    value = old["value"] if old is not None and keeps else found
+    return {"verdict": check.status, "value": value, "reason": "" if old is None else old["reason"]}
 
 
 def changes(old: Document, new: Document) -> Iterator[str]:
@@ -76,15 +76,12 @@ def changes(old: Document, new: Document) -> Iterator[str]:
         if before is None or after is None:
             yield f"{key}: {'new, reason to be written' if before is None else 'gone'}"
         else:
-            yield f"{key}: {_told(before)} -> {_told(after)}{_per_cent(before, after)}"
-
-
-def _told(entry: Document) -> str:
-    return f"{entry['verdict']} {entry['utilisation']}"
+            texts = (f"{entry['verdict']} {entry['value']}" for entry in (before, after))
+            yield f"{key}: {' -> '.join(texts)}{_per_cent(before, after)}"
 
 
 def _per_cent(before: Document, after: Document) -> str:
-    first, second = before["utilisation"], after["utilisation"]
+    first, second = before["value"], after["value"]
     moved = first and second is not None and first != second
     return f" ({100.0 * (second / first - 1.0):+.2f} %)" if moved else ""
 
@@ -100,12 +97,12 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(NAMES))
-    parser.add_argument("--all", action="store_true", help="carry over every utilisation")
+    parser.add_argument("--all", action="store_true", help="carry over every value")
     given = parser.parse_args()
     if unknown := sorted(set(given.names) - set(NAMES)):
         parser.error(f"no shipped case {', '.join(unknown)}; there are {', '.join(NAMES)}")
     for name in given.names or NAMES:
-        old, result = read(name), run(name)
+        old, result = read(name), run_case(load_case(CASES / name), FIDELITY)
         new = renewed(old, result.verdict, result.checks, every=given.all)
         write(name, new)
         for line in changes(old, new):

@@ -1,15 +1,19 @@
-"""The shipped cases give what they are expected to give.
+"""The shipped cases give what they are expected to give, at the fidelity that a user gets without options.
 
-``cases/<name>/expected.json`` lists the verdict of every check, its utilisation within 0.5 % (0.0005 near zero) and
-one line of engineering reason. After a change that moves them for a good reason, run
+``cases/<name>/expected.json`` lists the verdict of every check that applies, its value within 0.5 % (0.0005 of the
+limit near zero) and one line of engineering reason. After a change that moves them for a good reason, run
 
     python -m tests.regression.expected
 
-which carries verdicts and utilisations over, and read the diff: its commit says why they moved; the reasons stay, or
-are thought over again. The prototype is held at standard fidelity, the others at quick.
+which carries verdicts and values over, and read the diff: its commit says why they moved; the reasons stay, or are
+thought over again.
 """
 
 import json
+import subprocess
+import sys
+import time
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -23,6 +27,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
 from rigdesign.run.main import run_case
+from tests.builders.checks import check
 from tests.builders.shared_runs import quick_run, shipped_run
 from tests.builders.shortened import shortened_case
 from tests.regression import expected
@@ -41,30 +46,38 @@ def prototype() -> RunResult:
     return shipped("uhcf_prototype")
 
 
-BY_HAND = ("strain_gauge_rig",)
-"""Minutes of a run whose parts other tests run."""
-
-
-def marked(name: str, *more: str) -> object:
-    """A shipped case with what else a test takes."""
-    return pytest.param(name, *more, marks=[pytest.mark.slow] if name in BY_HAND else [])
-
-
-@pytest.mark.parametrize("name", [marked(name) for name in NAMES])
+@pytest.mark.parametrize("name", NAMES)
 def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
-    assert [check.id for check in shipped(name).checks] == list(EXPECTED[name]["checks"])
+    applying = expected.applying(shipped(name).checks)
+    assert [check.id for check in applying] == list(EXPECTED[name]["checks"])
     assert shipped(name).verdict == EXPECTED[name]["verdict"]
     assert all(entry["reason"] for entry in EXPECTED[name]["checks"].values())
 
 
 @pytest.mark.parametrize(
-    ("name", "check_id"), [marked(name, key) for name in NAMES for key in EXPECTED[name]["checks"]]
+    ("name", "check_id"), [(name, key) for name in NAMES for key in EXPECTED[name]["checks"]]
 )
 def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
-    check = next(check for check in shipped(name).checks if check.id == check_id)
-    entry = EXPECTED[name]["checks"][check_id]
-    assert check.verdict == entry["verdict"]
-    assert expected.agrees(entry["utilisation"], check.utilisation), (check.utilisation, entry["utilisation"])
+    check, entry = shipped(name).checks[check_id], EXPECTED[name]["checks"][check_id]
+    assert check.status == entry["verdict"]
+    assert expected.agrees(entry["value"], check), (check.value, entry["value"])
+
+
+VARIANTS = sorted(str(file.relative_to(CASES)) for file in CASES.glob("*/*.toml") if file.name != "case.toml")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*NAMES, *VARIANTS])
+def test_every_case_and_variant_runs_at_its_default(name: str, tmp_path: Path) -> None:
+    """As a user starts it, in a process of its own; by hand and before every release. Prints status and time."""
+    command = [sys.executable, "-m", "rigdesign", "check", str(CASES / name), "--out", str(tmp_path / "out")]
+    started = time.perf_counter()
+    ended = subprocess.run(command, capture_output=True, text=True)
+    print(f"\n{name}: status {ended.returncode}, {time.perf_counter() - started:.0f} s")
+    assert ended.returncode in (0, 1), ended.stderr
+    assert (
+        json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["fidelity"] == "standard"
+    )
 
 
 @pytest.mark.parametrize(("name", "fails"), [("uhcf_prototype", 4), ("loop_1to1", 0)])
@@ -96,39 +109,30 @@ def test_the_terminal_says_what_decides_on_one_screen(
         (0.8, float("nan"), False),
     ],
 )
-def test_utilisations_agree_within_half_a_per_cent(
-    stored: float | None, found: float | None, same: bool
-) -> None:
-    assert expected.agrees(stored, found) is same
+def test_values_agree_within_half_a_per_cent(stored: float | None, found: float | None, same: bool) -> None:
+    assert expected.agrees(stored, replace(check("x"), value=found, limit=1.0)) is same
 
 
 def test_expected_results_are_carried_over_with_their_reasons() -> None:
-    def check(name: str, utilisation: float | None) -> Check:
-        return Check(
-            id=name, title="", value=utilisation, limit=1.0, unit="-", comparison="<=", margin=None,
-            utilisation=utilisation, verdict="not applicable" if utilisation is None else "warn", source="",
-            role="rig",
-        )  # fmt: skip
+    def valued(name: str, value: float | None) -> Check:
+        return replace(check(name), value=value, limit=1.0, verdict="open")
 
-    entry = {"verdict": "pass", "utilisation": 0.5, "reason": "as built"}
-    old = {
-        "fidelity": "quick",
-        "verdict": "pass",
-        "checks": dict.fromkeys(("kept", "moved", "gone"), entry),
-    }
-    checks = [check("moved", 0.61234567), check("kept", 0.502), check("new", None)]
-    new = expected.renewed(old, "warn", checks)
-    assert (new["fidelity"], new["verdict"]) == ("quick", "warn")
+    entry = {"verdict": "pass", "value": 0.5, "reason": "as built"}
+    old = {"verdict": "pass", "checks": dict.fromkeys(("kept", "moved", "gone"), entry)}
+    absent = replace(check("absent"), verdict="not applicable")
+    checks = [valued("moved", 0.61234567), valued("kept", 0.502), valued("new", None), absent]
+    new = expected.renewed(old, "open", checks)
+    assert new["verdict"] == "open"
     assert list(new["checks"].items()) == [
-        ("moved", {"verdict": "warn", "utilisation": 0.6123, "reason": "as built"}),
-        ("kept", {"verdict": "warn", "utilisation": 0.5, "reason": "as built"}),
-        ("new", {"verdict": "not applicable", "utilisation": None, "reason": ""}),
+        ("moved", {"verdict": "open", "value": 0.612346, "reason": "as built"}),
+        ("kept", {"verdict": "open", "value": 0.5, "reason": "as built"}),
+        ("new", {"verdict": "open", "value": None, "reason": ""}),
     ]
-    assert expected.renewed(old, "warn", checks, every=True)["checks"]["kept"]["utilisation"] == 0.502
+    assert expected.renewed(old, "open", checks, every=True)["checks"]["kept"]["value"] == 0.502
     assert list(expected.changes(old, new)) == [
-        "verdict pass -> warn",
-        "kept: pass 0.5 -> warn 0.5",
-        "moved: pass 0.5 -> warn 0.6123 (+22.46 %)",
+        "verdict pass -> open",
+        "kept: pass 0.5 -> open 0.5",
+        "moved: pass 0.5 -> open 0.612346 (+22.47 %)",
         "gone: gone",
         "new: new, reason to be written",
     ]

@@ -165,13 +165,13 @@ def test_checks_of_the_loads_carry_the_error_of_too_few_slices(coarse_loop) -> N
         fine_rig, LoadedCircuit(last.point, models, last.last.drags, last.setting, fine_rig.system)
     ).dynamic_factor
     for mesh, label in enumerate(("test", "reference")):
-        assert checks[f"dynamics.ramp_peak.{label}"].discretisation_error is not None
-        error = checks[f"dynamics.dynamic_factor.{label}"].discretisation_error
+        assert checks[f"dynamics.ramp_peak.{label}"].error is not None
+        error = checks[f"dynamics.dynamic_factor.{label}"].error
         assert abs(own[mesh] - fine[mesh]) <= error < 0.2
 
 
 def test_rule_leaves_a_small_error_at_the_checks() -> None:
     solved = solve_case(load_case("cases/loop_1to1"), "quick")
-    errors = {check.id: check.discretisation_error for check in all_checks(solved)}
+    errors = {check.id: check.error for check in all_checks(solved)}
     for label in ("test", "reference"):
         assert 0.0 < errors[f"dynamics.dynamic_factor.{label}"] < 0.01

@@ -12,11 +12,11 @@ from scipy.linalg import expm
 
 from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.oil_circuit.cooler import Cooler
-from rigdesign.oil_circuit.history import circuit_history
 from rigdesign.oil_circuit.line_balance import consumer_return
 from rigdesign.oil_circuit.parts import Heater, Pipe, Pump
 from rigdesign.oil_circuit.state import CircuitState
 from rigdesign.properties.oil import FVA_3
+from tests.builders.circuit_history import circuit_history
 from tests.builders.oil_circuit import LITRE_A_MINUTE, TANK, WATER, ZERO, circuit, line
 
 ROOM = 293.15

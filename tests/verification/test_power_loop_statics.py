@@ -1,6 +1,7 @@
 """Static closure of the power loop: twist times loop stiffness is the torque, stiffness by series sum."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
 from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_static
+from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.static_cycle import static_cycle
 from dynamics.response.initial_state import wound_state
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 
@@ -139,3 +142,115 @@ def test_drag_torques_wind_the_loop_as_every_line_balances() -> None:
     ]
     assert torque[0] == pytest.approx(180.0, rel=1e-9)
     assert sum(torque) == pytest.approx(-0.7, rel=1e-7)
+
+
+def stiff(system: LinearSystem, n_hidden: int, order: int) -> LinearSystem:
+    """The same loop with freedoms that nothing loads, of 1e8 to 1e14 N m/rad, all freedoms in another order."""
+    random = np.random.default_rng(order)
+    n = len(system.inertia)
+    follow = (
+        random.normal(size=(n_hidden, n))
+        * (np.abs(system.stiffness) > 0.0)[random.integers(n, size=n_hidden)]
+    )
+    own = np.geomspace(1e8, 1e14, n_hidden)
+    follow = np.sqrt(1e9 / own)[:, None] * (follow - follow @ system.rigid @ np.linalg.pinv(system.rigid))
+    tie = own[:, None] * follow
+    stiffness = np.block([[system.stiffness + follow.T @ tie, -tie.T], [-tie, np.diag(own)]])
+    place = random.permutation(n + n_hidden)
+    back = np.argsort(place)
+
+    def longer(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([values, np.zeros((n_hidden, *values.shape[1:]))])[place]
+
+    every = np.ix_(place, place)
+    return replace(
+        system,
+        inertia=np.diag(np.ones(n + n_hidden)),
+        damping=np.zeros((n + n_hidden, n + n_hidden)),
+        stiffness=stiffness[every],
+        dofs=tuple(str(i) for i in place),
+        mesh_ports=back[system.mesh_ports],
+        rigid=longer(system.rigid),
+        drive_dof=int(back[system.drive_dof]),
+        twist_load=longer(system.twist_load),
+        drag_loads={name: longer(load) for name, load in system.drag_loads.items()},
+    )
+
+
+@pytest.mark.parametrize("torque", [1e-3, 1.0, 180.0, 180e3])
+def test_static_state_does_not_depend_on_the_order_of_sums(torque: float) -> None:
+    """With springs over twelve decades, whose round-off is above 1e-9 of the tooth force at small torques."""
+    system, laws = assemble(prototype()), prototype_laws(friction=0.0)
+    expected = wound_state(system, laws, 0.0, LoopLoad(torque=torque))
+    for order in range(8):
+        wound = wound_state(stiff(system, 300, order), laws, 0.0, LoopLoad(torque=torque))
+        assert wound.state.twist == pytest.approx(expected.state.twist, rel=1e-8)
+        assert wound.loop_stiffness == pytest.approx(expected.loop_stiffness, rel=1e-6)
+
+
+def test_bracing_that_winds_nothing_is_refused() -> None:
+    system, laws = rig()
+    with pytest.raises(DynamicsInputError, match="twist does not load the first mesh"):
+        wound_state(replace(system, twist_load=0.0 * system.twist_load), laws, 0.0, LoopLoad(torque=180.0))
+
+
+LENGTHS = (
+    "base_radius_1",
+    "base_radius_2",
+    "base_pitch",
+    "path_start",
+    "path_step",
+    "gap",
+    "slice_shift",
+    "backlash",
+)
+LENGTHS += (
+    "deviation_1",
+    "deviation_2",
+    "offset",
+    "phase",
+    "back_phase",
+    "rolling_radius_1",
+    "rolling_radius_2",
+)
+LENGTHS += ("friction_reversal_speed", "damping_depth", "stiffness", "mean_stiffness")
+
+
+def similar(factor: float) -> tuple[LinearSystem, tuple[MeshLaw, ...]]:
+    """The prototype with all its torques times a factor at the same stresses, lengths with its third root."""
+    length, system = factor ** (1.0 / 3.0), assemble(prototype())
+    laws = tuple(
+        law._replace(
+            damping=length**2 * law.damping, **{name: length * getattr(law, name) for name in LENGTHS}
+        )
+        for law in prototype_laws()
+    )
+    return replace(
+        system,
+        inertia=length**5 * system.inertia,
+        damping=length**4 * system.damping,
+        stiffness=factor * system.stiffness,
+        twist_load=factor * system.twist_load,
+    ), laws
+
+
+@pytest.mark.parametrize("factor", [0.1, 1e3])
+@pytest.mark.parametrize("torque", [1e-2, 180.0])
+def test_a_larger_or_smaller_rig_finds_the_same_state(factor: float, torque: float) -> None:
+    """No limit of an iteration is a force, torque or length as such."""
+    system, laws = similar(factor)
+    base_system, base_laws = similar(1.0)
+    wanted, base = LoopLoad(torque=factor * torque), LoopLoad(torque=torque)
+    wound = wound_state(system, laws, 0.0, wanted)
+    assert wound.state.twist == pytest.approx(
+        wound_state(base_system, base_laws, 0.0, base).state.twist, rel=1e-8
+    )
+    found = solve_static(port_model(system, laws), wanted)
+    assert found.twist == pytest.approx(
+        solve_static(port_model(base_system, base_laws), base).twist, rel=1e-8
+    )
+    cycle, like = (
+        static_cycle(law, load)
+        for law, load in ((laws[0], factor ** (2.0 / 3.0) * torque), (base_laws[0], torque))
+    )
+    assert cycle.approach == pytest.approx(factor ** (1.0 / 3.0) * like.approach, rel=1e-8)

@@ -170,12 +170,12 @@ def ends(reference: Reference, path: str) -> tuple[EndResult, EndResult] | None:
 
 
 def differences(one: EndResult, other: EndResult) -> dict[str, float]:
-    """Check -> difference of its utilisation, where it is more than what the report lists."""
+    """Check -> difference of its distance, where it is more than what the report lists."""
     found = {}
     for name, left in one.checks.items():
-        right = other.checks[name].utilisation
-        if left.utilisation is not None and right is not None and abs(left.utilisation - right) > LEAST_MOVE:
-            found[name] = left.utilisation - right
+        right = other.checks[name].distance
+        if left.distance is not None and right is not None and abs(left.distance - right) > LEAST_MOVE:
+            found[name] = left.distance - right
     return found
 
 

@@ -100,8 +100,8 @@ def test_a_study_point_is_the_check_of_its_case() -> None:
     assert rows.keys() == {check.id for check in whole.checks}
     for check in whole.checks:
         row = rows[check.id]
-        if check.utilisation is None:
-            assert row.utilisation is None
-        elif np.isfinite(check.utilisation):
-            assert row.utilisation == pytest.approx(check.utilisation, abs=5e-3), check.id
+        if check.distance is None:
+            assert row.distance is None
+        elif np.isfinite(check.distance):
+            assert row.distance == pytest.approx(check.distance, abs=5e-3), check.id
     assert point.verdict == whole.verdict

@@ -11,12 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.builders.curved_blocks import cylinder_sector
+from tests.builders.exact_view_factors import view_factors
 from tests.builders.two_blocks import renamed
 from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.ray_view_factors import ray_view_factors
 from thermal.conditions.view_factor_closure import EnclosureError, close_view_factors
-from thermal.conditions.view_factors import view_factors
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady

@@ -4,6 +4,7 @@ Kept over a set (and the healthy set of the same rig): offsets, scales, fin erro
 zero, angle of the tach. New at every repeat: noise, drift, jitter of the tach, quantisation.
 """
 
+import copy
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -69,6 +70,30 @@ def draw_chain(
         lock=SETTING_OFFSET["torque"] * rng.standard_normal(),
         angle=TACH_ZERO * rng.standard_normal(),
     )
+
+
+DRIFT = 0.3
+"""Of what a sensor or setting has wrong the part that is another one on another day."""
+SEAT = 0.15
+"""Of a thermocouple that was taken out and put back [K], 1 sigma."""
+
+
+def another_day(
+    chain: Chain, sensors: Sequence[Sensor], rng: np.random.Generator, times: float = 1.0
+) -> Chain:
+    """The measuring system at a later set of the rig; times : on all of its drift."""
+    found = copy.deepcopy(chain)
+    for s in sensors:
+        thermocouple = s.quantity == "temperature"
+        shift = math.hypot(DRIFT * s.offset, SEAT if thermocouple else 0.0)
+        found.offset[s.name] += times * shift * rng.standard_normal()
+        found.scale[s.name] += times * (0.0 if thermocouple else DRIFT * s.scale) * rng.standard_normal()
+    for settings, quantity in ((found.inlet, "inlet_temperature"), (found.flow, "flow")):
+        for stream in settings:
+            settings[stream] += times * DRIFT * SETTING_OFFSET[quantity] * rng.standard_normal()
+    found.room += times * DRIFT * SETTING_OFFSET["ambient_temperature"] * rng.standard_normal()
+    found.lock += times * DRIFT * SETTING_OFFSET["torque"] * rng.standard_normal()
+    return found
 
 
 def put_on(chain: Chain, sensors: Sequence[Sensor], rng: np.random.Generator) -> None:

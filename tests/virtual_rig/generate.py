@@ -13,8 +13,9 @@ import math
 import os
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,6 +24,7 @@ import numpy as np
 if __package__ in (None, ""):
     sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+from tests.virtual_rig import chain as chains
 from tests.virtual_rig.chain import draw_chain, put_in, put_on, repeats, systematic, write_set
 from tests.virtual_rig.detect import Detector, detector
 from tests.virtual_rig.generate_effects import CHAIN_KINDS, draw_effect, draw_input_error, reach, sized
@@ -36,7 +38,15 @@ from tests.virtual_rig.generate_plans import (
     streams,
     thermometer,
 )
-from tests.virtual_rig.generate_truth import Constants, RigTruth, draw_rig, has_loop, readings, true_points
+from tests.virtual_rig.generate_truth import (
+    Constants,
+    RigTruth,
+    another_day,
+    draw_rig,
+    has_loop,
+    readings,
+    true_points,
+)
 from tests.virtual_rig.loop_changes import CHANGES
 
 KINDS = ("none", "single", "pair", "out", "small", "input")
@@ -54,7 +64,8 @@ def make_set(
         wished ``sensors`` (rich, usual, sparse), ``plan`` (9, 12, 15), ``baseline`` (bool: the healthy rig is
         measured, too, in ``folder/set_0``, the set itself in ``folder/set_1``), ``shift``, ``reindex`` (teeth by
         which the test wheel is put on further in every second point), ``noise`` (factor), ``title``, ``more`` (places
-        of thermometers inside in addition, which a baseline made before does not have)
+        of thermometers inside in addition, which a baseline made before does not have), ``drift`` (factor on what a rig
+        with a baseline changes from that day to the day of the set; 0 for a rig that does not change)
     folder : of the set (with ``baseline`` in ``spec`` of both)
     baseline : folder of a healthy set made by an earlier call, of the same rig when both have the same ``rig_seed``,
         ``sensors`` and ``plan`` in ``spec``
@@ -76,17 +87,21 @@ def make_set(
         rng = np.random.default_rng([seed, RIGS.index(rig), *spec.get("kind", "given").encode()])
     points = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
     again = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
-    job = _Set(rig, own, constants, points, Detectors.of(rig, level, plan), paired, rng)
+    before, healthy = constants, copy.deepcopy(chain)
+    if paired and (times := float(spec.get("drift", 1.0))):
+        later = np.random.default_rng([seed, RIGS.index(rig), *b"another day"])
+        constants, chain = another_day(constants, later, times), chains.another_day(chain, own, later, times)
+    job = _Set(rig, own, constants, points, lambda: Detectors.of(rig, level, plan), paired, rng)
     effects = job.effects(spec)
     if more := [thermometer(place) for place in spec.get("more", ())]:
-        put_on(chain, more, np.random.default_rng([seed, *map(len, spec["more"])]))
+        for one in (chain, healthy):
+            put_on(one, more, np.random.default_rng([seed, *map(len, spec["more"])]))
         own = [*own, *more]
-        job = _Set(rig, own, constants, points, job.detectors, paired, rng)
+        job = _Set(rig, own, constants, points, lambda: Detectors.of(rig, level, plan), paired, rng)
     entry: dict[str, Any] = {
         "rig": rig, "kind": spec.get("kind", "given"), "effects": [_shown(e) for e in effects], "sensors": level,
         "plan": plan, "baseline": paired, "shift": shift, "reindex": int(spec.get("reindex", 0)), "seed": seed,
     }  # fmt: skip
-    healthy = copy.deepcopy(chain)
     put_in(chain, effects)
     title = spec.get("title", f"measured on {rig}")
     counts = {point.name: int(rng.integers(2, 4)) for point in points}
@@ -94,8 +109,8 @@ def make_set(
         counts[""] = 3
     target = folder / "set_1" if spec.get("baseline") and baseline is None else folder
     if paired and baseline is None:
-        before = RigTruth(rig, constants).values(again, own)
-        told = repeats(healthy, own, readings(own, again), again, before, counts, rng)
+        as_new = RigTruth(rig, before).values(again, own)
+        told = repeats(healthy, own, readings(own, again), again, as_new, counts, rng)
         write_set(folder / "set_0", rig, healthy, own, again, told, rng, title=f"{title}, before")
     told = repeats(chain, own, job.rows, points, job.truth(effects), counts, rng)
     back = None if not paired else "../set_0" if baseline is None else _relative(baseline, target)
@@ -124,18 +139,28 @@ class _Set:
         own: Sequence[Sensor],
         constants: Constants,
         points: Sequence[TruePoint],
-        found: Detectors,
+        found: Callable[[], Detectors],
         paired: bool,
         rng: np.random.Generator,
     ) -> None:
         self.rig, self.own, self.constants, self.points = rig, own, constants, points
-        self.detectors, self.detector, self.declared = found, found.measured, found.declared
+        self._found = found
         self.paired, self.rng = paired, rng
         self.rows = readings(own, points)
         self._base: np.ndarray | None = None
         self._known: dict[str, np.ndarray] = {}
         exact = [replace(s, offset=0.0, scale=0.0) for s in own]
         self.chain = draw_chain(exact, np.random.default_rng(0), *streams(rig))
+
+    @cached_property
+    def detectors(self) -> Detectors:
+        """Made where an effect needs a size: their sensitivities take minutes."""
+        return self._found()
+
+    @property
+    def detector(self) -> Detector:
+        """By which sizes are drawn."""
+        return self.detectors.measured
 
     def truth(self, effects: Sequence[Mapping[str, Any]]) -> np.ndarray:
         """Readings [SI] without sensor errors, with the effects of the rig itself."""
@@ -211,7 +236,9 @@ class _Set:
         """The effect with how many detectable sizes it has, alone, over either floor."""
         change = self._seen(effect) if self._of_chain(effect) else self.truth([effect]) - self.truth([])
         effect["detectable_sizes"] = self.detector.detectable_sizes(change, baseline=self.paired)
-        effect["detectable_sizes_declared"] = self.declared.detectable_sizes(change, baseline=self.paired)
+        effect["detectable_sizes_declared"] = self.detectors.declared.detectable_sizes(
+            change, baseline=self.paired
+        )
         return effect
 
     def _seen(self, effect: Mapping[str, Any]) -> np.ndarray:

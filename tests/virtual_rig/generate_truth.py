@@ -86,6 +86,25 @@ def draw_rig(
     return Constants(heat, loop, moved)
 
 
+FRICTION_DRIFT: Mapping[str, float] = {
+    "friction": 0.02, "film_fill": 0.01, "mist_density": 0.01, "squeeze": 0.01, "seal_drag": 0.03,
+    "bearing_free": 0.03, "bearing_load": 0.01, "churning": 0.02, "lip_drag": 0.03,
+}  # fmt: skip
+"""Relative change of friction from one day to another, 1 sigma: flanks and seals run in, oil ages, bearings settle."""
+FILM_DRIFT = 0.02
+"""The same of every film between oil and metal."""
+
+
+def another_day(constants: Constants, rng: np.random.Generator, times: float = 1.0) -> Constants:
+    """The rig at a later set; times : on all of its drift."""
+    heat = dict(constants.heat)
+    for name in heat:
+        of_film = name.startswith("film_") and name != "film_weight"
+        spread = FRICTION_DRIFT.get(name, FILM_DRIFT if of_film else 0.0)
+        heat[name] *= math.exp(times * spread * rng.standard_normal()) if spread else 1.0
+    return constants._replace(heat=heat)
+
+
 def readings(sensors: Sequence[Sensor], points: Sequence[TruePoint]) -> list[Reading]:
     """Numbers of a set in their order: points, sensors, orders; standstill at the end."""
     standing = ("natural_frequency", "backlash")

@@ -30,7 +30,7 @@ class Enclosure:
     emissivities: tuple[float, ...]
     """One per surface, 0 to 1 [-]; 0 re-radiates what arrives and keeps no heat, one at least is above it."""
     view_factors: tuple[tuple[float, ...], ...]
-    """Row i: share of the radiation of surface i that reaches each surface; given, or from view_factors()."""
+    """Row i: share of the radiation of surface i that reaches each surface; given, or from ray_view_factors()."""
     opening_temperature: float | None = None
     """Surroundings that take what the rows leave to one [K]; None for a closed enclosure."""
     kind: str = "enclosure"

@@ -4,7 +4,7 @@ Every surface gives off the same number of rays, by area over its facets and by 
 one Sobol sequence: the same mesh gives the same factors. The exchange area A_i F_ij is the mean of both
 directions, weighted by the number of rays per area (the estimate with the least variance), so that the factors are
 reciprocal. Cost grows with the number of rays and hardly with that of facets; what stands between two surfaces is
-every surface of the mesh. For coarse meshes and exact polygons: `thermal.conditions.view_factors`.
+every surface of the mesh.
 
 Sources: Siegel, Howell, Thermal Radiation Heat Transfer, 4th ed., ch. 10 (rays); Niederreiter, Random Number
 Generation and Quasi-Monte Carlo Methods, SIAM 1992, ch. 4.

@@ -4,6 +4,8 @@ import numpy as np
 
 from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys
 
+NODE_ORDER = 0.5
+"""Share of inverted cells from which on the order of their nodes is at fault."""
 MAX_NODES = 2_000_000
 """Facets are recognised by one 64-bit number made of three node numbers."""
 
@@ -33,10 +35,13 @@ def check_volumes(mesh: NamedMesh, smallest: FloatArray) -> None:
         return
     counts = {name: int(np.count_nonzero(bad[cells])) for name, cells in mesh.bodies.items()}
     where = ", ".join(f"{count} in body {name!r}" for name, count in counts.items() if count)
-    raise MeshError(
-        f"inverted cells: {where}; refine the mesh at curved faces, optimise its high-order nodes, "
-        "or put the nodes into NamedMesh order"
-    )
+    remedy = "refine the mesh at curved faces, or optimise its high-order nodes"
+    if bad.mean() > NODE_ORDER:
+        remedy = (
+            "so many stand for another order of nodes: write a .msh in gmsh's order, in which the last two nodes of a "
+            "ten-node tetrahedron are exchanged against VTK's, or put them into NamedMesh order"
+        )
+    raise MeshError(f"inverted cells: {where} of {len(bad)}; {remedy}")
 
 
 def _check_arrays(mesh: NamedMesh) -> None:

@@ -27,7 +27,7 @@ def rules() -> tuple[DefaultRule, ...]:
 
 def filled_as_a_whole(path: str) -> bool:
     """Whether a rule fills in the table or list at a path with all that is in it, rather than key by key."""
-    if path == "limits":
+    if path == "limits" or path_pattern("gearboxes.*.housing.boundary.*").fullmatch(path):
         return True
     return any(not rule.completes and path_pattern(rule.path).fullmatch(path) for rule in rules())
 

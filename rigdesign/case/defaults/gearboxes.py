@@ -5,6 +5,7 @@ from rigdesign.case.defaults.parts import (
     bearing_width,
     normal_module,
     only_mesh,
+    root_diameter,
     section_diameter,
     shaft_diameter,
     shaft_of,
@@ -16,6 +17,8 @@ from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, fol
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 
 book = RuleBook()
+THIN_RIM, WHOLE_DEPTH = 1.2, 2.25
+"""Rim in tooth heights below which it adds to the root stress (ISO 6336-3:2006, clause 9); tooth height in modules."""
 
 
 @book.default("gearboxes.*.title")
@@ -112,13 +115,22 @@ def _thinning(tree: RawTree, box: str, gear: str) -> Filling:
 
 @book.default("gearboxes.*.gears.*.bore_diameter")
 def _bore(tree: RawTree, box: str, gear: str) -> Filling:
-    """A gear without housing stays a solid disc: nothing but its inertia sees the bore."""
+    """The shaft fills it; none where that leaves too thin a rim, as of a pinion cut into its shaft, nor in a gearbox
+    with jets and without a housing, where it does not count."""
     at = f"gearboxes.{box}.gears.{gear}"
     shaft = tree.text(f"{at}.shaft")
     if shaft is None or not (tree.has(f"gearboxes.{box}.housing") or _dips(tree, box)):
         return None
     found = section_diameter(tree, shaft, tree.length(f"{at}.position")) or shaft_diameter(tree, box, shaft)
-    return None if found is None else assumed(millimetres(found), "diameter of its shaft there")
+    if found is None:
+        return None
+    root = root_diameter(tree, box, gear)
+    if root is not None and 0.5 * (root - found) < THIN_RIM * WHOLE_DEPTH * (
+        normal_module(tree, box, gear) or 0.0
+    ):
+        text = f"cut into its shaft: {1e3 * found:.4g} mm would leave a rim below {THIN_RIM:g} tooth heights"
+        return assumed("0 mm", text)
+    return assumed(millimetres(found), "diameter of its shaft there")
 
 
 def _dips(tree: RawTree, box: str) -> bool:

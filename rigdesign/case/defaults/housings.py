@@ -1,5 +1,8 @@
 """Defaults of a housing: walls from its size, shafts from bearings, the standard set of boundary conditions."""
 
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
 from rigdesign.case.defaults.parts import (
     bearing_width,
     bearings_on,
@@ -10,7 +13,14 @@ from rigdesign.case.defaults.parts import (
     shafts_of,
 )
 from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
+from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres, with_marks
+from rigdesign.case.geometry import covering, housing_geometry
+from rigdesign.case.matching import matched
+from thermal.errors import ThermalInputError
+from thermal.housing.surfaces import surface_names
+
+if TYPE_CHECKING:
+    from rigdesign.case.model import Case
 
 HOUSING = "gearboxes.*.housing"
 book = RuleBook(within=HOUSING)
@@ -231,6 +241,26 @@ def _boundary(tree: RawTree, box: str) -> Filling:
             ["gear_*_rim"], "flank_film", "oil film on the flanks, tooth as a fin", film_factor=(1.0, 0.5, 2.0)
         ),
     }  # fmt: skip
+
+
+def missing_films(tree: Mapping[str, Any], case: "Case") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Path and entry of the standard films for surfaces that the films of a case leave bare.
+
+    tree : of the case, with its defaults
+    """
+    for name, box in case.gearboxes.items():
+        if box.housing is None or box.housing.part_file is not None:
+            continue
+        try:
+            films = covering(box.housing, surface_names(housing_geometry(box)))
+        except (ThermalInputError, LookupError, StopIteration):
+            continue  # what the rules of the housing name
+        bare = [surface for surface, stated in films.items() if not stated]
+        standard = _boundary(RawTree(dict(tree)), name) if bare else None
+        for film, entry in (with_marks(standard) or {}).items():
+            if on := list(matched(entry["surfaces"], bare)):
+                key = f"{film}_else" if film in box.housing.boundary else film
+                yield f"gearboxes.{name}.housing.boundary.{key}", {**entry, "surfaces": on}
 
 
 def _any_overhang(tree: RawTree, box: str) -> bool:

@@ -1,5 +1,6 @@
 """What defaults need to know of the parts of a gearbox before it is validated: pairs, diameters, distances."""
 
+import math
 from typing import TYPE_CHECKING
 
 from rigdesign.case.defaults.raw_tree import RawTree
@@ -44,6 +45,17 @@ def normal_module(tree: RawTree, box: str, gear: str) -> float | None:
     """Normal module of a gear [m]."""
     mesh = mesh_of(tree, box, gear)
     return None if mesh is None else tree.length(f"gearboxes.{box}.meshes.{mesh}.normal_module")
+
+
+def root_diameter(tree: RawTree, box: str, gear: str) -> float | None:
+    """Root circle [m] of rack A of ISO 53, without profile shift where the gear states none."""
+    mesh, at = mesh_of(tree, box, gear), f"gearboxes.{box}.gears.{gear}"
+    module, teeth = normal_module(tree, box, gear), tree.number(f"{at}.teeth")
+    if mesh is None or module is None or teeth is None:
+        return None
+    helix = tree.si(f"gearboxes.{box}.meshes.{mesh}.helix_angle", "angle") or 0.0
+    shift = tree.number(f"{at}.profile_shift") or 0.0
+    return module * (teeth / math.cos(helix) + 2.0 * shift - 2.5)
 
 
 def bearings_on(tree: RawTree, box: str, shaft: str) -> list[str]:

@@ -113,7 +113,7 @@ def fill(tree: RawTree, rule: DefaultRule) -> None:
         if rule.completes and tree.has(".".join(keys)):
             _complete(tree.at(".".join(keys)), _known(rule, tree, names))
         elif not tree.has(".".join(keys)) and (found := _known(rule, tree, names)) is not None:
-            _insert(tree.root, keys, _written(found))
+            _insert(tree.root, keys, with_marks(found))
 
 
 def _known(rule: DefaultRule, tree: RawTree, names: tuple[str, ...]) -> Filling:
@@ -128,7 +128,7 @@ def _complete(stated: Any, found: Filling) -> None:
     """Add parts to a table that states some of them, in place."""
     if isinstance(stated, dict) and isinstance(found, Mapping) and set(stated) < set(found):
         for name, part in found.items():
-            stated.setdefault(name, _written(part))
+            stated.setdefault(name, with_marks(part))
 
 
 def _places(tree: RawTree, keys: list[str], names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
@@ -157,9 +157,10 @@ def _insert(root: dict[str, Any], keys: list[str], value: Any) -> None:
         node[keys[-1]] = value
 
 
-def _written(found: Any) -> Any:
+def with_marks(found: Any) -> Any:
+    """What a rule fills in as the tree of a case holds it."""
     if isinstance(found, Given):
         return found.as_marked()
     if isinstance(found, Mapping):
-        return {key: _written(value) for key, value in found.items() if value is not None}
-    return [_written(item) for item in found] if isinstance(found, list) else found
+        return {key: with_marks(value) for key, value in found.items() if value is not None}
+    return [with_marks(item) for item in found] if isinstance(found, list) else found

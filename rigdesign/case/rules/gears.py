@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 SHIFT_TOLERANCE = 0.002
 """Most difference between the sum of two stated profile shifts and that of the centre distance: both are printed with
 three or four digits. The pinion keeps its own, the wheel takes the rest."""
+LEAST_SHIFT_SUM, MOST_SHIFT_SUM = -2.0, 2.5
+"""Sum of the profile shifts of a pair beyond which a centre distance belongs to other teeth."""
 
 MEASURED_WITH_TOPOGRAPHY = (
     "profile_crowning", "lead_crowning", "tip_relief", "root_relief", "end_relief", "twist",
@@ -234,8 +236,6 @@ def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") ->
             at, "", "the centre distance fixes the sum of the profile shifts, one more statement their split",
             'write profile_shift for one of the two gears or for both, or profile_shift_split = "equal"',
         )  # fmt: skip
-    if len(given) < 2 or mesh.profile_shift_split is not None:
-        return
     from dynamics.gear.cylindrical_gear import GearGeometryError
     from dynamics.gear.line_of_action import shift_sum
 
@@ -245,7 +245,15 @@ def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") ->
         )  # fmt: skip
     except GearGeometryError:
         return  # gears that cannot mesh are another fault
-    if abs(sum(given) - total) > SHIFT_TOLERANCE:
+    if not LEAST_SHIFT_SUM <= total <= MOST_SHIFT_SUM:
+        reference = 0.5 * mesh.normal_module * (pinion.teeth + wheel.teeth) / math.cos(mesh.helix_angle)
+        yield Fault(
+            f"{at}.centre_distance", show(mesh.centre_distance, "length"),
+            f"asks for a sum of the profile shifts of {total:.3g}, limits {LEAST_SHIFT_SUM:g} and {MOST_SHIFT_SUM:g}: "
+            f"without shifts these teeth have {show(reference, 'length')}",
+            "correct the centre distance, normal_module, helix_angle or the tooth numbers",
+        )  # fmt: skip
+    elif len(given) == 2 and mesh.profile_shift_split is None and abs(sum(given) - total) > SHIFT_TOLERANCE:
         yield Fault(
             f"{at}.centre_distance", show(mesh.centre_distance, "length"),
             f"fixes the sum of the profile shifts at {total:.4f}, the gears state {given[0]:g} + {given[1]:g} = "

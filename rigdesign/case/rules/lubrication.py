@@ -42,7 +42,7 @@ def _sump(at: str, box: "Gearbox", sump: "DipOil") -> Iterator[Fault]:
             "without a housing nothing says what cools the sump",
             'add it, e.g. sump_temperature = "90 degC", or a [housing] table',
         )  # fmt: skip
-    least = min(0.5 * gear.bore_diameter for gear in box.gears.values())
+    least = 0.5 * min(map(box.seat_diameter, box.gears))
     if sump.level >= least:
         yield Fault(
             f"{at}.oil.level", show(sump.level, "length"),

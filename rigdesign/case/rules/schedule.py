@@ -71,6 +71,18 @@ def schedule_faults(case: "Case") -> Iterator[Fault]:
             "no stage is held",
             "write held = true in the dwell whose temperatures count",
         )
+    for key, ends in (
+        ("test_speed", [stage.speed_end for stage in case.schedule.held()]),
+        ("test_torque", [stage.torque_end for stage in case.schedule.held()]),
+    ):
+        stated, kind = getattr(case.schedule, key), key.removeprefix("test_")
+        if stated > 0.0 and not any(math.isclose(end, stated, rel_tol=1e-3) for end in ends):
+            yield Fault(
+                f"schedule.{key}", show(stated, kind),
+                f"no held stage runs at it, they have {', '.join(show(end, kind) for end in ends)}: loads and "
+                "temperatures would be those of the stages, load cycles and limits those of the test",
+                f"write the {kind} of a held stage, or change both together",
+            )  # fmt: skip
     if case.schedule.test_speed <= 0.0:
         yield Fault(
             "schedule.test_speed", show(case.schedule.test_speed, "speed"), "is not above 0 rpm", "correct it"

@@ -8,7 +8,7 @@ from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import written
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry
+from rigdesign.case.geometry import bearing_on, conditions_of, covering, housing_geometry
 from rigdesign.case.housing import Housing
 from rigdesign.case.matching import matched
 from rigdesign.case.paths import nearest
@@ -98,7 +98,6 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
                 f"{' and '.join(gears)} sit on one shaft, the housing model has one gear per shaft",
                 "put them on shafts of their own",
             )  # fmt: skip
-        yield from _bores(at, gearbox, shaft)
         yield from _seal_diameter(at, housing, shaft)
         yield from _rubbing_without_a_seal(at, gearbox, housing, shaft)
 
@@ -134,15 +133,6 @@ def _seal_diameter(at: str, housing: Housing, shaft: str) -> Iterator[Fault]:
         )  # fmt: skip
 
 
-def _bores(at: str, gearbox: Gearbox, shaft: str) -> Iterator[Fault]:
-    for name, gear in gearbox.gears.items():
-        if gear.shaft == shaft and gear.bore_diameter == 0.0:
-            yield Fault(
-                f"{at}.gears.{name}.bore_diameter", "", "a gear on a shaft of the housing needs its bore",
-                "add the diameter of the gear seat",
-            )  # fmt: skip
-
-
 def _centre_distances(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
     for name, mesh in gearbox.meshes.items():
         shafts = [gearbox.gears[gear].shaft for gear in (mesh.pinion, mesh.wheel)]
@@ -156,7 +146,6 @@ def _centre_distances(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[F
 
 
 def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
-    covered: dict[str, list[str]] = {name: [] for name in names}
     for name, condition in housing.boundary.items():
         for pattern in condition.surfaces:
             if not matched([pattern], names):
@@ -169,21 +158,14 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
                     f"{hint}known: {', '.join(names)}",
                 )
     for name, surface, stood_for in conditions_of(housing, names):
-        condition = housing.boundary[name]
-        covered[surface].append("" if condition.may_join_a_film else name)
-        partner = condition.partner_of(stood_for)
-        if partner in covered:
-            covered[partner].append("")
-        elif partner is not None:
+        partner = housing.boundary[name].partner_of(stood_for)
+        if partner is not None and partner not in names:
             meant = nearest(partner, names)
             hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
             yield Fault(
                 f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
             )
-    for enclosure in housing.enclosures.values():
-        for surface in enclosure.emissivities(names):
-            covered[surface].append("")
-    for surface, conditions in covered.items():
+    for surface, conditions in covering(housing, names).items():
         films = [name for name in conditions if name]
         if not conditions:
             usual = ("flank_film", "constant_film"), ("constant_film", "insulated")

@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import OptionalOutFolder, app, loaded_case, print_json
+from rigdesign.cli.application import OptionalOutFolder, Several, app, loaded_case, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
 from rigdesign.cli.terminal.console import verbosity
 
@@ -21,11 +21,12 @@ def check(
     fidelity: Fidelity = "standard",
     transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,
+    checks: Annotated[list[str] | None, Several] = None,
     everything: Annotated[bool, Parameter(name="--all", negative=())] = False,
     pdf: Annotated[bool, Parameter(negative=())] = False,
     author: str | None = None,
     json: bool = False,
-    fail_on: Literal["fail", "warn"] = "fail",
+    fail_on: Literal["advisory", "close"] | None = None,
 ) -> int:
     """Compute loads, losses, temperatures and clearances of a rig and hold them against its limits.
 
@@ -41,6 +42,9 @@ def check(
         Follow temperatures and clearances over warm-up, schedule, stops and soak-back as well.
     ranges
         Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
+    checks
+        Patterns on the ids of the checks to judge: `temperature.*` takes, `!specimen.root_stress*` leaves out. What is
+        not selected does not count for the verdict.
     everything
         Print every check and every note, not only what decides.
     pdf
@@ -50,7 +54,7 @@ def check(
     json
         Print results.json on stdout; everything else goes to stderr.
     fail_on
-        Verdict from which the exit status is 1.
+        Exit status 1 for a missed advisory limit too; with close also for a check with less than 5 % of its limit left.
     """
     if everything and verbosity.get() == "quiet":
         raise UsageError(
@@ -64,7 +68,10 @@ def check(
     from rigdesign.reanalysis.flips import with_flips
     from rigdesign.report import Issue, prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
+    from rigdesign.studies.selection import CheckSelection
 
+    selection = CheckSelection(checks or ())
+    selection.require(loaded, transient=transient)
     if out is not None:
         prepare_output(out)
     elif pdf or author is not None:
@@ -82,7 +89,7 @@ def check(
             fidelity=fidelity,
             progress=progress,
             transient=transient,
-            follow_ups={"flips": with_flips},
+            follow_ups={"checks": selection.applied, "flips": with_flips},
         )
         if ranges:
             from rigdesign.uncertainty.run import with_ranges
@@ -96,5 +103,6 @@ def check(
         print_json(results_document(result))
     else:
         print_checks(result, out, everything=everything)
-    failing = {"fail"} if fail_on == "fail" else {"fail", "warn"}
-    return 1 if result.verdict in failing else 0
+    flags = {None: (), "advisory": ("advisory",), "close": ("advisory", "close")}[fail_on]
+    flagged = any(flag in check.flags for check in result.checks for flag in flags)
+    return 1 if result.verdict != "pass" or flagged else 0

@@ -51,7 +51,8 @@ def _report(result: "ImportedCase") -> Iterator[str]:
     if result.defaults:
         yield f"  and {result.defaults} defaults of drivetrain, schedule, limits and solvers, in the report of a check"
     if result.left_out:
-        yield f"\nleft out, a case has no such stage: {', '.join(result.left_out)}"
+        yield f"\nleft out, no part of the case: {len(result.left_out)}"
+        yield from (f"  {line}" for line in result.left_out)
     if result.needed:
         yield f"\nmissing in the file, to be given by you before the case loads: {len(result.needed)}"
         yield from (f"  {line}" for line in result.needed)

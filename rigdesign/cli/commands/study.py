@@ -6,9 +6,8 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import OutFolder, app, loaded_case
+from rigdesign.cli.application import OutFolder, Several, app, loaded_case
 
-Several = Parameter(negative=())
 Switch = Parameter(negative=())
 
 
@@ -39,8 +38,10 @@ def study(
     case
         Case folder or its case.toml.
     vary
-        Grid: 'PATH=START:STOP:STEP' or 'PATH=v1,v2'. All other designs: 'PATH=LOW:HIGH', or 'assumed' for every
-        assumed input with a range. Once per parameter.
+        Grid: 'PATH=START:STOP:STEP' or 'PATH=v1,v2', a unit at every value or at the last. All other designs:
+        'PATH=LOW:HIGH', or 'assumed' for every assumed input with a range. Once per parameter. * in PATH stands for
+        any name: 'gearboxes.*.oil.inlet_temperature' for all gearboxes, 'gearboxes.test.bearings.*.width' for all
+        bearings of one.
     out
         Folder of the study: ledger, results.csv, study.html.
     sample

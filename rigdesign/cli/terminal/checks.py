@@ -3,7 +3,6 @@
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,20 +11,26 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from rigdesign.base.errors import one_line
 from rigdesign.cli.terminal.console import NARROWEST, hanging, new_console, verbosity, verdict_console
-from rigdesign.cli.terminal.warning_groups import warning_groups
-from rigdesign.report.numbers import limit_text, margin_text, quantity_text
+from rigdesign.cli.terminal.reason_groups import reason_groups
+from rigdesign.report.numbers import limit_text, margin_text, percent_text, quantity_text
+from rigdesign.report.views import sorted_checks
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
     from rigdesign.results.ranges import RangesResult
 
-STYLES = {"pass": "green", "warn": "yellow", "fail": "bold red", "not applicable": "dim"}
-ORDER = ("fail", "warn", "pass", "not applicable")
-"""Of the counts."""
+STYLES = {
+    "pass": "green",
+    "open": "magenta",
+    "fail": "bold red",
+    "advisory": "yellow",
+    "not applicable": "dim",
+}
 MOST_GROUPS = 5
-"""Groups of warnings that are printed; failing checks are printed whatever their number."""
+"""Groups of open checks and of flags that are printed; failing checks are printed whatever their number."""
 NEAREST = 5
 """Checks of the table of margins."""
 MOST_FAILED_ENDS = 3
@@ -33,12 +38,12 @@ MOST_FAILED_ENDS = 3
 
 
 def print_checks(result: RunResult, out: Path | None, *, everything: bool = False) -> None:
-    """What decides: verdict, failing checks, warnings by reason, nearest margins, counts; or every check and note."""
+    """What decides: verdict, failing checks, open ones and flags by reason, nearest margins, counts; or everything."""
     if verbosity.get() == "quiet":
         _print_verdict(verdict_console(), result)
         return
     console = new_console(wrap=True)
-    console.print(Text(f"{result.case['title']}  ({result.fidelity})", "bold"))
+    console.print(Text(f"{one_line(result.case['title'])}  ({result.fidelity})", "bold"))
     _print_verdict(console, result)
     if everything:
         _print_all(console, result)
@@ -52,18 +57,17 @@ def print_checks(result: RunResult, out: Path | None, *, everything: bool = Fals
 
 
 def _print_verdict(console: Console, result: RunResult) -> None:
-    numbers = sorted(result.counts.items(), key=lambda count: ORDER.index(count[0]))
-    counts = ", ".join(f"{number} {verdict}" for verdict, number in numbers if number)
+    counts = ", ".join(f"{number} {status}" for status, number in result.counts.items() if number)
     console.print(Text("verdict: ") + Text(result.verdict, STYLES[result.verdict]) + Text(f" ({counts})"))
 
 
 def _print_summary(console: Console, result: RunResult) -> None:
-    for check in result.checks:
-        if check.verdict == "fail":
+    for check in sorted_checks(result.checks):
+        if check.status == "fail":
             against = f"{quantity_text(check.value, check.unit)}, limit {limit_text(check)}"
             hanging(console, Text("fail: ", STYLES["fail"]), f"{check.title}: {against}")
             hanging(console, Text(" " * 6), check.reason.partition("; ")[0])
-    _print_warnings(console, result.checks)
+    _print_reasons(console, result.checks)
     _print_nearest(console, result.checks)
     _print_not_applicable(console, result.checks)
     if result.warnings:
@@ -72,33 +76,34 @@ def _print_summary(console: Console, result: RunResult) -> None:
         hanging(console, Text("notes: "), f"{listed}; --all prints them and every check")
 
 
-def _print_warnings(console: Console, checks: Iterable[Check]) -> None:
-    groups = warning_groups(checks)
+def _print_reasons(console: Console, checks: Iterable[Check]) -> None:
+    """Why checks are open, which limits are advisory and missed, what is close or in doubt."""
+    groups = reason_groups(checks)
     for group in groups[:MOST_GROUPS]:
-        hanging(console, Text("warn: ", STYLES["warn"]), group.text)
+        hanging(console, Text(f"{group.head}: ", STYLES.get(group.head, "yellow")), group.text)
     if len(groups) > MOST_GROUPS:
         console.print(f"      {len(groups) - MOST_GROUPS} more reasons: --all")
 
 
-def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
+def _print_nearest(console: Console, checks: Sequence[Check]) -> None:
     """The checks that hold with the least left; those that hold by definition predict nothing and are left out."""
-    held = [check for check in checks if check.verdict in ("pass", "warn") and check.utilisation is not None]
+    held = [
+        c
+        for c in sorted_checks(checks)
+        if c.distance is not None and c.status in ("pass", "open") and not c.missed
+    ]
     stated = sum(check.by_definition for check in held)
     predicted = [check for check in held if not check.by_definition]
-    nearest = sorted(predicted, key=_used, reverse=True)[:NEAREST]
+    nearest = sorted(predicted, key=lambda check: check.distance or 0.0)[:NEAREST]
     if not nearest:
         return
-    table = _table("nearest margins", "margin", "used")
+    table = _table("nearest margins", "margin", "distance")
     for check in nearest:
         table.add_row(Text(check.id), *map(Text, _numbers(check)))
     console.print(table)
     if stated:
         number = "1 check" if stated == 1 else f"{stated} checks"
         console.print(f"{number} of one input against another: not in this list")
-
-
-def _used(check: Check) -> float:
-    return 0.0 if check.utilisation is None else check.utilisation
 
 
 def _print_not_applicable(console: Console, checks: Iterable[Check]) -> None:
@@ -120,36 +125,34 @@ def _table(first: str, *further: str) -> Table:
 
 
 def _numbers(check: Check) -> tuple[str, str, str, str]:
-    """Value, limit in its unit, margin, share of the limit used; a limit of a power says whether it is in kilowatts."""
-    used = "" if check.utilisation is None else f"{100 * check.utilisation:.0f} %"
+    """Value, limit and margin in their units, distance."""
+    distance = "" if check.distance is None else percent_text(check.distance)
     value = "" if check.value is None else quantity_text(check.value, check.unit)
-    in_unit = "W" if check.unit == "W" else ""
-    limit = "" if check.limit is None else limit_text(replace(check, unit=in_unit))
-    return value, limit, "" if check.margin is None else margin_text(check), used
+    limit = "" if check.limit is None else limit_text(check)
+    return value, limit, "" if check.margin is None else margin_text(check), distance
 
 
 def _print_all(console: Console, result: RunResult) -> None:
-    """Checks grouped as in the report, the reason of each that fails or warns, every note; all by their ids."""
+    """Checks grouped as in the report, the reason of each that does not simply pass, every note; all by their ids."""
     _print_every_check(console, [check for check in result.checks if check.verdict != "not applicable"])
     for check in result.checks:
-        if check.verdict in ("fail", "warn"):
-            head, text = Text(f"{check.verdict}: ", STYLES[check.verdict]), f"{check.id}: {check.reason}"
-            hanging(console, head, text)
-        elif check.verdict == "not applicable":
-            hanging(console, Text("not applicable: ", STYLES[check.verdict]), f"{check.id}: {check.reason}")
+        if check.status != "pass" or check.flags:
+            flags = [flag for flag in check.flags if flag != "advisory"]
+            head = ", ".join([check.status, *flags] if check.status != "pass" else flags)
+            hanging(console, Text(f"{head}: ", STYLES[check.status]), f"{check.id}: {check.reason}")
     for record in result.warnings:
         hanging(console, Text(f"note {record.id}: ", "yellow"), record.text)
 
 
 def _print_every_check(console: Console, checks: Sequence[Check]) -> None:
-    """Two lines a check: id, margin, share of the limit used and verdict; title, value and limit."""
+    """Two lines a check: id, margin, distance and verdict; title, value and limit."""
     rows = [_numbers(check) for check in checks]
     values, limits, margins, _ = (
-        max(map(cell_len, column)) for column in zip(("value", "limit", "margin", "used"), *rows)
+        max(map(cell_len, column)) for column in zip(("value", "limit", "margin", "distance"), *rows)
     )
 
-    def first_line(identity: str, margin: str, used: str, verdict: Text) -> None:
-        numbers = f"{margin:>{margins}}  {used:>5}  "
+    def first_line(identity: str, margin: str, distance: str, verdict: Text) -> None:
+        numbers = f"{margin:>{margins}}  {distance:>8}  "
         room = console.width - len(numbers) - len("verdict")
         console.print(Text(f"{identity:{room}}{numbers}") + verdict, soft_wrap=True)
 
@@ -160,14 +163,14 @@ def _print_every_check(console: Console, checks: Sequence[Check]) -> None:
         for text in (f"  {start:{room}}  {numbers}", *(f"  {part}" for part in rest)):
             console.print(Text(text), soft_wrap=True)
 
-    first_line("check", "margin", "used", Text("verdict"))
+    first_line("check", "margin", "distance", Text("verdict"))
     second_line("title", "value", "limit")
     group = None
-    for check, (value, limit, margin, used) in zip(checks, rows):
+    for check, (value, limit, margin, distance) in zip(checks, rows):
         if check.group != group:
             group = check.group
             console.print(Text(group, "bold"))
-        first_line(check.id, margin, used, Text(check.verdict, STYLES[check.verdict]))
+        first_line(check.id, margin, distance, Text(check.status, STYLES[check.status]))
         second_line(check.title, value, limit)
 
 

@@ -4,11 +4,15 @@ import codecs
 import io
 import sys
 import textwrap
+from collections.abc import Iterable
 from contextvars import ContextVar
 from typing import Literal
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 from rich.text import Text
+
+from rigdesign.base.errors import without_layout
 
 Verbosity = Literal["quiet", "normal", "verbose"]
 """quiet: errors and the verdict line; normal; verbose: every step with its time, iterations, cache use."""
@@ -30,8 +34,16 @@ def verdict_console() -> Console:
     return _console(stderr=False, wrap=False, width=None, quiet=False)
 
 
+class _Console(Console):
+    """A console in whose lines no text of others turns the direction of the rest."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
+        for segment in super().render(renderable, options):
+            yield segment._replace(text=without_layout(segment.text))
+
+
 def _console(*, stderr: bool, wrap: bool, width: int | None, quiet: bool) -> Console:
-    return Console(
+    return _Console(
         stderr=stderr,
         markup=False,
         emoji=False,

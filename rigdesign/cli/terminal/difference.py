@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from rigdesign.cli.terminal.console import new_console, verbosity, verdict_console
-from rigdesign.report.numbers import number_text, quantity_text
+from rigdesign.report.numbers import change_text, limit_change_text, number_text, quantity_text
 
 if TYPE_CHECKING:
     from rigdesign.difference.document import ResultsDifference, TextChanges
@@ -21,8 +21,8 @@ WIDTH = 80
 """Columns of a line at most."""
 SHOWN = {"flipped": 4, "inputs": 6, "checks": 5, "results": 6, "texts": 2}
 """Entries of a part without --all."""
-USED = "share of the limit used"
-STYLES = {"fail": "bold red", "warn": "yellow", "pass": "green"}
+DISTANCE = "distance to the limit"
+STYLES = {"fail": "bold red", "open": "magenta", "advisory": "yellow", "pass": "green"}
 
 T = TypeVar("T")
 
@@ -61,13 +61,15 @@ def print_difference(difference: "ResultsDifference", out: Path | None, *, every
         console.print(Text(line, "bold"))
     for notice in difference.notices:
         _wrapped(console, f"note: {notice}", width)
-    part("verdicts flipped", difference.flipped, lambda row: _flip(row, width), "flipped", USED)
+    failing = difference.checks_that("newly failing")
+    part("now failing, not applicable before", failing, lambda row: _new_fail(row, width), "flipped")
+    part("verdicts flipped", difference.flipped, lambda row: _flip(row, width), "flipped", DISTANCE)
     part("inputs changed", difference.inputs, lambda row: [_input(row, width)], "inputs")
     now, no_longer = difference.checks_that("now applicable"), difference.checks_that("no longer applicable")
     part("checks now applicable", now, lambda row: [_one_sided(row, width)], "checks")
     part("checks no longer applicable", no_longer, lambda row: [_one_sided(row, width)], "checks")
     moved = difference.checks_that("moved")
-    part("other checks moved", moved, lambda row: [_moved(row, width)], "checks", USED)
+    part("other checks moved", moved, lambda row: [_moved(row, width)], "checks", DISTANCE)
     for name, single in (("A", difference.checks_that("removed")), ("B", difference.checks_that("added"))):
         part(f"checks in {name} only", single, lambda row: [_one_sided(row, width)], "checks")
     largest = _largest(difference.quantities)
@@ -95,51 +97,59 @@ def _short_path(path: Path, room: int) -> str:
 
 
 def _flip(row: "CheckChange", width: int) -> Iterator[Text]:
-    """Verdicts and utilisation; below what the numbers are, and why the new verdict is no pass."""
+    """Verdicts and distance; below what the numbers are, and why the new verdict is no pass."""
     assert row.before is not None and row.after is not None
     verdicts = Text("  ") + Text(row.before.verdict, STYLES[row.before.verdict]) + Text(" → ")
     verdicts += Text(row.after.verdict, STYLES[row.after.verdict])
-    yield _line(verdicts, row.id, _utilisations(row), width)
+    yield _line(verdicts, row.id, _distances(row), width)
     below = " " * (verdicts.cell_len + 2)
-    limit = "" if row.after.limit is None else f", limit {quantity_text(row.after.limit, row.after.unit)}"
-    yield Text(f"{below}{row.known.title}: {_values(row)}{limit}")
+    yield from _below(row, _values(row), below, width)
+
+
+def _below(row: "CheckChange", value: str, below: str, width: int) -> Iterator[Text]:
+    """What the numbers of a check are, and why it does not pass now."""
+    assert row.after is not None
+    limit, text = limit_change_text(row), f"{below}{row.known.title}: {value}"
+    limit = "" if limit == "–" else f"limit {limit}"
+    if limit and len(text) + len(limit) + 2 <= width:
+        text, limit = f"{text}, {limit}", ""
+    yield Text(text)
+    if limit:
+        yield Text(below + limit)
     if row.after.verdict != "pass":
         yield Text(below + row.after.reason, "dim")
 
 
+def _new_fail(row: "CheckChange", width: int) -> Iterator[Text]:
+    """A check that fails and did not apply before."""
+    yield _one_sided(row, width)
+    yield from _below(row, quantity_text(row.known.value, row.known.unit), "    ", width)
+
+
 def _moved(row: "CheckChange", width: int) -> Text:
-    return _line(Text("  "), row.id, _utilisations(row), width)
+    return _line(Text("  "), row.id, _distances(row), width)
 
 
 def _one_sided(row: "CheckChange", width: int) -> Text:
     """A check that has numbers in one result only."""
     side = row.before if row.change in ("no longer applicable", "removed") else row.after
     assert side is not None
-    used = "" if side.utilisation is None else f", {number_text(100.0 * side.utilisation, 3)} % used"
-    return _line(Text("  "), row.id, f"{side.verdict}{used}", width)
+    distance = "" if side.distance is None else f", distance {number_text(100.0 * side.distance, 3)} %"
+    return _line(Text("  "), row.id, f"{side.verdict}{distance}", width)
 
 
-def _utilisations(row: "CheckChange") -> str:
-    """Share of the limit used, in as many digits as show that it moved."""
+def _distances(row: "CheckChange") -> str:
+    """Distance to the limit in as many digits as show that it moved."""
     before, after = (
-        None if side is None or side.utilisation is None else 100.0 * side.utilisation
+        None if side is None or side.distance is None else 100.0 * side.distance
         for side in (row.before, row.after)
     )
-    return _pair(before, after, "%")
+    return change_text(before, after, "%")
 
 
 def _values(row: "CheckChange") -> str:
     before, after = (None if side is None else side.value for side in (row.before, row.after))
-    return _pair(before, after, row.known.unit)
-
-
-def _pair(before: float | None, after: float | None, unit: str) -> str:
-    """Two numbers with their unit, in the least digits from three that show a difference."""
-    for digits in (3, 4, 5, 6):
-        first, second = number_text(before, digits), quantity_text(after, unit, digits)
-        if first != number_text(after, digits):
-            break
-    return f"{first} → {second}"
+    return change_text(before, after, row.known.unit)
 
 
 def _input(row: "InputChange", width: int) -> Text:
@@ -153,7 +163,7 @@ def _quantity(row: "QuantityChange", width: int) -> Text:
     name = f"{row.quantity}, {row.place}"
     if row.after is None:
         return _line(Text("  "), name, f"{quantity_text(row.before, row.unit)} → –", width)
-    return _line(Text("  "), name, _pair(row.before, row.after, row.unit), width)
+    return _line(Text("  "), name, change_text(row.before, row.after, row.unit), width)
 
 
 def _largest(rows: "Sequence[QuantityChange]") -> "list[QuantityChange]":

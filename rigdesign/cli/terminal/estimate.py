@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.base.errors import OutputError
 from rigdesign.base.output_folder import write_whole
+from thermal.fe.kernel_cache import cache_folder
 
 MOST_RUNS = 40
 """Runs whose times are kept."""

@@ -13,7 +13,7 @@ from rigdesign.explanation.check import CheckExplanation
 from rigdesign.explanation.keys import KeyEntry
 from rigdesign.explanation.overview import Overview
 from rigdesign.explanation.path import PathExplanation, StatedValue
-from rigdesign.report.numbers import number_text, quantity_text, unit_text
+from rigdesign.report.numbers import number_text, percent_text, quantity_text, unit_text
 
 HEAD = 11
 """Columns of the word before an answer."""
@@ -42,6 +42,8 @@ def print_overview(seen: Overview, case: Path) -> None:
     console.print(table)
     counts = ", ".join(f"{number} {basis}" for basis, number in seen.inputs.items())
     _answer(console, "inputs", f"{sum(seen.inputs.values())}: {counts}; {seen.ranged} assumed with a range")
+    for text in seen.unusual:
+        _answer(console, "unusual", text)
     groups = ", ".join(f"{group} {len(found)}" for group, found in seen.checks.items())
     unlimited = f"; {len(seen.unlimited)} more without a limit in this case" if seen.unlimited else ""
     _answer(
@@ -71,6 +73,8 @@ def print_path(found: PathExplanation) -> None:
     for value in found.values:
         place = f"{value.path}: " if len(found.values) > 1 else ""
         _answer(console, "value", f"{place}{_value(value)}")
+    for text in found.unusual:
+        _answer(console, "unusual", text)
     for station in found.enters:
         _answer(console, "enters", f"{station.module}: {station.role}")
     if found.influences:
@@ -91,14 +95,14 @@ def print_check(found: CheckExplanation, case: Path) -> None:
         _answer(console, "so", "the check does not apply to this case")
     done = found.finished
     if done is not None:
-        used = "" if done.utilisation is None else f", {100.0 * done.utilisation:.0f} % used"
+        distance = "" if done.distance is None else f", distance {percent_text(done.distance)}"
         margin = (
             "" if done.margin is None else f", margin {quantity_text(done.margin, _difference(done.unit))}"
         )
         _answer(
             console,
             "result",
-            f"{done.verdict}: {quantity_text(done.value, done.unit)}{margin}{used}; {done.reason}",
+            f"{done.verdict}: {quantity_text(done.value, done.unit)}{margin}{distance}; {done.reason}",
         )
         if not done.same_case:
             _answer(console, "note", f"{done.folder} holds results of another state of the case")

@@ -1,5 +1,9 @@
-"""What ``--verbose`` adds, on stderr: iterations of the solvers, times of the parts, what the caches gave."""
+"""What ``--verbose`` adds, on stderr: iterations of the solvers, times of the parts, what the caches gave.
 
+Without it one line on caches that will not last.
+"""
+
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from rigdesign.base.cache_folder import cache_folder
 from rigdesign.cli.terminal.console import new_console, verbosity
+from thermal.fe.kernel_cache import GIVEN, cache_folder, user_folder
 
 if TYPE_CHECKING:
     from rigdesign.results.result import RunResult
@@ -32,20 +36,26 @@ def print_run(result: "RunResult") -> None:
 
 @contextmanager
 def cache_use() -> Iterator[None]:
-    """Around a command: what it found and what it wrote in the caches; nothing unless asked for."""
+    """Around a command: that its caches do not last, if so; when asked for, what it found and wrote there."""
+    folder, lasting = cache_folder(), user_folder()
+    if folder != lasting and not os.environ.get(GIVEN):
+        why = f"{lasting} cannot be written" if lasting else "this user has no home"
+        new_console(stderr=True).print(
+            Text(f"note: caches are in {folder}, as {why}; set {GIVEN} to a folder that lasts"),
+            soft_wrap=True,
+        )
+        os.environ.setdefault("MPLCONFIGDIR", str(folder / "matplotlib"))
     if verbosity.get() != "verbose":
         yield
         return
-    before = _files(cache_folder())
+    before = _files(folder)
     try:
         yield
     finally:
-        after = _files(cache_folder())
+        after = _files(folder)
         written = sum(after[file] != before.get(file) for file in after)
         console = new_console(stderr=True)
-        console.print(
-            Text(f"cache {cache_folder()}: {len(before)} files before, {written} written by this command")
-        )
+        console.print(Text(f"cache {folder}: {len(before)} files before, {written} written by this command"))
         loaded, compiled = _kernels()
         if loaded or compiled:
             console.print(Text(f"compiled kernels: {loaded} loaded from numba's cache, {compiled} compiled"))

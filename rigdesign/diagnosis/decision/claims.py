@@ -2,7 +2,8 @@
 
 A name is given if its size matters, if it shrinks the gap on the points held out by more than the scatter of that
 (`rigdesign.diagnosis.statistics.heldout`), and if no other effect leaves the same trace; the case with all names in
-it, run in full, has to shrink the gap as well. What does not hold is reported with its reason.
+it, run in full, has to shrink the gap as well; where it does not run, names are not confirmed. What does not hold is
+reported with its reason.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -63,6 +64,8 @@ class Claim:
     answer: Array
     gap: Gap | None
     refused: tuple[Refusal, ...]
+    unconfirmed: str = ""
+    """Why the full model confirms no name, so that answer and gap are those of the stored runs."""
 
     @property
     def insignificant(self) -> bool:
@@ -115,12 +118,12 @@ def claim(
     group = _group(left, sizes, traces)
     if group is not None and not group.apart:
         return _without(group, proof, refused)
+    unconfirmed = ""
     try:
         answer = proof.again(sizes)
-    except RigdesignError as error:
-        reason = f"the case with {' and '.join(sizes)} does not run: {error}"
-        refused += [_refusal(one, sizes, "unknown_located", reason) for one in left]
-        return _without(_unclaimed(decision, refused), proof, refused)
+    except RigdesignError as error:  # a solver that gives up is no evidence, in either direction
+        answer = proof.stored(sizes)
+        unconfirmed = f"the case with {' and '.join(sizes)} does not run in full: {error}"
     whole = proof.gap(answer)
     if not whole.shrunk:
         refused += [_unproven(one, sizes, whole) for one in left]
@@ -138,6 +141,7 @@ def claim(
         answer=answer,
         gap=whole,
         refused=tuple(refused),
+        unconfirmed=unconfirmed,
     )
 
 

@@ -13,8 +13,9 @@ from rigdesign.diagnosis.decision.groups import (
     smallest_group,
 )
 from rigdesign.diagnosis.decision.posterior import Posterior, gain_of
+from rigdesign.diagnosis.decision.unmodelled_words import in_words
 from rigdesign.diagnosis.decision.verdict import Candidates, Decision, Thresholds, WhitenedSquare
-from rigdesign.diagnosis.residual.unmodelled_cause import ORDER_CAUSE
+from rigdesign.diagnosis.residual.unmodelled_cause import ORDER_CAUSE, UNKNOWN
 from rigdesign.diagnosis.statistics.evidence import Evidence
 
 UNNAMED = frozenset({"unmodelled", "local"})
@@ -44,12 +45,7 @@ def decide(
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         if losses := losses_of_one_oil(evidence, weights, candidates, thresholds):
             return losses
-        return Decision(
-            verdict="unknown_located",
-            named=(),
-            reason="a cause outside the catalogue explains the data better than any effect of the catalogue",
-            outside=True,
-        )
+        return _beyond(evidence, known, candidates, thresholds)
     candidates = candidates.without(
         sensor for sensor in candidates.sensors if gain_of({sensor}, evidence) < BY_ITSELF * best.gain
     )
@@ -78,6 +74,26 @@ def decide(
             reason="no small group of effects of the catalogue accounts for it",
         )
     return _silent(weights, square, candidates, thresholds)
+
+
+def _beyond(
+    evidence: Sequence[Evidence], known: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
+) -> Decision:
+    """The verdict where what explains the data best is no effect of the catalogue alone; said of a cause outside only
+    where that explains them better by itself."""
+    by_itself = [one for one in evidence if candidates.effects.isdisjoint(one.hypothesis.parts)]
+    leads = max((one.log_bayes for one in by_itself), default=0.0)
+    outside = leads - max((one.log_bayes for one in known), default=0.0) > thresholds.catalogue
+    if outside:
+        reason = "a cause outside the catalogue explains the data better than any effect of the catalogue"
+    else:
+        best = max(evidence, key=lambda one: one.log_bayes)
+        both = (
+            in_words(name.removeprefix(UNKNOWN), *sizes[:1]) if name.startswith(UNKNOWN) else name
+            for name, sizes in best.members
+        )
+        reason = f"{' and '.join(both)} together explain the data better than either alone"
+    return Decision(verdict="unknown_located", named=(), reason=reason, outside=outside)
 
 
 def _named(

@@ -123,6 +123,7 @@ DRIFT = Drift(
     shaft=1.02,
     mesh=1.08,
     amplitude=0.0239,
+    sensors=0.35,
     inflation={
         "film.chamber_oil": 0.000642,
         "heat unpaid at rim ~T n": 8.25e-05,

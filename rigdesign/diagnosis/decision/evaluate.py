@@ -214,7 +214,8 @@ def _unsupported(
             alone = f"operating point {where}" if where else "chance"
             refused[part] = f"the evidence for {part} comes from {alone} alone"
         elif least < thresholds.share * whole or (
-            part in criteria.orders and _added(best, part, evidence) < thresholds.share_loop * whole
+            part in criteria.orders
+            and _added(best, part, evidence, thresholds.share) < thresholds.share_loop * whole
         ):
             refused[part] = f"{part} explains too little in addition to the effects named before"
     return refused
@@ -228,9 +229,15 @@ def _without(decision: Decision, refused: Mapping[str, str]) -> Decision:
     return Decision(verdict="too_small", named=(), reason=next(iter(refused.values())))
 
 
-def _added(best: Evidence, part: str, evidence: Sequence[Evidence]) -> float:
-    """Fall of the whitened square that a part adds to the rest of an explanation."""
-    return best.gain - gain_of([other for other in best.hypothesis.parts if other != part], evidence)
+def _added(best: Evidence, part: str, evidence: Sequence[Evidence], least: float) -> float:
+    """Fall of the whitened square that a part adds to the rest of an explanation.
+
+    A rest that adds less than the share ``least`` to the part is none: the part explains what both do.
+    """
+    rest = [other for other in best.hypothesis.parts if other != part]
+    if best.gain - gain_of([part], evidence) < least * best.gain:
+        return best.gain
+    return best.gain - gain_of(rest, evidence)
 
 
 def _with_model_error(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:

@@ -11,7 +11,7 @@ from math import atan2, exp, hypot, isfinite, log, pi
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
 from rigdesign.diagnosis.decision.unmodelled_words import in_words
 from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
-from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence
+from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.intervals import NORMAL_95, Size
 
 DIGITS = 6
@@ -97,14 +97,16 @@ class Names:
         found = self.entry(explanation)
         return explanation if found is None else found[0].name
 
-    def title(self, explanation: str) -> str:
-        """In words; of a pair both, of an effect at any order without the order."""
-        if JOIN in explanation:
-            return " and ".join(self.title(part) for part in explanation.split(JOIN))
+    def title_of(self, evidence: Evidence) -> str:
+        """Of an explanation at its best fit; of a pair both."""
+        return " and ".join(self.title(name, *sizes[:1]) for name, sizes in evidence.members)
+
+    def title(self, explanation: str, size: float = 0.0) -> str:
+        """In words; of an effect at any order without the order; ``size``: of what has no entry, by its sign."""
         found = self.entry(explanation)
         if found is None:
             of_orders = next((one.title for one in self._effects.values() if one.claim == explanation), "")
-            return of_orders.rpartition(", ")[0] or _without_entry(explanation)
+            return of_orders.rpartition(", ")[0] or _without_entry(explanation, size)
         entry, tooth = found
         return entry.title if tooth is None else f"{entry.title}: tooth {tooth}"
 
@@ -270,11 +272,11 @@ def _amplitude_name(name: str) -> str:
     return name.removesuffix(PARTS[0]).removesuffix(PARTS[1])
 
 
-def _without_entry(explanation: str) -> str:
+def _without_entry(explanation: str, size: float) -> str:
     """Words for what has no entry."""
     kind, _, rest = explanation.partition(":")
     if kind == "unknown":
-        return f"not in the catalogue: {in_words(rest.strip())}"
+        return f"not in the catalogue: {in_words(rest.strip(), size)}"
     first, _, second = rest.partition(",")
     if kind == "swapped_channels":
         return f"channels {first} and {second} exchanged"

@@ -37,10 +37,12 @@ class Leading:
     """An explanation that a measurement has to distinguish from others.
 
     things : an effect, an error, or the places of a cause in no catalogue, whatever its law; evidence : of the best one
+    size : of the cause in the most probable explanation that holds it
     """
 
     things: tuple[str, ...]
     evidence: Evidence
+    size: float = 0.0
 
     @property
     def name(self) -> str:
@@ -55,7 +57,7 @@ class Leading:
     @property
     def in_words(self) -> str:
         """Of a cause in no catalogue."""
-        return in_words(self.name.removeprefix(UNKNOWN))
+        return in_words(self.name.removeprefix(UNKNOWN), self.size)
 
     def ends(self, found: Diagnosis) -> bool:
         """Whether a diagnosis ends in it: named, or located at its places."""
@@ -117,9 +119,17 @@ def _credible(found: Diagnosis, least: float) -> list[Leading]:
     for thing in sorted(masses, key=lambda one: -masses[one])[:RIVALS]:
         if held >= least:
             break
-        chosen.append(Leading(things=(thing,), evidence=best[thing]))
+        chosen.append(Leading(things=(thing,), evidence=best[thing], size=_size(found, thing)))
         held += masses[thing]
     return chosen
+
+
+def _size(found: Diagnosis, thing: str) -> float:
+    """Of what is at a place, in the most probable explanation that holds it."""
+    weights = found.evaluations[0].weights
+    holding = [one for one in found.evaluations[0].evidence if _stands_for(one.hypothesis) == thing]
+    most = max(holding, key=lambda one: weights.masses[one.hypothesis.name])
+    return next((sizes[0] for name, sizes in most.members if place_of(name) == thing and sizes), 0.0)
 
 
 def credible_places(found: Diagnosis) -> list[Leading]:

@@ -29,20 +29,28 @@ _PIPE = re.compile(r"heat in the (supply|drain) of (.+?) constant$")
 _ORDER = re.compile(r"order (\S+) of (.+?) (constant|~n2|~T)$")
 
 
-def in_words(cause: str) -> str:
-    """``heat unpaid at body:test.n2 ~n2`` -> what an engineer would call it; as it is where it is of no known kind."""
+def in_words(cause: str, size: float = 0.0) -> str:
+    """``heat unpaid at body:test.n2 ~n2`` -> what an engineer would call it; as it is where it is of no known kind.
+
+    size : fitted amount, by its sign heat or cooling; 0 where it is not known
+    """
+    more, less = size > 0.0, size < 0.0
     if found := _HEAT.match(cause):
         kind, place, where, law = found.groups()
-        source = "power loss" if kind == "heat" else "heat from outside the drive"
+        source = f"{'cooling' if less else 'heat'} from outside the drive"
+        if kind == "heat":
+            source = "less power loss than modelled" if less else "power loss"
         return f"{source} {PLACES.get(place, 'at {0}').format(where)}, {LAWS[law]}"
     if found := _NEAR.match(cause):
-        return f"heat source or draught near thermocouple {found[1]}, {LAWS[found[2]]}"
+        source = "heat source" if more else "draught" if less else "heat source or draught"
+        return f"{source} near thermocouple {found[1]}, {LAWS[found[2]]}"
     if found := _PIPE.match(cause):
-        return f"heat in the {found[1]} line of {found[2]}"
+        return f"{'cooling' if less else 'heat'} in the {found[1]} line of {found[2]}"
     if found := _ORDER.match(cause):
         return f"order {found[1]} of {found[2]} without a known source, {LAWS[found[3]]}"
     if cause.startswith("conductance "):
-        return f"heat path other than modelled: {_path(cause.removeprefix('conductance '))}"
+        compared = "better than" if more else "worse than" if less else "other than"
+        return f"heat path {compared} modelled: {_path(cause.removeprefix('conductance '))}"
     return cause
 
 

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
+
 from rigdesign.diagnosis.decision.claims import Refusal
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.evaluate import Evaluation
@@ -62,6 +64,8 @@ class Diagnosis:
     fits: Mapping[str, JointFit]
     gap: Gap | None
     refused: tuple[Refusal, ...]
+    unconfirmed: str
+    """Why the full model confirms no name; empty where it was run."""
     alternatives: tuple[Alternative, ...]
     detectability: tuple[Detectability, ...]
     aliases: tuple[tuple[str, str, float], ...]
@@ -115,7 +119,8 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
     claimed, suspicion = finding.claimed, finding.suspicion
     deciding = wrong or finding.look.first
     shrunk = claimed.gap is not None and claimed.gap.shrunk
-    proven = claimed.decision.verdict == "named" and shrunk and rerun is not None
+    confirmed = rerun is not None and not claimed.unconfirmed
+    proven = claimed.decision.verdict == "named" and shrunk and confirmed
     return Diagnosis(
         decision=finding.decision,
         strength="proven" if problem.repeated and proven else "indicative",
@@ -126,6 +131,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
         gap=claimed.gap,
         suspicion=suspicion,
         refused=claimed.refused,
+        unconfirmed=claimed.unconfirmed,
         alternatives=_alternatives(deciding),
         detectability=numbers.detectability,
         aliases=numbers.aliases,
@@ -177,10 +183,17 @@ def _wrong_data(
     evaluated = contest.evaluated([evaluate_hypothesis(whole, one) for one in singles])
     evidence = sorted(evaluated, key=lambda one: -one.log_bayes)
     weights = posterior(evidence, {**everything.members, "input": len(data)})
-    if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
+    thresholds = calibration.thresholds(problem.baseline is not None)
+    if weights.families.get("input", 0.0) <= thresholds.input:
         return None
     wrong = [one for one in evidence if one.hypothesis.family == "input"]
     best = max(wrong, key=lambda one: weights.masses[one.hypothesis.name])
+    heat = np.flatnonzero(residuals.of_heat)
+    of_heat = 0.5 * (
+        _square(whole, whole.residual, heat) - _square(whole, whole.residual - best.answer, heat)
+    )
+    if of_heat < thresholds.evidence and best.log_bayes < thresholds.evidence_loop:
+        return None  # healthy rigs have given as much evidence
     return Evaluation(
         evidence=tuple(evidence),
         contradicted=(),
@@ -194,6 +207,13 @@ def _wrong_data(
         chi_square=whole.chi_square,
         count=len(whole.residual),
     )
+
+
+def _square(space: Whitened, white: Array, rows: Array) -> float:
+    """Square of some numbers of a residual, whitened by themselves."""
+    own = space.covariance.matrix[np.ix_(rows, rows)]
+    values = (space.covariance.lower @ white)[rows]
+    return float(values @ np.linalg.solve(own, values))
 
 
 def _alternatives(evaluation: Evaluation, count: int = 12) -> tuple[Alternative, ...]:

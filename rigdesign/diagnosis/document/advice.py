@@ -165,6 +165,8 @@ def certainty(outcome: Outcome) -> str:
         missing.append("no effect is named")
     elif found.proof.rerun is None:
         missing.append("the case with the named effects was not run in full")
+    if found.unconfirmed:
+        missing.append(f"it could not be confirmed: {found.unconfirmed}")
     if not outcome.result.problem.repeated:
         missing.append("most numbers have a single reading, so the declared noise is used")
     if not found.held_out_points:

@@ -187,7 +187,7 @@ def _alternatives(outcome: Outcome) -> list[dict[str, Any]]:
         rows.append(
             {
                 "explanation": one.name,
-                "title": outcome.names.title(one.name),
+                "title": outcome.names.title_of(own),
                 "family": own.hypothesis.family,
                 "effects": list(one.parts),
                 "posterior": one.posterior,

@@ -21,6 +21,7 @@ def gap_document(outcome: Outcome) -> dict[str, Any] | None:
         "unit": "standard deviations of a healthy rig",
         "held_out_points": list(outcome.gap.points),
         "effects_added": list(outcome.in_model),
+        "full_run": outcome.full_run,
         "channels": gap_rows(outcome),
     }
 

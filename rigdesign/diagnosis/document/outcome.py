@@ -15,7 +15,7 @@ from rigdesign.diagnosis.document.correction import Correction, of_data, of_sens
 from rigdesign.diagnosis.document.located import located
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence
 from rigdesign.diagnosis.statistics.heldout import Gap, gap_in_words
 from rigdesign.measurement.comparison.locate import Located
 
@@ -27,7 +27,8 @@ SHOWN = 3
 class Suspect:
     """An effect that may be present but is not named.
 
-    inclusion : posterior mass of all explanations that claim it; size : at its own best fit, None for what has none
+    inclusion : posterior mass of what it stands for, of all suspects one at most; size : at its own best fit, None for
+        what has none
     """
 
     name: str
@@ -53,7 +54,8 @@ class Outcome:
     picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
     offered : the patch of a suspected effect, to be tried and not applied
     answer : (n,) what named, suspected or picked effects add to the kept numbers
-    gap : with them on the points held out; before, after : where the residual sits without and with them
+    gap : with them on the points held out; full_run : whether the model was run in full there
+    before, after : where the residual sits without and with them
     """
 
     result: Result
@@ -67,6 +69,7 @@ class Outcome:
     offered: CasePatch | None
     answer: Array
     gap: Gap | None
+    full_run: bool
     corrections: tuple[Correction, ...]
     before: tuple[Located, ...]
     after: tuple[Located, ...]
@@ -131,6 +134,7 @@ def outcome(result: Result, *, pick: str | None = None) -> Outcome:
     suspicion = found.suspicion
     suspected = None if suspicion is None else from_fit(names, suspicion.fit.sizes)[0]
     answer, gap = (found.answer, found.gap) if suspicion is None else (suspicion.answer, suspicion.gap)
+    full_run = suspicion is None and found.proof.rerun is not None and not found.unconfirmed
     offered = None
     if suspected is not None and picked is None:
         offered, _ = _case_patch(result, [suspected], None)
@@ -138,8 +142,10 @@ def outcome(result: Result, *, pick: str | None = None) -> Outcome:
         patch, refused = None, _why_not(result, False)
     else:
         patch, refused = _case_patch(result, applied, picked)
+    if patch is not None and found.unconfirmed:
+        patch, refused = None, found.unconfirmed
     if picked is not None:
-        answer, gap, failure = _put_to_the_proof(result, applied)
+        answer, gap, full_run, failure = _put_to_the_proof(result, applied)
         if patch is not None and failure:
             patch, refused = None, failure
     corrections = [of_sensor(one) for one in applied if not isinstance(one.entry, Effect)]
@@ -157,6 +163,7 @@ def outcome(result: Result, *, pick: str | None = None) -> Outcome:
         offered=offered,
         answer=answer,
         gap=gap,
+        full_run=full_run,
         corrections=tuple(corrections),
         before=located(result, found.residual),
         after=located(result, found.residual - answer),
@@ -187,25 +194,42 @@ def _nearest(pick: str, known: Sequence[str]) -> str:
 
 
 def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
-    """Members of the group the verdict gives, or the leading explanations."""
+    """Members of the group the verdict gives, or the leading explanations; of these the posteriors exclude each other.
+
+    An explanation that holds several members of a group counts in equal parts for each.
+    """
     found = result.diagnosis
-    weights = found.deciding.weights
-    if found.decision.named:
-        wanted = list(found.decision.named)
-    elif found.decision.verdict == "data_insufficient":
-        singles = [one for one in found.deciding.evidence if one.hypothesis.family not in ("pair", "input")]
-        ordered = sorted(singles, key=lambda one: -weights.masses[one.hypothesis.name])
-        wanted = list(dict.fromkeys(one.hypothesis.parts[0] for one in ordered))[:SHOWN]
+    weights, evidence = found.deciding.weights, found.deciding.evidence
+    wanted: list[tuple[str, ...]] = [(name,) for name in found.decision.named]
+    held = dict.fromkeys(wanted, 0.0)
+    if wanted:
+        for one in evidence:
+            own = [part for part in wanted if part[0] in one.hypothesis.parts]
+            held |= {part: held[part] + weights.masses[one.hypothesis.name] / len(own) for part in own}
     else:
-        parts = sorted(weights.inclusion.items(), key=lambda item: -item[1])
-        wanted = [part for part, _ in parts[:SHOWN]]
+        few = found.decision.verdict == "data_insufficient"
+        for one in evidence:
+            parts = tuple(sorted(one.hypothesis.parts))
+            if not few or one.hypothesis.family not in ("pair", "input"):
+                held[parts] = held.get(parts, 0.0) + weights.masses[one.hypothesis.name]
+        wanted = sorted(held, key=lambda parts: -held[parts])[:SHOWN]
     suspects = []
-    for name in wanted:
-        best = _best(result, names, name)
+    for parts in wanted:
+        best = _best(result, names, parts[0]) if len(parts) == 1 else None
         size = None if best is None else from_evidence(names, best, result.calibration.signature_error)
-        title = names.title(name) if size is None else size.title
+        leads = max(
+            (one for one in evidence if tuple(sorted(one.hypothesis.parts)) == parts),
+            key=lambda one: weights.masses[one.hypothesis.name],
+            default=None,
+        )
+        title = names.title(parts[0]) if leads is None else names.title_of(leads)
         suspects.append(
-            Suspect(name=name, title=title, inclusion=weights.inclusion.get(name, 0.0), size=size)
+            Suspect(
+                name=JOIN.join(parts),
+                title=title if size is None else size.title,
+                inclusion=held[parts],
+                size=size,
+            )
         )
     return tuple(suspects)
 
@@ -240,20 +264,22 @@ def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) ->
     return from_evidence(names, best, result.calibration.signature_error)
 
 
-def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, Gap | None, str]:
-    """What picked effects add, the gap with them on the points held out, and why they are not patched or nothing."""
+def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, Gap | None, bool, str]:
+    """What picked effects add, the gap with them on the points held out, whether the model ran in full there, and why
+    they are not patched or nothing."""
     proof = result.diagnosis.proof
     sizes = {one.explanation: one.coordinates for one in applied}
     together = " and ".join(sizes)
     if not proof.points:
-        return proof.stored(sizes), None, ""
+        return proof.stored(sizes), None, False, ""
     try:
         answer = proof.again(sizes)
     except RigdesignError as error:
         answer = proof.stored(sizes)
-        return answer, proof.gap(answer), f"the case with {together} does not run: {error}"
+        return answer, proof.gap(answer), False, f"the case with {together} does not run in full: {error}"
     gap = proof.gap(answer)
-    return answer, gap, f"with {together} in the model the gap {gap_in_words(gap)}" if gap.grown else ""
+    failure = f"with {together} in the model the gap {gap_in_words(gap)}" if gap.grown else ""
+    return answer, gap, proof.rerun is not None, failure
 
 
 def _case_patch(

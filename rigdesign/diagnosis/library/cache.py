@@ -2,30 +2,43 @@
 
 A library is found again by the hash of the case and its effects with their bounds; of those stored, one serves whose
 channels and operating points hold those asked for (`Library.serving`). A file is named after the SHA-256 of its
-content and is read only where both agree; a damaged one is set aside, and what it held is computed again. The folder
-is RIGDESIGN_CACHE_DIR or the user's cache folder; deleting it loses time only.
+content and is read only where both agree; a damaged one is set aside, and what it held is computed again. It is an
+archive of arrays with their names as JSON: nothing in it is run. The folder is RIGDESIGN_CACHE_DIR or the user's cache
+folder; deleting it loses time only.
 """
 
 import hashlib
+import io
 import json
-import os
-import pickle
 import shutil
+import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
-from rigdesign.base.cache_folder import cache_folder
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+from rigdesign.base.output_folder import replace_whole
 from rigdesign.base.version import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.prediction.model import Channel, OperatingCondition, PredictionModel, measured_against
+from rigdesign.prediction.model import (
+    Channel,
+    Feature,
+    OperatingCondition,
+    PredictionModel,
+    measured_against,
+)
+from thermal.fe.kernel_cache import cache_folder
 
-SCHEMA = 5
+SCHEMA = 6
 """Of the stored libraries; raise it with any change of what they hold."""
+ENDING = ".npz"
 DAMAGED = ".damaged"
 """How the name of a file ends that was set aside."""
 
@@ -67,7 +80,9 @@ def stored_library(
 ) -> Library | None:
     """Of the stored libraries that serve these points and channels the one nearest to them; None if there is none."""
     nearest, least = None, float("inf")
-    for found in _stored(_folder(case, effects, measured_against(channels)), Library, say):
+    for found in _stored(_folder(case, effects, measured_against(channels)), say):
+        if not isinstance(found, Library):
+            continue
         if (distance := found.distance(settings)) >= least:
             continue
         serving = found.serving(tuple(settings), tuple(channels))
@@ -98,8 +113,8 @@ class Parts:
     def known(self, say: Progress = _silent) -> dict[str, Response | None]:
         """Effect -> its response, None where the model refused it; ``say`` is called for damaged files."""
         found: dict[str, Response | None] = {}
-        for part in _stored(self.folder, dict, say):
-            found |= part
+        for part in _stored(self.folder, say):
+            found |= {} if isinstance(part, Library) else part
         return found
 
     def keep(self, responses: Mapping[str, Response | None]) -> None:
@@ -128,51 +143,107 @@ def _key(case: Case, effects: Sequence[Effect], circuit: PredictionModel) -> str
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
 
 
-T = TypeVar("T")
+Stored = Library | Mapping[str, Response | None]
 
 
-def _stored(folder: Path, kind: type[T], say: Progress) -> Iterator[T]:
-    """What the whole files of a folder hold; damaged ones are set aside and reported."""
-    for file in sorted(folder.glob("*.pickle")) if folder.is_dir() else ():
-        found = _unpickled(file)
-        if isinstance(found, kind):
+def _stored(folder: Path, say: Progress) -> Iterator[Stored]:
+    """What the whole files of a folder hold; damaged ones are set aside and reported, as are those of others."""
+    for file in sorted(filter(Path.is_file, folder.glob(f"*{ENDING}"))):
+        try:
+            content = file.read_bytes()
+        except OSError as error:
+            say(f"{file} cannot be read ({error.strerror}): what it holds is computed again")
+            continue
+        found = _unpacked(content) if _name(content) == file.name else None
+        if found is not None:
             yield found
-        else:
-            _set_aside(file)
-            say(
-                f"{file} is damaged or cannot be read: it was set aside as {file.name}{DAMAGED} and is computed again"
-            )
-
-
-def _unpickled(file: Path) -> object:
-    """The object a file holds; None where the content is not the one that the file is named after, or no object."""
-    if not file.is_file():
-        return None
-    try:
-        content = file.read_bytes()
-        return pickle.loads(content) if _name(content) == file.name else None
-    except Exception:  # pickle raises whatever the classes of another version do
-        return None
-
-
-def _set_aside(file: Path) -> None:
-    """Out of the way of the next run; what cannot be renamed costs that run the same words again."""
-    with suppress(OSError):
-        file.replace(file.with_name(file.name + DAMAGED))
+            continue
+        with suppress(OSError):  # what cannot be renamed costs the next run the same words again
+            file.replace(file.with_name(file.name + DAMAGED))
+        say(f"{file} is damaged: it was set aside as {file.name}{DAMAGED} and is computed again")
 
 
 def _name(content: bytes) -> str:
-    return f"{hashlib.sha256(content).hexdigest()[:16]}.pickle"
+    return f"{hashlib.sha256(content).hexdigest()[:16]}{ENDING}"
 
 
-def _store(folder: Path, what: object) -> None:
-    """BackgroundTasks, then renamed; a folder that cannot be written to costs time, not the result."""
-    content = pickle.dumps(what, protocol=5)
-    part = folder / f".{os.getpid()}.part"
+def _store(folder: Path, what: Stored) -> None:
+    """A folder that cannot be written to costs time, not the result."""
+    content = _packed(what)
+    with suppress(OSError):
+        replace_whole(folder / _name(content), content)
+
+
+COLUMNS = ("inputs", "links", "sources", "dry_sources")
+"""Of a library: name -> (n,)."""
+
+
+class _Index(BaseModel):
+    """What of a file is not numbers: the names of its arrays, in their order."""
+
+    whole: bool = False
+    channels: tuple[Channel, ...] = ()
+    settings: tuple[OperatingCondition, ...] = ()
+    features: tuple[Feature, ...] = ()
+    powers: dict[str, float] = {}
+    error: float = 0.0
+    columns: dict[str, list[tuple[str, ...]]] = {}
+    responses: list[str] = []
+    refused: list[str] = []
+
+
+def _packed(what: Stored) -> bytes:
+    responses = what.responses if isinstance(what, Library) else what
+    known = {name: one for name, one in responses.items() if one is not None}
+    arrays: dict[str, NDArray[Any]] = {}
+    for number, one in enumerate(known.values()):
+        arrays |= {f"coordinates {number}": one.coordinates, f"answers {number}": one.answers}
+    index = _Index(responses=list(known), refused=[name for name in responses if name not in known])
+    if isinstance(what, Library):
+        columns = {kind: getattr(what, kind) for kind in COLUMNS}
+        arrays |= {"base": what.base, "modes": what.modes}
+        arrays |= {kind: np.array(list(found.values())) for kind, found in columns.items()}
+        names = {
+            kind: [(name,) if isinstance(name, str) else name for name in found]
+            for kind, found in columns.items()
+        }
+        stated = {key: getattr(what, key) for key in ("channels", "settings", "features", "powers", "error")}
+        index = index.model_copy(update={**stated, "whole": True, "columns": names})
+    stream = io.BytesIO()
+    text = np.frombuffer(index.model_dump_json().encode(), np.uint8)
+    np.savez(stream, allow_pickle=False, index=text, **arrays)
+    return stream.getvalue()
+
+
+def _unpacked(content: bytes) -> Stored | None:
+    """What an archive holds; None for one that is no library of this version."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(content)
-        part.replace(folder / _name(content))
-    except OSError:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        index = _Index.model_validate_json(arrays["index"].tobytes())
+        responses = {
+            name: Response(coordinates=arrays[f"coordinates {number}"], answers=arrays[f"answers {number}"])
+            for number, name in enumerate(index.responses)
+        }
+        if not index.whole:
+            return {**responses, **dict.fromkeys(index.refused)}
+        columns: dict[str, Any] = {
+            kind: {
+                names if kind == "inputs" else names[0]: values
+                for names, values in zip(index.columns[kind], arrays[kind], strict=True)
+            }
+            for kind in COLUMNS
+        }
+        return Library(
+            channels=index.channels,
+            settings=index.settings,
+            features=index.features,
+            base=arrays["base"],
+            responses=responses,
+            powers=index.powers,
+            modes=arrays["modes"],
+            error=index.error,
+            **columns,
+        )
+    except (ValueError, KeyError, OSError, zipfile.BadZipFile):
+        return None

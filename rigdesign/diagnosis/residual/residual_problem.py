@@ -157,6 +157,20 @@ class ResidualProblem:
         return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
 
     @cached_property
+    def sensor_shifts(self) -> Array:
+        """(n, k) shifts of sensors and settings by what is stated of each: offset, scale and repeatability.
+
+        Of a thermocouple the scale is conduction along its leads, which stays with its seat: it shifts by its offset.
+        """
+        seated = {f"sensor_scale:{n}" for n, one in self.channels.items() if one.quantity == "temperature"}
+        shifts = [error.spread * error.values for error in self.errors if error.name not in seated]
+        for name in dict.fromkeys(feature.channel for feature in self.features):
+            own = np.array([one.channel == name and not one.order for one in self.features], dtype=np.float64)
+            if own.any():
+                shifts.append(own * np.sqrt(np.mean(self.noise[own > 0.0] ** 2)))
+        return np.array(shifts).reshape(-1, len(self.features)).T
+
+    @cached_property
     def answer_error(self) -> Array:
         """(n, n) covariance of what the answers to its constants have wrong, at an amplitude of one."""
         return answer_error(self.library, self.effects)

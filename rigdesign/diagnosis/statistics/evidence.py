@@ -52,6 +52,14 @@ class Evidence:
     joined: int = 0
     """Where two explanations are joined: columns of the first."""
 
+    @property
+    def members(self) -> tuple[tuple[str, tuple[float, ...]], ...]:
+        """Explanations that it joins, each with its coordinates."""
+        names = self.hypothesis.name.split(JOIN)
+        if len(names) == 1:
+            return ((names[0], self.coordinates),)
+        return (names[0], self.coordinates[: self.joined]), (names[1], self.coordinates[self.joined :])
+
     def share_of(self, part: str) -> Array:
         """(n,) what one of its parts adds to the answer."""
         if not self.joined:

@@ -157,18 +157,15 @@ SIMULATION = "the simulation"
 
 def sentence(item: Located, measurement: MeasurementSet, reference: str = SIMULATION) -> str:
     """One group as a sentence: where, which way off ``reference``, how much, at which points, along with what."""
-    channel = measurement.channels[item.channels[0]]
-    quantity = channel.channel.quantity
-    complex_parts = "orders" in item.group
-    size = display_residual(item.largest, quantity, channel.unit)
-    if complex_parts:
-        way = f"off by up to {abs(size[0]):.3g} {size[1]}"
+    size = f"by up to {_largest_by_quantity(item, measurement)}"
+    if "orders" in item.group:
+        way = f"off {size}"
     elif item.positive > 0.9:
-        way = f"above {reference} by up to {abs(size[0]):.3g} {size[1]}"
+        way = f"above {reference} {size}"
     elif item.positive < 0.1:
-        way = f"below {reference} by up to {abs(size[0]):.3g} {size[1]}"
+        way = f"below {reference} {size}"
     else:
-        way = f"off {reference} both ways by up to {abs(size[0]):.3g} {size[1]}"
+        way = f"off {reference} both ways {size}"
     text = f"{item.group[0].upper()}{item.group[1:]}: {way}"
     if set(item.points) - {""}:
         count = len(item.points)
@@ -180,6 +177,18 @@ def sentence(item: Located, measurement: MeasurementSet, reference: str = SIMULA
     if item.variable:
         text += f"; the difference {VARIABLES[item.variable]} ({100.0 * item.share:.0f} % of it)"
     return text + "."
+
+
+def _largest_by_quantity(item: Located, measurement: MeasurementSet) -> str:
+    """Size of the largest difference of every quantity of a group, in the unit of its first channel."""
+    largest: dict[str, tuple[float, str]] = {}
+    for name, value in item.largest.items():
+        channel = measurement.channels[name]
+        quantity = channel.channel.quantity
+        before, unit = largest.get(quantity, (0.0, channel.unit))
+        largest[quantity] = max(before, abs(value)), unit
+    sizes = (display_residual(value, quantity, unit) for quantity, (value, unit) in largest.items())
+    return " and ".join(f"{value:.3g} {unit}" for value, unit in sizes)
 
 
 def display_residual(value: float, quantity: str, unit: str) -> tuple[float, str]:

@@ -37,7 +37,7 @@ class Located:
     excess : probability that chance alone makes the residual this large
     variable, share : the variable it goes along with and the part of its square that explains; empty and 0 for none
     positive : share of the whitened residual's weight that is above the simulation
-    mean, largest : of the residual [SI]
+    largest : residual [SI] of each channel that is largest in size
     """
 
     group: str
@@ -51,8 +51,7 @@ class Located:
     variable: str
     share: float
     positive: float
-    mean: float
-    largest: float
+    largest: Mapping[str, float]
 
 
 def leading_variables(settings: Sequence[OperatingCondition], ambient: float) -> dict[str, Array]:
@@ -120,7 +119,9 @@ def _located(
     off = dict.fromkeys(features[i].setting for i, z in zip(chosen, whitened) if abs(z) > 3.0)
     points = {features[i].setting for i in chosen}
     variable, share = _leading(chosen, features, whitened, variables)
-    by_size = max(chosen, key=lambda i: abs(residual[i] / spread[i]))
+    largest: dict[str, float] = {}
+    for i in chosen:
+        largest[features[i].channel] = max(largest.get(features[i].channel, 0.0), float(residual[i]), key=abs)
     return Located(
         group=group,
         features=tuple(chosen),
@@ -132,8 +133,7 @@ def _located(
         variable=variable,
         share=share,
         positive=float(squares[whitened > 0.0].sum() / squares.sum()) if squares.any() else 0.5,
-        mean=float(np.mean(residual[list(chosen)])),
-        largest=float(residual[by_size]),
+        largest=largest,
     )
 
 

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 MOST_ROWS = 24
 """Checks drawn, those that moved most."""
 LEAST_CHANGE = 0.001
-"""Change of a utilisation from which a check is drawn."""
+"""Change of a distance from which a check is drawn."""
 
 
 def margins_figure(changes: "Sequence[CheckChange]") -> "Figure | None":
     """Margin of every check that moved before (open) and after (filled), the largest change on top; None if none."""
-    rows = [row for row in changes if abs(row.utilisation_change or 0.0) > LEAST_CHANGE]
-    rows = sorted(rows, key=lambda row: -abs(row.utilisation_change or 0.0))[:MOST_ROWS]
+    rows = [row for row in changes if abs(row.distance_change or 0.0) > LEAST_CHANGE]
+    rows = sorted(rows, key=lambda row: -abs(row.distance_change or 0.0))[:MOST_ROWS]
     if not rows:
         return None
     height = 1.0 + 0.3 * len(rows)
@@ -30,7 +30,7 @@ def margins_figure(changes: "Sequence[CheckChange]") -> "Figure | None":
     axes = figure.subplots()
     ends = []
     for place, row in enumerate(rows):
-        before, after = (_margin(side.utilisation) for side in (row.before, row.after) if side is not None)
+        before, after = (_percent(side.distance) for side in (row.before, row.after) if side is not None)
         colour = VERDICT_COLOURS.get(row.known.verdict, MUTED)
         flipped = row.change == "flipped"
         axes.plot([before, after], [place, place], color=colour, linewidth=3.2 if flipped else 1.4, zorder=2)
@@ -47,5 +47,5 @@ def margins_figure(changes: "Sequence[CheckChange]") -> "Figure | None":
     return figure
 
 
-def _margin(utilisation: float | None) -> float:
-    return 100.0 * (1.0 - (utilisation or 0.0))
+def _percent(distance: float | None) -> float:
+    return 100.0 * (1.0 if distance is None else distance)

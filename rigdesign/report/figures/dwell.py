@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 KINDS = {
-    "dynamic_factor": "K_V \N{MINUS SIGN} 1, highest of the meshes",
+    "dynamic_factor": "dynamic part of the mesh torque, highest of the meshes",
     "root_stress": "root stress, dynamic / quasi-static \N{MINUS SIGN} 1",
     "shaft_torque": "half peak-to-peak torque of shafts and joints",
 }

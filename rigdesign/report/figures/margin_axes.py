@@ -20,8 +20,8 @@ BEND = 25.0
 """How far below that the scale takes to become logarithmic [%]."""
 BELOW = (-100, -200, -500, -1000, -2000, -5000, -10_000, -100_000)
 """Ticks where the scale is no longer linear [%]."""
-MARGIN_LABEL = "margin, 1 − utilisation [%]"
-SHORT_LABEL = "margin [%]"
+MARGIN_LABEL = "distance to the limit [%]"
+SHORT_LABEL = "distance [%]"
 """For small plots beside or below one with the long label."""
 MOST_NAMES = 12
 """Names along an axis that are written level."""

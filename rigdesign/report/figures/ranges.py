@@ -28,7 +28,7 @@ def margins_figure(ranges: "RangesResult", titles: dict[str, str]) -> "Figure | 
     """
     rows = sorted(
         (row for row in ranges.checks if _span(row) > LEAST_SPAN),
-        key=lambda row: -(row.worst_utilisation or 0.0),
+        key=lambda row: 1.0 if row.worst_distance is None else row.worst_distance,
     )
     if not rows:
         return None
@@ -36,7 +36,7 @@ def margins_figure(ranges: "RangesResult", titles: dict[str, str]) -> "Figure | 
     figure = new_figure(height)
     axes = figure.subplots()
     for place, row in enumerate(rows):
-        low, stated, high = (_left(u) for u in (row.worst_utilisation, row.utilisation, row.best_utilisation))
+        low, stated, high = (_left(u) for u in (row.worst_distance, row.distance, row.best_distance))
         colour = VERDICT_COLOURS[row.verdict]
         axes.plot([low, high], [place, place], color=colour, linewidth=5, solid_capstyle="butt", alpha=0.75)
         axes.plot([stated], [place], "|", color=INK, markersize=11, markeredgewidth=1.6)
@@ -48,13 +48,11 @@ def margins_figure(ranges: "RangesResult", titles: dict[str, str]) -> "Figure | 
     axes.axvspan(FLOOR, 0.0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
     axes.axvline(0.0, color=INK, linewidth=1.2)
     axes.set_yticks(range(len(rows)), [plain(_wrapped(titles.get(row.check, row.check))) for row in rows])
-    axes.set_xlim(max(FLOOR, min(0.0, *(_left(row.worst_utilisation) for row in rows)) - 2.0), 135.0)
+    axes.set_xlim(max(FLOOR, min(0.0, *(_left(row.worst_distance) for row in rows)) - 2.0), 135.0)
     axes.set_xticks([tick for tick in range(-50, 101, 25) if tick >= axes.get_xlim()[0]])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    finish(
-        axes, "margin, 1 − utilisation [% of the limit]; upright mark: as stated; named: what lowers it most"
-    )
+    finish(axes, "distance to the limit [%]; upright mark: as stated; named: what lowers it most")
     figure.subplots_adjust(left=0.34, right=0.985, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure
 
@@ -103,12 +101,12 @@ def _strongest(inputs: "Sequence[RangedInput]", stated: float) -> "list[RangedIn
 
 
 def _span(row: "CheckRange") -> float:
-    return _left(row.best_utilisation) - _left(row.worst_utilisation)
+    return _left(row.best_distance) - _left(row.worst_distance)
 
 
-def _left(utilisation: float | None) -> float:
+def _left(distance: float | None) -> float:
     """Margin [% of the limit], cut off where the figure ends."""
-    return max(FLOOR, 100.0 * (1.0 - (utilisation or 0.0)))
+    return max(FLOOR, 100.0 * (1.0 if distance is None else distance))
 
 
 def _short(path: str) -> str:

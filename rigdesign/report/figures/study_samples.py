@@ -118,10 +118,10 @@ class _Bar:
 
 def _bar(swing: "Swing") -> _Bar | None:
     """None where an end has no result, or neither moves the check."""
-    stated, low, high = swing.utilisation_stated, swing.utilisation_low, swing.utilisation_high
+    stated, low, high = swing.distance_stated, swing.distance_low, swing.distance_high
     if stated is None or low is None or high is None or stated == low == high:
         return None
-    return _Bar(swing, *(100.0 * (1.0 - utilisation) for utilisation in (stated, low, high)))
+    return _Bar(swing, *(100.0 * distance for distance in (stated, low, high)))
 
 
 def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
@@ -161,6 +161,6 @@ def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.legend(loc="lower right", frameon=True, framealpha=0.85, edgecolor="none")
-    finish(axes, "share of the variance of the utilisation", "", plain(fill(title, TITLE_WIDTH)))
+    finish(axes, "share of the variance of the distance", "", plain(fill(title, TITLE_WIDTH)))
     figure.subplots_adjust(left=0.36, right=0.98, top=1 - (0.16 + 0.16 * lines) / height, bottom=0.5 / height)
     return figure

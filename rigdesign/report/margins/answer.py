@@ -119,9 +119,11 @@ def _sentences(
     if not rest.checks:
         return tuple(said)
     subject = _subject(selection, always, rest)
+    if rest.undecided.any():
+        said.append(_undecided(rest))
     if found is None:
         holds = rest.computed & ~rest.fails.any(axis=1)
-        said.append(f"{subject} passes at {_share(int(holds.sum()), int(rest.computed.sum()))}.")
+        said.append(f"{subject} {rest.verb} at {_share(int(holds.sum()), int(rest.computed.sum()))}.")
     else:
         said.append(f"{subject} {found.sentence}.")
     missing = int((~rest.computed).sum())
@@ -130,6 +132,14 @@ def _sentences(
             f"{missing} of {len(rest.computed)} points {'has' if missing == 1 else 'have'} no result."
         )
     return tuple(said)
+
+
+def _undecided(rest: MarginTable) -> str:
+    """Which checks could not be judged, and at how many points nothing passes for that."""
+    undecided, opens = rest.of(rest.undecided), rest.opens[rest.computed]
+    where = _share(int(opens.any(axis=1).sum()), len(opens))
+    verb = "is" if len(undecided.checks) == 1 else "are"
+    return f"Nothing passes at {where}: {_listed(undecided)} {verb} open there, not judged."
 
 
 def _subject(selection: CheckSelection, always: MarginTable, rest: MarginTable) -> str:

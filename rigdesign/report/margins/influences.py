@@ -56,8 +56,8 @@ def _ends(swings: Sequence[Swing]) -> str:
     """Margins [%] at both ends of the inputs that move the check; empty where none does."""
     found = []
     for swing in swings:
-        low, high = swing.utilisation_low, swing.utilisation_high
-        if low is not None and high is not None and not swing.utilisation_stated == low == high:
-            ends = (number_text(100.0 * (1.0 - used), 3) for used in (low, high))
+        low, high = swing.distance_low, swing.distance_high
+        if low is not None and high is not None and not swing.distance_stated == low == high:
+            ends = (number_text(100.0 * end, 3) for end in (low, high))
             found.append((abs(high - low), f"{input_name(swing.path)} {' and '.join(ends)} %"))
     return ", ".join(text for _, text in sorted(found, key=lambda item: -item[0])[:MOST_INPUTS])

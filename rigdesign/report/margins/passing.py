@@ -117,22 +117,24 @@ def _everywhere(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
     span = f", from {axis.text(x[0])} to {axis.text(x[-1])}" if axis.numeric else ""
     nearest = table.nearest_first()
     if not nearest:
-        return f"passes at every point{span}"
+        return f"{table.verb} at every point{span}"
     check = nearest[0]
     if not table.moving[check]:
-        return f"passes at every point{span}; no margin changes"
+        return f"{table.verb} at every point{span}; no margin changes"
     at = axis.text(x[int(np.nanargmin(table.margin[:, check]))])
     left = f"{number_text(table.least[check], 2)} % of its limit left at {at}"
     if len(table.checks) == 1:
-        return f"passes at every point{span}; {left}"
+        return f"{table.verb} at every point{span}; {left}"
     others = np.delete(table.least, check)
     of_those = "of the checks that move, " if np.nanmin(others, initial=np.inf) < table.least[check] else ""
-    return f"passes at every point{span}; {of_those}nearest to its limit is {_named(table, check)}, {left}"
+    return (
+        f"{table.verb} at every point{span}; {of_those}nearest to its limit is {_named(table, check)}, {left}"
+    )
 
 
 def _at_one(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
     """The answer of a single point that holds."""
-    where = f"passes at {axis.text(x[0])}"
+    where = f"{table.verb} at {axis.text(x[0])}"
     nearest = [column for column in table.nearest_first() if not table.by_definition[column]]
     if not nearest:
         return where
@@ -166,7 +168,7 @@ def _names(axis: StudyAxis, x: np.ndarray, table: MarginTable, holds: np.ndarray
         for place in np.flatnonzero(table.computed & ~holds)
     ]
     none = [axis.text(position) for position in x[~table.computed]]
-    parts = [f"passes with {good}"]
+    parts = [f"{table.verb} with {good}"]
     parts += [f"fails with {', '.join(bad)}"] if bad else []
     parts += [f"no result with {', '.join(none)}"] if none else []
     return "; ".join(parts)
@@ -186,7 +188,7 @@ def _partly(axis: StudyAxis, ranges: Sequence[PassRange], table: MarginTable) ->
             causes.append(
                 f"the point {'before' if side == 'low' else 'after'} {axis.text(end.value)} has no result"
             )
-    return "; ".join([f"passes {said}", *dict.fromkeys(causes)])
+    return "; ".join([f"{table.verb} {said}", *dict.fromkeys(causes)])
 
 
 def _range_text(axis: StudyAxis, item: PassRange) -> str:

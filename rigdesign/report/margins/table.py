@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.results.check import status
 from rigdesign.studies.result import StudyPoint
 
 LEAST_MOVE = 0.1
@@ -31,9 +32,10 @@ class MarginTable:
     """Checks (columns) over points (rows).
 
     checks : one a column
-    margin : 1 - utilisation [%], shape (points, checks); NaN where a check has no number
+    margin : distance to the limit [%], shape (points, checks); NaN where a check has no number
     own : margin in the unit of the check, linear in its value, shape (points, checks); NaN likewise
-    fails : whether the verdict is fail, shape (points, checks)
+    fails : whether a limit that binds is missed, shape (points, checks)
+    opens : whether the check could not be judged, shape (points, checks)
     computed : whether a point has a result, shape (points,)
     """
 
@@ -41,6 +43,7 @@ class MarginTable:
     margin: NDArray[np.float64]
     own: NDArray[np.float64]
     fails: NDArray[np.bool_]
+    opens: NDArray[np.bool_]
     computed: NDArray[np.bool_]
 
     @cached_property
@@ -49,6 +52,16 @@ class MarginTable:
         if not self.computed.any():
             return np.zeros(len(self.checks), dtype=bool)
         return np.asarray(self.fails[self.computed].all(axis=0), dtype=bool)
+
+    @cached_property
+    def undecided(self) -> NDArray[np.bool_]:
+        """Checks that are open at some computed point, shape (checks,)."""
+        return np.asarray(self.opens[self.computed].any(axis=0), dtype=bool)
+
+    @property
+    def verb(self) -> str:
+        """What the checks do where no limit is missed: they pass only if each could be judged."""
+        return "keeps its limits" if self.undecided.any() else "passes"
 
     @cached_property
     def moving(self) -> NDArray[np.bool_]:
@@ -73,6 +86,7 @@ class MarginTable:
             margin=self.margin[:, columns],
             own=self.own[:, columns],
             fails=self.fails[:, columns],
+            opens=self.opens[:, columns],
         )
 
     def at(self, rows: NDArray[np.intp]) -> "MarginTable":
@@ -82,6 +96,7 @@ class MarginTable:
             margin=self.margin[rows],
             own=self.own[rows],
             fails=self.fails[rows],
+            opens=self.opens[rows],
             computed=self.computed[rows],
         )
 
@@ -123,7 +138,8 @@ def margin_table(points: Sequence[StudyPoint], identities: Sequence[str]) -> Mar
     """Margins of the checks ``identities`` at all points."""
     column = {identity: number for number, identity in enumerate(identities)}
     shape = len(points), len(column)
-    margin, own, fails = np.full(shape, np.nan), np.full(shape, np.nan), np.zeros(shape, dtype=bool)
+    margin, own = np.full(shape, np.nan), np.full(shape, np.nan)
+    fails, opens = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     named: dict[str, CheckColumn] = {}
     for row, point in enumerate(points):
         for check in point.record.get("checks", ()):
@@ -137,15 +153,17 @@ def margin_table(points: Sequence[StudyPoint], identities: Sequence[str]) -> Mar
                     group=check.get("group") or check["id"].partition(".")[0],
                     by_definition=bool(check.get("by_definition")),
                 )
-            fails[row, number] = check["verdict"] == "fail"
-            if check["utilisation"] is not None:
-                margin[row, number] = 100.0 * (1.0 - check["utilisation"])
+            fails[row, number] = status(check["verdict"], check.get("flags", ())) == "fail"
+            opens[row, number] = check["verdict"] == "open"
+            if check["distance"] is not None:
+                margin[row, number] = 100.0 * check["distance"]
                 own[row, number] = check["margin"]
     return MarginTable(
         checks=tuple(named[identity] for identity in identities),
         margin=margin,
         own=own,
         fails=fails,
+        opens=opens,
         computed=np.array([not point.failed for point in points], dtype=bool),
     )
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BANNERS = {"named": "pass", "within_noise": "pass", "input_error_suspected": "fail"}
-"""Verdict -> colour of the banner; the others warn."""
+"""Verdict -> colour of the banner; the others are amber."""
 CHANNELS_SHOWN = 12
 """Channels of the table of gaps."""
 
@@ -35,7 +35,7 @@ def diagnosis_page(outcome: Outcome, document: dict[str, Any]) -> str:
             "document": document,
             "case": outcome.result.case,
             "verdict_words": VERDICTS[outcome.verdict],
-            "banner": BANNERS.get(outcome.verdict, "warn"),
+            "banner": BANNERS.get(outcome.verdict, "advisory"),
             "where": sentences(outcome.before, measurement),
             "leading": leading_sentences(outcome),
             "in_question": outcome.in_question[0],

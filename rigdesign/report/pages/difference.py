@@ -39,7 +39,8 @@ def difference_page(difference: ResultsDifference) -> str:
         .render(
             difference=difference,
             headline=headline(difference),
-            worse=any(row.worse for row in difference.flipped),
+            worse=any(row.worse for row in difference.checks),
+            failing=difference.checks_that("newly failing"),
             figure=svg,
             most_rows=MOST_ROWS,
             least_change=LEAST_CHANGE,

@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rigdesign.base.errors import without_layout
 from rigdesign.base.version import __version__
 from rigdesign.report import numbers, palette, views
 from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
@@ -110,6 +111,7 @@ def environment() -> "Environment":
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        finalize=_shown,
     )
     templates.filters.update(
         number=numbers.number_text,
@@ -125,6 +127,8 @@ def environment() -> "Environment":
     )
     templates.globals.update(
         quantity=numbers.quantity_text,
+        quantities=numbers.quantity_texts,
+        limit_change=numbers.limit_change_text,
         value=numbers.value_text,
         limit=numbers.limit_text,
         margin=numbers.margin_text,
@@ -140,6 +144,11 @@ def environment() -> "Environment":
         palette=palette,
     )
     return templates
+
+
+def _shown(value: object) -> object:
+    """What a template prints: in a text of others no mark turns the direction of the page."""
+    return type(value)(without_layout(value)) if isinstance(value, str) else value
 
 
 def _body(section: ReportSection, page: _Page) -> "Markup":

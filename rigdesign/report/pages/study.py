@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.json_text import csv_text
 from rigdesign.base.output_folder import staged
-from rigdesign.report.csv_text import csv_text
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.margins.answer import study_answer
 from rigdesign.report.margins.table import MarginTable, margin_table
 from rigdesign.report.numbers import margin_unit
+from rigdesign.results.check import status
 from rigdesign.studies.grid import Variation
 from rigdesign.studies.result import StudyPoint, StudyResult, check_ids
 
@@ -58,8 +59,9 @@ def _write(path: Path, text: str) -> None:
 def study_csv(variations: Sequence[Variation], points: Sequence[StudyPoint]) -> str:
     """One row per point in the order of the design.
 
-    Columns: varied values; status; verdict; first failing check (of the failing ones the most used-up);
-    highest temperature; value, margin, utilisation and verdict of every check; smallest margin of every group of
+    Columns: varied values; status; verdict; first failing check (of the failing ones the farthest beyond its limit);
+    highest temperature; value, margin, distance and verdict of every check (advisory: a missed limit that does not
+    bind); smallest margin of every group of
     checks and the check it belongs to; error of a failed point.
     """
     checks = _all_checks(points)
@@ -67,7 +69,7 @@ def study_csv(variations: Sequence[Variation], points: Sequence[StudyPoint]) -> 
     header += ["status", "verdict", "first_failing_check", "max_temperature [degC]"]
     for identity, unit in checks.items():
         header += [f"{identity} value [{unit}]", f"{identity} margin [{margin_unit(unit)}]"]
-        header += [f"{identity} utilisation [1]"]
+        header += [f"{identity} distance [1]"]
         header += [f"{identity} verdict"]
     table = margin_table(points, check_ids(points))
     groups = {group: table.of(columns) for group, columns in table.groups().items()}
@@ -103,12 +105,15 @@ def _row(point: StudyPoint, checks: dict[str, str], limits: Sequence[tuple[Any, 
     by_id = {check["id"]: check for check in point.record["checks"]}
     for identity in checks:
         check = by_id.get(identity, {})
-        row += [check.get(key) for key in ("value", "margin", "utilisation", "verdict")]
+        row += [check.get(key) for key in ("value", "margin", "distance")]
+        row.append(status(check["verdict"], check.get("flags", ())) if check else None)
     return [*row, *(cell for found in limits for cell in found), ""]
 
 
 def first_failing(point: StudyPoint) -> str:
-    """Id of the failing check with the highest utilisation; empty when none fails."""
-    failing = [check for check in point.record.get("checks", ()) if check["verdict"] == "fail"]
-    worst = max(failing, key=lambda check: check["utilisation"] or 0.0, default=None)
+    """Id of the failing check that is farthest beyond its limit; empty when none that binds fails."""
+    failing = [
+        c for c in point.record.get("checks", ()) if status(c["verdict"], c.get("flags", ())) == "fail"
+    ]
+    worst = min(failing, key=lambda check: check["distance"] or 0.0, default=None)
     return "" if worst is None else str(worst["id"])

@@ -49,7 +49,7 @@ class PointRow:
     values: tuple[tuple[str, float | None], ...]
     """Text, and the number to sort by."""
     point: StudyPoint
-    holds: bool
+    outcome: str
     limiting: str
     margin: float | None
 
@@ -83,14 +83,14 @@ def study_page(study: StudyResult, answer: StudyAnswer, pictures: StudyPictures)
 
 
 def _outcome(answer: StudyAnswer) -> str:
-    """Colour of the banner: green where all selected checks pass everywhere, red where some check always fails."""
+    """Colour of the banner: of a pass where all selected checks pass everywhere, of a fail where some always fail."""
     computed = answer.selected.computed
     if not computed.any():
         return "fail"
     holds = ~answer.rest.fails[computed].any(axis=1)
     if holds.all() and not answer.always.checks:
-        return "pass"
-    return "warn" if holds.any() else "fail"
+        return "open" if answer.rest.undecided.any() else "pass"
+    return "open" if holds.any() else "fail"
 
 
 def _group_rows(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[PassRow]:
@@ -173,13 +173,14 @@ def _point_rows(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[Point
         )
 
     rows: list[Any] = list(zip(points, columns.tolist(), margins.tolist(), answer.rest.fails, strict=True))
+    opens = [bool(row.any()) for row in answer.rest.opens]
     return [
         PointRow(
             values=values(point),
             point=point,
-            holds=not fails.any(),
+            outcome="fails" if fails.any() else "open" if undecided else "passes",
             limiting=answer.deciding.checks[column].title if column >= 0 else "",
             margin=margin if column >= 0 else None,
         )
-        for point, column, margin, fails in rows
+        for (point, column, margin, fails), undecided in zip(rows, opens, strict=True)
     ]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 ORDER = ("gate missed", "goal missed", "gate held", "goal met", "shown", "not modelled")
 """Verdicts from top to bottom of the table."""
-COLOURS = {"gate missed": "fail", "goal missed": "warn", "gate held": "pass", "goal met": "pass"}
+COLOURS = {"gate missed": "fail", "goal missed": "advisory", "gate held": "pass", "goal met": "pass"}
 """Verdict of a row -> verdict whose colour it has; others are grey."""
 MOST_SOURCES = 12
 """Sources with a plot of their own."""

@@ -19,7 +19,7 @@ def _all(result: RunResult, draw: Draw) -> Values:
 def _near_words(result: RunResult) -> str:
     """How the lines are sorted."""
     evaluated = result.ranges is not None
-    by_range = "by how far they move a utilisation over their range, then " if evaluated else ""
+    by_range = "by how far they move a distance over their range, then " if evaluated else ""
     near = "by how many checks that fail or use more than 90 % of their limit depend on them"
     return f"{by_range}{near}, those with a range first"
 

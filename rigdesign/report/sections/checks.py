@@ -18,7 +18,7 @@ def _drivers(result: RunResult, draw: Draw) -> Values:
     return {
         "drivers": views.drivers(result),
         "reservations": views.reservations(result.checks),
-        "own_warnings": views.own_warnings(result.checks),
+        "remarked": views.remarked(result.checks),
     }
 
 

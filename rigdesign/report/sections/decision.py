@@ -28,6 +28,7 @@ def _decision(result: RunResult, draw: Draw) -> Values:
         "nearest": nearest,
         "governing": governing,
         "flips": flips.flips(result),
+        "searched": flips.searched(result),
         "assumed_flips": flips.within_ranges(result),
         "depends_on": len(specific),
         "with_range": sum(record.range is not None for record in specific),

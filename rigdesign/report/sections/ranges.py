@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rigdesign.results.ranges import CheckRange, RangeMargin
 
 LEAST_MOVE = 0.01
-"""Shift of the utilisation from which a pair of check and input has a line in the report; results.json has more."""
+"""Shift of the distance from which a pair of check and input has a line in the report; results.json has more."""
 
 
 def _details(result: RunResult, draw: Draw) -> Values:
@@ -30,8 +30,8 @@ def _details(result: RunResult, draw: Draw) -> Values:
 
 
 def _moves(row: "RangeMargin", stated: "CheckRange") -> bool:
-    ends = (row.utilisation_low, row.utilisation_high)
-    return any(end is not None and abs(end - (stated.utilisation or 0.0)) > LEAST_MOVE for end in ends)
+    ends = (row.distance_low, row.distance_high)
+    return any(end is not None and abs(end - (stated.distance or 0.0)) > LEAST_MOVE for end in ends)
 
 
 def _evaluated(result: RunResult) -> bool:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import rigdesign
 from rigdesign import api
@@ -116,3 +117,25 @@ def test_curves_are_arrays_by_quantity_and_unit(tmp_path: Path) -> None:
     assert set(result.curves) == files - {"checks", "losses", "oil", "heat"}
     with (tmp_path / "out" / "curves" / "ramp.csv").open(encoding="utf-8") as stream:
         assert next(csv.reader(stream)) == list(ramp)
+
+
+def test_a_call_limits_the_threads_of_numpy_and_gives_them_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a notebook numpy is the user's."""
+    within = []
+
+    def threads(*arguments: object, **keywords: object) -> object:
+        within.append({library["num_threads"] for library in threadpool_info()})
+        raise ZeroDivisionError
+
+    for name in ("run_study", "compare_measurement", "diagnose_measurement"):
+        monkeypatch.setattr(api, name, threads)
+    with threadpool_limits(limits=2):
+        for call in (
+            lambda: api.study(None, (), ""),
+            lambda: api.compare(None, ""),
+            lambda: api.diagnose(None, ""),
+        ):
+            with pytest.raises(ZeroDivisionError):
+                call()
+        assert within == [{1}] * 3
+        assert {library["num_threads"] for library in threadpool_info()} == {2}

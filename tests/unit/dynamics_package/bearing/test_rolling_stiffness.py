@@ -205,3 +205,14 @@ def test_displacement_against_palmgrens_formulas() -> None:
     found = bearing_stiffness(roller, 2000.0, 0.0)
     formula = 7.68e-8 * found.largest_element_load**0.9 / (roller.elements.length * 1e3) ** 0.8
     assert found.radial_displacement == pytest.approx(formula, rel=1e-6)
+
+
+@pytest.mark.parametrize("load", [1e-4, 1e-2, 1.0, 1e4])
+@pytest.mark.parametrize(("designation", "clearance"), [("6208", 0.0), ("6208", -10e-6), ("7208 B", 0.0)])
+@pytest.mark.parametrize(("radial", "axial"), [(1.0, 0.0), (0.3, 0.7), (0.0, 1.0)])
+def test_loads_over_eight_decades_are_carried(
+    designation: str, clearance: float, radial: float, axial: float, load: float
+) -> None:
+    """The iteration ends above the round-off of a light load on a preloaded or angled bearing."""
+    found = bearing_stiffness(row(designation, clearance), radial * load, axial * load)
+    assert found.radial_load == pytest.approx(radial * load, rel=1e-5, abs=1e-9 * load)

@@ -88,7 +88,8 @@ def test_reference_gear_contact_ratios():
     assert degrees(full.working_pressure_angle) == pytest.approx(19.562, abs=5e-4)
     assert full.tip_contact_ratio + full.overlap_ratio == pytest.approx(5.957, abs=5e-4)
     assert full.total_contact_ratio < full.tip_contact_ratio + full.overlap_ratio - 0.05
-    assert any("fillet reaches" in warning for warning in full.warnings)
+    assert full.fillet_distances == pytest.approx((-0.1568e-3, -0.0061e-3), abs=1e-7)
+    assert 0.0 < full.fillet_overlaps[1] < full.fillet_overlaps[0] == pytest.approx(2.28e-6, abs=1e-8)
 
 
 def test_spur_pair_by_hand():

@@ -158,9 +158,7 @@ def test_skf_mixed_friction_at_both_ends() -> None:
 def test_skf_drag_grows_with_level_and_stops_when_submerged() -> None:
     size = skf.Size(40.0, 80.0, 18.0)
     for kind in ("deep_groove_ball", "cylindrical_roller"):
-        drags = [
-            skf.M_drag(kind, size, level, 3000.0) for level in (0.0, 5.0, 10.0, 30.0, 60.0, 72.0, 80.0)
-        ]
+        drags = [skf.M_drag(kind, size, level, 3000.0) for level in (0.0, 5.0, 10.0, 30.0, 60.0, 72.0, 80.0)]
         assert drags[0] == 0.0
         assert all(low < high for low, high in pairwise(drags[:6]))
         assert drags[-1] == pytest.approx(drags[-2])

@@ -1,6 +1,7 @@
 """Works in forked copies: the same results, the same errors, nothing left running."""
 
 import os
+import signal
 import time
 from functools import partial
 from pathlib import Path
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base import parallel
+from rigdesign.base.file_lock import FileLock
 from rigdesign.base.parallel import BackgroundTasks
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
@@ -79,3 +81,43 @@ def test_leaving_early_ends_the_copies(tmp_path: Path, monkeypatch: pytest.Monke
     assert time.perf_counter() - began < 1.4
     time.sleep(1.6)
     assert not trace.exists()
+
+
+def open_files() -> list[str]:
+    return [str(path.readlink()) for path in Path("/proc/self/fd").iterdir() if path.is_symlink()]
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="this system does not say what is open")
+def test_a_copy_holds_no_lock_of_its_parent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parallel, "cores", lambda: 2)
+    path = tmp_path / "lock"
+    with FileLock(path), BackgroundTasks([open_files, open_files]) as works:
+        assert str(path) in open_files()
+        assert all(str(path) not in files for files in works.results())
+
+
+@needs_fork
+def test_copies_work_where_the_system_reaps_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A parent that ignores SIGCHLD hands that on; nobody can wait for a copy then."""
+    monkeypatch.setattr(parallel, "cores", lambda: 2)
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        with BackgroundTasks([os.getpid, os.getpid]) as works:
+            assert os.getpid() not in works.results()
+        with BackgroundTasks([partial(time.sleep, 9.0)]):
+            pass
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+
+
+@needs_fork
+def test_a_machine_that_allows_no_more_processes_leaves_the_work_here(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused() -> int:
+        raise BlockingIOError("Resource temporarily unavailable")
+
+    monkeypatch.setattr(parallel, "cores", lambda: 2)
+    monkeypatch.setattr(os, "fork", refused)
+    with BackgroundTasks([os.getpid, os.getpid]) as works:
+        assert works.results() == [os.getpid()] * 2

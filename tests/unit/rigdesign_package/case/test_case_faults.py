@@ -409,12 +409,6 @@ BAD = [
     ),
     # surfaces
     (
-        'gearboxes.test.housing.boundary.remove = ["chamber_sump"]',
-        "gearboxes.test.housing.boundary",
-        "surface chamber_floor has no boundary condition",
-        "add one",
-    ),
-    (
         'gearboxes.test.housing.boundary.chamber_sump.surfaces = ["chamber_flor", "chamber_floor"]',
         "gearboxes.test.housing.boundary.chamber_sump.surfaces",
         "no such surface",

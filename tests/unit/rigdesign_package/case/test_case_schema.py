@@ -45,7 +45,14 @@ def test_schema_flags_what_the_loader_refuses(keys: tuple[str, ...], value: obje
 def test_schema_describes_quantities_and_allows_variants() -> None:
     oil = SCHEMA["$defs"]["JetOil"]["properties"]["inlet_temperature"]
     assert oil["anyOf"][0]["examples"] == ["140 degC"]
-    assert set(oil["anyOf"][1]["properties"]) == {"value", "assumed", "range", "source", "measured"}
+    assert set(oil["anyOf"][1]["properties"]) == {
+        "value",
+        "assumed",
+        "range",
+        "source",
+        "measured",
+        "confirmed",
+    }
     assert SCHEMA["$defs"]["JetOil"]["properties"]["flow"]["description"] == "Flow per mesh."
     assert SCHEMA["properties"]["extends"]["type"] == "string"
     assert json.loads(json.dumps(SCHEMA, allow_nan=False)) == SCHEMA

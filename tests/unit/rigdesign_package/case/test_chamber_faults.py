@@ -72,7 +72,7 @@ CASES = {
         r'enclosures.warm = "chamber_top": radiates to its surroundings by boundary.hot already',
     ),
     "stream without flow": ('flow = "1.5 l/min"\n', "", rf"{AT}.streams.jacket.flow: a required key is missing"),
-    "no flow": ('flow = "1.5 l/min"', 'flow = "0 l/min"', r'jacket.flow = "0 l/min": is not above 0 l/min'),
+    "no flow": ('flow = "1.5 l/min"', 'flow = "0 l/min"', r'jacket.flow = "0 l/min": is below 0.001 l/min'),
     "unknown medium": (
         'medium = "Water"', 'medium = "Watter"', r'jacket.medium = "Watter": .*name an oil of the case, or a fluid',
     ),

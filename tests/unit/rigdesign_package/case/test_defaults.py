@@ -98,6 +98,21 @@ def test_defaults_follow_the_rest_of_the_case(minimal: Case) -> None:
     )
 
 
+def test_stated_films_add_to_the_standard_ones(tmp_path: Path, minimal: Case) -> None:
+    """Surfaces of a stated film leave the standard one, all others keep theirs; each can still be varied by path."""
+    at = "gearboxes.test.housing.boundary"
+    file = minimal_case(tmp_path)
+    text = f'[{at}.wet]\nsurfaces = ["gear_test_pinion_side_*"]\nlaw = "insulated"\n'
+    file.write_text(file.read_text(encoding="utf-8") + text, encoding="utf-8")
+    stated = load_case(file)
+    standard, found = (case.gearboxes["test"].housing.boundary for case in (minimal, stated))  # type: ignore[union-attr]
+    assert set(found) == {*standard, "wet"}
+    assert set(found["sides"].surfaces) == {"gear_test_wheel_side_front", "gear_test_wheel_side_rear"}
+    assert any(record.path == f"{at}.rims.film_factor" for record in stated.assumptions)
+    varied = stated.with_value(f"{at}.rims.film_factor", 0.5).gearboxes["test"].housing.boundary  # type: ignore[union-attr]
+    assert set(varied) == set(found) and varied["rims"].film_factor == 0.5  # type: ignore[union-attr]
+
+
 def test_a_default_can_be_varied_by_its_path(minimal: Case) -> None:
     """Also where its whole table is left out; what is beside it stays as it was."""
     changed = changed_together(

@@ -208,7 +208,7 @@ def test_the_worst_stage_is_held_against_each_limit(case: Case) -> None:
     assert tilt.reason.endswith("stage test")
     assert (bores.value, bores.limit, bores.verdict) == (0.3, 0.25, "fail")
     assert (axes.value, axes.unit) == (pytest.approx(6.0), "um")
-    assert axes.utilisation == pytest.approx(6.0 / 8.0)
+    assert axes.distance == pytest.approx(1.0 - 6.0 / 8.0)
 
 
 def test_a_coupling_is_held_as_set_and_warm_with_the_offset_to_be_set(case: Case) -> None:
@@ -296,4 +296,4 @@ def test_worst_moments_carry_limit_and_steady_value_into_the_checks(case: Case, 
     assert (check.verdict, check.comparison) == ("fail", "<=")
     assert (check.value, check.unit) == (pytest.approx(0.35), "mm")
     assert check.source.startswith("drivetrain.couplings.pinion_side.radial_offset_maximum")
-    assert held_over_time["transient.bearing_tilt"].utilisation == pytest.approx(1.0)
+    assert held_over_time["transient.bearing_tilt"].distance == pytest.approx(0.0, abs=1e-9)

@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from rigdesign import checks
 from rigdesign.case import Case, load_case
 from rigdesign.case.paths import known_paths
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.registry import LOADS, REGISTRY, Registry, RigRule, RuleFamily, Topic
 from rigdesign.checks.rules import hold
-from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig
+from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import KELVIN, MICROMETRE, DisplayUnit
 from rigdesign.rig.model import build_rig
@@ -57,7 +58,6 @@ def test_value_and_limit_are_shown_in_the_unit_of_the_rule(solved: SolvedRig) ->
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"needs": LOADS}, NO_LOADS),
         ({"limit": lambda limits: None}, NO_LIMIT),
         ({"values": lambda solved: (), "absent": "no such place"}, "no such place"),
         ({"values": lambda solved: (), "absent": lambda solved: solved.case.name}, "uhcf_prototype"),
@@ -68,6 +68,15 @@ def test_what_is_missing_is_the_reason_why_a_rule_does_not_apply(
 ) -> None:
     check = rule(**changes).check(solved)
     assert (check.verdict, check.reason) == ("not applicable", reason)
+
+
+@pytest.mark.parametrize("changes", [{"needs": LOADS}, {"values": lambda solved: ()}])
+def test_a_limit_whose_value_this_run_has_not_computed_is_open(
+    solved: SolvedRig, changes: dict[str, object]
+) -> None:
+    """No loads, though the case has a drivetrain; no housing, though the limit is on one."""
+    check = rule(**changes).check(solved)
+    assert check.verdict == "open" and check.reason in (NO_LOADS, NO_HOUSING)
 
 
 def test_a_key_is_registered_once() -> None:
@@ -127,3 +136,41 @@ def test_every_rule_has_a_limit_that_the_case_may_state(case: Case) -> None:
 
 def test_a_limit_of_zero_degrees_is_shown_as_such() -> None:
     assert DisplayUnit("degC", zero=273.15).shown(273.15) == 0.0
+
+
+def failing(identity: str) -> Check:
+    return hold(replace(rule().rule(10.0), id=identity), 12.0)
+
+
+def test_a_failing_check_names_what_makes_its_value_doubtful(
+    monkeypatch: pytest.MonkeyPatch, solved: SolvedRig
+) -> None:
+    """A source from memory, and a calculation by hand that does not agree; one that holds by far says neither."""
+    scuffing, bulk = failing("flank.scuffing_safety.test"), failing("temperature.gear_bulk")
+    held = hold(replace(rule().rule(10.0), id="temperature.housing"), 1.0)
+    monkeypatch.setattr(checks, "estimated_checks", lambda solved: [scuffing, bulk, held])
+    rows = [
+        {"quantity": "sliding loss, test.main", "computed": 176.0, "by_hand": 240.0, "unit": "W"},
+        {"quantity": "windage, test.main", "computed": 1.0, "by_hand": 2.0, "unit": "W"},
+    ]
+    first, second, third = checks.all_checks(solved, rows)
+    assert first.flags == second.flags == ("doubt",) and first.verdict == "fail"
+    assert "from memory" in first.reason and "sliding loss, test.main: 176 W, by hand 240 W" in first.reason
+    assert "by hand" in second.reason and "from memory" not in second.reason
+    assert third.flags == () and third.reason == ""
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "verdict"),
+    [("flank.pitting_safety", 1.4, "open"), ("flank.pitting_safety", 3.0, "pass"),
+     ("flank.pitting_safety", 0.9, "open"), ("flank.pitting_safety", 0.3, "fail"),
+     ("dynamics.resonance_distance", 5.0, "open"), ("oil.flow", 1.4, "pass")],
+)  # fmt: skip
+def test_quick_judges_tooth_loads_only_beyond_the_error_of_its_model(
+    key: str, value: float, verdict: str, monkeypatch: pytest.MonkeyPatch, solved: SolvedRig
+) -> None:
+    """Its teeth and shafts are others than the case asks for: no pass at quick that standard may turn, no such fail."""
+    check = hold(replace(rule(comparison=">=").rule(1.0), id=f"{key}.test"), value)
+    monkeypatch.setattr(checks, "held_checks", lambda solved: [check])
+    assert solved.rig.reduced
+    assert checks.estimated_checks(solved)[0].verdict == verdict

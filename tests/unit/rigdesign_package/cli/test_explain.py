@@ -200,8 +200,8 @@ def results_in(folder: Path, case: Case, *, ranges: Mapping[str, Any] | None) ->
     """A results.json as far as explain reads it."""
     folder.mkdir()
     row = {
-        "id": "clearance.backlash", "value": 0.05, "unit": "mm", "margin": 0.03, "utilisation": 0.4,
-        "verdict": "warn", "reason": "test.main, stage test",
+        "id": "clearance.backlash", "value": 0.05, "unit": "mm", "margin": 0.03, "distance": 0.6,
+        "verdict": "open", "flags": [], "reason": "test.main, stage test",
     }  # fmt: skip
     document = {"case": {"name": case.name, "hash": case.hash}, "checks": [row], "ranges": ranges}
     (folder / "results.json").write_text(json.dumps(document), encoding="utf-8")
@@ -225,7 +225,7 @@ def test_ranges_of_a_finished_check_sort_its_inputs(
     out = rigdesign("explain", PROTOTYPE, "--check", "clearance.backlash", "--results", folder).out
     words = " ".join(out.split())
     assert f"moved by {OIL} = 90 degC to 140 degC: margin 0.03 to 0.01 mm" in words
-    assert "warn: 0.05 mm, margin 0.03 mm, 40 % used" in words
+    assert "open: 0.05 mm, margin 0.03 mm, distance 60 %" in words
     assert "not ranked inputs without a range" in words and "by where they enter;" not in words
 
 

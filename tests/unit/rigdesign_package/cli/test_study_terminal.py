@@ -53,13 +53,13 @@ def test_indices_and_ends_of_the_inputs_are_printed_nearest_check_first(capsys):
         for path, share in zip(inputs, (0.25, 0.75), strict=True)
     ]  # fmt: skip
     swings = [
-        Swing(check="clearance.tip", path=path, low="low", high="high", utilisation_stated=0.8, utilisation_low=0.75,
-              utilisation_high=high)
+        Swing(check="clearance.tip", path=path, low="low", high="high", distance_stated=0.2, distance_low=0.25,
+              distance_high=1.0 - high)
         for path, high in zip(inputs, (0.85, 1.1), strict=True)
     ]  # fmt: skip
     swings.append(
-        Swing(check="temperature.outlet", path=inputs[0], low="low", high="high", utilisation_stated=0.5,
-              utilisation_low=0.5, utilisation_high=0.5)
+        Swing(check="temperature.outlet", path=inputs[0], low="low", high="high", distance_stated=0.5,
+              distance_low=0.5, distance_high=0.5)
     )  # fmt: skip
     text, lines = printed(capsys, oil_points((90, 110)), design="sobol", indices=indices, swings=swings)
     assert (

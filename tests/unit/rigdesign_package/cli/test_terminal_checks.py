@@ -11,7 +11,7 @@ import pytest
 from rigdesign.cli.application import print_json
 from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.cli.terminal.console import plain_streams, verbosity
-from rigdesign.cli.terminal.warning_groups import warning_groups
+from rigdesign.cli.terminal.reason_groups import reason_groups
 from rigdesign.results.check import Check
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.result import Finding, RunResult
@@ -35,11 +35,11 @@ def printed(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
 
 
 def left_out(number: int, *texts: str) -> list[Check]:
-    """Checks that warn because of what their values leave out."""
+    """Checks that are open because of what their values leave out."""
     reason = "; ".join(f"leaves out {text}" for text in texts)
     return [
         make_check(
-            f"left.out_{n}", 1.0, 4.0 + n, verdict="warn", left_out=texts, reason=f"somewhere; {reason}"
+            f"left.out_{n}", 1.0, 4.0 + n, verdict="open", left_out=texts, reason=f"somewhere; {reason}"
         )
         for n in range(number)
     ]
@@ -61,7 +61,7 @@ def test_a_screen_of_eighty_columns_holds_what_decides(printed: Printed) -> None
     checks = [*failing(2), *left_out(16, NO_HOUSING), *left_out(3, "a long word " * 5 + ": why"), *near]
     lines = printed(small_result(checks=checks, warnings=notes(26)), out=Path("out"))
     assert len(lines) < 30 and all(len(line) <= 80 for line in lines)
-    assert lines[1] == "verdict: fail (2 fail, 19 warn, 8 pass)"
+    assert lines[1] == "verdict: fail (2 fail, 19 open, 8 pass)"
     assert sum(line.startswith("fail: ") for line in lines) == 2
     assert any("16 checks leave out walls of gearbox reference: it has no housing" in line for line in lines)
     table = next(number for number, line in enumerate(lines) if line.startswith("nearest margins"))
@@ -86,7 +86,7 @@ def test_everything_prints_every_check_and_every_note(printed: Printed) -> None:
     lines = printed(small_result(checks=[*checks, absent], warnings=notes(3)), everything=True)
     text = "\n".join(lines)
     assert "holds" in text and text.count("note loss: ") == 3
-    assert text.count("warn: left.out") == 2
+    assert text.count("open: left.out") == 2
     assert "not applicable: no.limit: the case states no limit" in text
 
 
@@ -101,11 +101,13 @@ def test_everything_names_every_check_by_its_id(printed: Printed) -> None:
     assert max(map(len, lines)) <= 80
     rows = [line.split() for line in lines]
     verdicts = {row[0]: row[-1] for row in rows if row and row[0] in names}
-    assert verdicts == {**dict.fromkeys(names[:2], "pass"), "failing.check_0": "fail", "left.out_0": "warn"}
+    assert verdicts == {**dict.fromkeys(names[:2], "pass"), "failing.check_0": "fail", "left.out_0": "open"}
     assert "not applicable: no.limit: no limit" in lines
     flow = next(number for number, row in enumerate(rows) if row[:1] == ["oil.flow"])
-    assert rows[flow][1:-1] == ["0.8", "mm", "20", "%"]
-    assert lines[flow + 1].startswith("  a title of more words") and lines[flow + 1].endswith("0.2 mm    ≤ 1")
+    assert rows[flow][1:-1] == ["0.8", "mm", "80", "%"]
+    assert lines[flow + 1].startswith("  a title of more words") and lines[flow + 1].endswith(
+        "0.2 mm  ≤ 1 mm"
+    )
 
 
 def test_checks_by_definition_are_no_near_margins(printed: Printed) -> None:
@@ -161,14 +163,14 @@ def test_ends_of_ranges_without_a_result_are_named(printed: Printed) -> None:
     assert "ranges: two ends" in lines
 
 
-# ---------------------------------------------------------------------------- warnings by their reason
+# ---------------------------------------------------------------------------- open checks and flags by reason
 
 
 def texts(*checks: Check) -> list[str]:
-    return [group.text for group in warning_groups(checks)]
+    return [group.text for group in reason_groups(checks)]
 
 
-def test_warnings_of_one_gearbox_are_one_group() -> None:
+def test_open_checks_of_one_gearbox_are_one_group() -> None:
     checks = [*left_out(2, NO_HOUSING), *(replace(c, id=f"x{c.id}") for c in left_out(3, UNEXPANDED))]
     assert texts(*checks) == ["5 checks leave out effects in gearbox reference: it has no housing"]
 
@@ -178,26 +180,31 @@ def test_two_gearboxes_that_the_same_checks_leave_out_are_one_group() -> None:
     assert texts(*checks) == ["3 checks leave out effects in gearbox reference and test: it has no housing"]
 
 
-def test_every_cause_of_a_warning_is_named() -> None:
-    near = make_check("near", 0.97, 1.0, verdict="warn")
-    mesh = make_check("mesh", 0.5, 1.0, verdict="warn", discretisation_error=0.7)
+def test_every_cause_of_an_open_check_and_every_flag_is_named() -> None:
+    near = make_check("near", 0.97, 1.0, flags=("close",))
+    mesh = make_check("mesh", 0.5, 1.0, verdict="open", error=0.7)
     decided = make_check(
-        "decided", 0.5, 1.0, verdict="warn", reason="there; decided by assumption a.b = 3 mm"
+        "decided", 0.5, 1.0, verdict="open", reason="there; decided by assumption a.b = 3 mm"
     )
-    broken = make_check("broken", 2.0, 1.0, verdict="warn")
-    doubt = make_check("doubt", 0.5, 1.0, verdict="warn", reason="there; outside of the range of the formula")
-    assert texts(near, mesh, decided, broken, doubt) == [
-        "near uses more than 95 % of its limit",
-        "mesh has a margin below the error of the mesh",
+    broken = make_check("broken", 2.0, 1.0, flags=("advisory",))
+    doubt = make_check("doubt", 0.5, 1.0, flags=("doubt",), reason="there; two methods differ")
+    beyond = make_check(
+        "beyond", 0.5, 1.0, verdict="open", reason="there; outside of the range of the formula"
+    )
+    assert texts(near, mesh, decided, broken, doubt, beyond) == [
+        "mesh has a margin below the error of its value",
         "decided is decided by assumption a.b = 3 mm",
-        "broken breaks a rule of good practice",
-        "doubt warns: outside of the range of the formula",
+        "beyond: outside of the range of the formula",
+        "near has less than 5 % of its limit left",
+        "broken misses a limit that does not bind",
+        "doubt: two methods differ",
     ]
+    assert [group.head for group in reason_groups([near, mesh, broken])] == ["open", "close", "advisory"]
 
 
-def test_no_warning_is_lost() -> None:
-    checks = [*left_out(4, NO_HOUSING, "the rest"), make_check("near", 0.97, 1.0, verdict="warn")]
-    grouped = {check.id for group in warning_groups(checks) for check in group.checks}
+def test_no_reason_is_lost() -> None:
+    checks = [*left_out(4, NO_HOUSING, "the rest"), make_check("near", 0.97, 1.0, flags=("close",))]
+    grouped = {check.id for group in reason_groups(checks) for check in group.checks}
     assert grouped == {check.id for check in checks}
     assert texts(make_check("held", 0.5, 1.0)) == []
 

@@ -1,5 +1,6 @@
 """Accelerations of the coupling loop on an affine iteration x -> M x + c with a known fixed point."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -103,3 +104,7 @@ def test_a_state_survives_its_vector_and_the_order_of_its_names() -> None:
     turned = CouplingState(**{**vars(given), "gear_temperature": {"b": 0.0, "a": 300.0}})
     assert list(ordered(turned, given).gear_temperature) == ["a", "b"]
     assert scaled_change(given, state(START + np.array([0.0, 0.5, 2.0]))) == pytest.approx(2.0)
+    # of 1 MW and 1e5 N m no more than a share is asked: 10 W and 1 N m are below what its losses repeat to
+    large = replace(given, wall_heat={"s": 1e6}, mesh_torque={"m": 1e5})
+    moved = replace(given, wall_heat={"s": 1e6 + 500.0}, mesh_torque={"m": 1e5 + 20.0})
+    assert scaled_change(large, moved) == pytest.approx(0.5)

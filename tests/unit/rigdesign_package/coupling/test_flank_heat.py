@@ -192,7 +192,6 @@ def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> N
     [
         ("gearboxes.test.heat_split.mesh_into_gears", 0.5, "is not used: the film on the flanks decides"),
         ("gearboxes.test.heat_split.mesh", "assumed", "mesh_into_gears is missing"),
-        (f"{RIMS}.surfaces", ["gear_test_wheel_rim"], "gear_test_pinion_rim has no boundary condition"),
         (f"{RIMS}.surfaces", ["gear_*_rim", "chamber_wall"], "has no teeth"),
         (f"{RIMS}.correlation", "constant", 'correlation = "constant" needs it'),
         (f"{RIMS}.heat_transfer_coefficient", "3000 W/(m2 K)", "is not used"),
@@ -210,7 +209,13 @@ def test_a_rim_without_a_film_cannot_decide() -> None:
         shipped = load_case(CASES / "uhcf_main")
         tree = shipped.origin.tree["gearboxes"]["test"]["housing"]["boundary"]["gear_rims"]
         assert tree["law"] == "flank_film"
-        shipped.with_value(f"{RIMS}.surfaces", ["gear_test_pinion_rim"])
+        sides = RIMS.replace("gear_rims", "gear_sides")
+        shipped.with_values(
+            {
+                f"{RIMS}.surfaces": ["gear_test_pinion_rim"],
+                f"{sides}.surfaces": ["gear_*_side_*", "gear_*_wheel_*_rim"],
+            }
+        )
 
 
 def test_constant_film_on_the_flanks(case: Case) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis.library.library import Library
-from rigdesign.diagnosis.residual.baseline import Change, Drift, differenced
+from rigdesign.diagnosis.residual.baseline import SHARES, Change, Drift, differenced
 from rigdesign.diagnosis.residual.calibration import calibrate_drift
 from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
@@ -17,7 +17,7 @@ from tests.builders.diagnosis import story
 STEP = 0.01
 """By how much the residuals ran faster than its baseline, as a logarithm."""
 
-STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0)
+STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0, sensors=0.0)
 
 
 def moved(library: Library, settings: tuple[OperatingCondition, ...]) -> Library:
@@ -161,7 +161,7 @@ def test_a_point_that_the_baseline_lacks_is_known_less_well(pair):
 
 
 def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
-    drift = Drift(shared=0.02, slope=1.0, shaft=0.5, mesh=0.5, amplitude=0.03)
+    drift = Drift(shared=0.02, slope=1.0, shaft=0.5, mesh=0.5, amplitude=0.03, sensors=0.3)
     whole = differenced(*pair, Amplitudes(), drift)
     keep = list(range(0, len(whole.raw), 2))
     part = whole.rows(keep)
@@ -173,7 +173,7 @@ def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
 def test_drifts_of_healthy_pairs_are_found_again(pair):
     rng = np.random.default_rng(4)
     residuals, baseline = pair
-    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05)
+    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3)
     drawn = []
     for _ in range(6):
         covariance = baseline.covariance(Amplitudes())
@@ -183,16 +183,17 @@ def test_drifts_of_healthy_pairs_are_found_again(pair):
         spread = np.linalg.cholesky(change.covariance(true)) @ rng.normal(size=len(residuals.features))
         drawn.append((replace(residuals, values=residuals.library.base + change.expected + spread), healthy))
     found = calibrate_drift(
-        drawn, Amplitudes(), Drift(shared=0.05, slope=0.5, shaft=2.0, mesh=2.0, amplitude=0.02)
+        drawn, Amplitudes(), Drift(shared=0.05, slope=0.5, shaft=2.0, mesh=2.0, amplitude=0.02, sensors=0.6)
     )
     assert found.shaft == pytest.approx(true.shaft, rel=0.2)
     assert found.amplitude == pytest.approx(true.amplitude, rel=0.4)
     assert found.shared == pytest.approx(true.shared, rel=0.4)
+    assert found.sensors == pytest.approx(true.sensors, rel=0.4)
 
 
 def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
     residuals, baseline = pair
-    drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01)
+    drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01, sensors=0.01)
     found = inflate_drift([(residuals, baseline)] * 3, Amplitudes(), drift)
     assert replace(found, inflation={}) == drift
     before = differenced(residuals, baseline, Amplitudes(), drift).chi_square
@@ -209,3 +210,19 @@ def test_what_both_sets_share_is_all_that_is_no_noise(pair):
     own = scale.own_spread(amplitudes)
     assert shared == pytest.approx(scale.covariance(amplitudes).matrix - alone, rel=1e-9)
     assert own.max() > 1e-3 * np.sqrt(np.diag(shared)).max()
+
+
+@pytest.mark.parametrize(("channel", "shift", "usual"), [("T_gear", 0.035, True), ("T_gear", 0.35, False)])
+def test_a_channel_may_shift_by_a_share_of_what_its_measurement_states(pair, channel, shift, usual):
+    """As thermocouples good to 0.4 K of which each read 0.1 K more: an alarm in 7 of 8 healthy sets."""
+    residuals, baseline = pair
+    still = Drift(**dict.fromkeys(SHARES, 0.001))
+    own = np.array([one.channel == channel for one in residuals.features])
+    moved = replace(residuals, values=residuals.values + np.where(own, shift, 0.0))
+    squares = [
+        differenced(moved, baseline, Amplitudes(), replace(still, sensors=share)).chi_square
+        - differenced(residuals, baseline, Amplitudes(), replace(still, sensors=share)).chi_square
+        for share in (0.001, 0.35)
+    ]
+    assert squares[1] < 0.3 * squares[0]
+    assert (squares[1] < 4.0) is usual

@@ -11,8 +11,8 @@ from rigdesign.diagnosis.catalogue import effects_of, families, registry
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.entries import UncertainValue
 from rigdesign.diagnosis.catalogue.waiting import WAITING
-from rigdesign.diagnosis.effects_page import effects_page
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from tests.builders.effects_page import effects_page
 from tests.builders.paths import CASES
 
 FAMILIES = [one for one in vars(families).values() if isinstance(one, families.Family)]

@@ -123,14 +123,24 @@ def test_the_gap_reported_is_that_of_the_full_run():
     assert nothing.named == () and nothing.refused[0].gap.grown
 
 
-def test_a_case_that_does_not_run_with_the_effect_names_nothing():
+def test_a_solver_that_gives_up_is_no_evidence_against_a_name():
+    """As a misalignment with a posterior of 1.0 that was refused since the full model did not converge at one point."""
     problem = with_added(healthy(), stored(healthy(), SIZE))
 
     def fails(features, sizes):
         raise NotConvergedError("temperatures do not settle")
 
     found = diagnosed(problem, fails)
-    assert found.named == () and "does not run: temperatures do not settle" in found.decision.reason
+    assert (found.decision.verdict, found.named) == ("named", ("mesh_loss:test",))
+    assert found.strength == "indicative" and found.gap is not None and found.gap.shrunk
+    reported = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
+    document = diagnosis_document(reported)
+    assert document["certainty"] == (
+        "Indicative: it could not be confirmed: the case with mesh_loss:test does not run in full: "
+        "temperatures do not settle."
+    )
+    assert reported.case_patch is None and "does not run in full" in reported.refused
+    assert "by the stored runs of the model" in diagnosis_page(reported, document)
 
 
 def test_without_a_full_run_nothing_is_proven():

@@ -24,12 +24,12 @@ from rigdesign.diagnosis.document.advice import LARGEST_ODDS, certainty, headlin
 from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.document.outcome import check_pick, outcome
-from rigdesign.diagnosis.effects_page import effects_page
 from rigdesign.diagnosis.library.candidates import SPARE
 from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from tests.builders.diagnosis import library, story, the_case
+from tests.builders.effects_page import effects_page
 from tests.builders.paths import CASES
 
 CONTRACT = {
@@ -308,7 +308,7 @@ def test_the_page_of_effects_is_that_of_the_catalogue() -> None:
     cases = [load_case(CASES / name) for name in shipped]
     written = (CASES / "effects.md").read_text(encoding="utf-8")
     assert written == effects_page(cases), (
-        "python -m rigdesign.diagnosis.effects_page cases/loop_1to1 cases/loop_hunting cases/uhcf_prototype "
+        "python -m tests.builders.effects_page cases/loop_1to1 cases/loop_hunting cases/uhcf_prototype "
         "cases/uhcf_main cases/strain_gauge_rig > cases/effects.md"
     )
 

@@ -169,22 +169,41 @@ def test_a_cause_beside_an_effect_has_a_size_of_its_own():
 
 
 @pytest.mark.parametrize(
-    ("cause", "words"),
+    ("cause", "words", "size"),
     [
         (
             "heat unpaid at body:test.housing ~n2",
             "heat from outside the drive in test.housing, growing with the square of the speed",
+            3.0,
         ),
-        ("heat at rim:test.wheel ~T n", "power loss in gear test.wheel, growing with torque and speed"),
+        ("heat at rim:test.wheel ~T n", "power loss in gear test.wheel, growing with torque and speed", 0.0),
         (
             "heat near TC07 ~T above ambient",
             "heat source or draught near thermocouple TC07, growing with the temperature above ambient",
+            0.0,
         ),
-        ("heat in the drain of test.gear_oil constant", "heat in the drain line of test.gear_oil"),
-        ("order 2 of M_1 ~n2", "order 2 of M_1 without a known source, growing with the square of the speed"),
-        ("conductance contact:test.a|b", "heat path other than modelled: contact from test.a to b"),
-        ("conductance film:test.outer_warm", "heat path other than modelled: film at test.outer_warm"),
+        ("heat in the drain of test.gear_oil constant", "heat in the drain line of test.gear_oil", 1.0),
+        (
+            "order 2 of M_1 ~n2",
+            "order 2 of M_1 without a known source, growing with the square of the speed",
+            -1.0,
+        ),
+        ("conductance contact:test.a|b", "heat path other than modelled: contact from test.a to b", 0.0),
+        ("conductance film:test.outer_warm", "heat path other than modelled: film at test.outer_warm", 0.0),
+        (
+            "heat at body:test.housing ~n2",
+            "less power loss than modelled in test.housing, growing with the square of the speed",
+            -2.0,
+        ),
+        (
+            "heat unpaid at oil:a ~n",
+            "cooling from outside the drive in the oil a, growing with the speed",
+            -2.0,
+        ),
+        ("heat near TC07 constant", "draught near thermocouple TC07, the same at all operating points", -0.1),
+        ("heat in the drain of a constant", "cooling in the drain line of a", -1.0),
+        ("conductance film:a", "heat path worse than modelled: film at a", -0.3),
     ],
 )
-def test_unmodelled_causes_are_said_in_words(cause, words):
-    assert in_words(cause) == words
+def test_unmodelled_causes_are_said_in_words_by_their_sign(cause, words, size):
+    assert in_words(cause, size) == words

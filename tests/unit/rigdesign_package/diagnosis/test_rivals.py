@@ -113,3 +113,17 @@ def test_the_page_says_where_it_is_and_what_to_inspect() -> None:
     assert "Located: power loss in gear, the same at all operating points." in headline(said)
     (first, *_) = steps(said)
     assert first.text == "inspect the rig for power loss in gear, the same at all operating points"
+
+
+def test_what_takes_heat_away_is_no_power_loss() -> None:
+    """As walls 13 K colder than modelled, located as a power loss in them."""
+    found = outcome(story("no fretting"))
+    said = "less power loss than modelled in gear, the same at all operating points"
+    assert f"Located: {said}." in headline(found) and said in found.suspects[0].title
+
+
+@pytest.mark.parametrize("name", ["fretting", "no fretting", "alias", "healthy", "one point"])
+def test_posteriors_of_what_is_printed_side_by_side_exclude_each_other(name: str) -> None:
+    """As three effects of 131 % together beside `unknown, located`."""
+    said = outcome(story(name))
+    assert said.suspects and sum(one.inclusion for one in said.suspects) <= 1.0 + 1e-9

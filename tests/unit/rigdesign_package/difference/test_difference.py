@@ -16,6 +16,7 @@ from rigdesign.difference.document import difference_document, headline, results
 from rigdesign.difference.inputs import InputValue, changed_inputs, same_value
 from rigdesign.difference.reading import read_results
 from rigdesign.report import results_document
+from rigdesign.report.numbers import change_text, quantity_texts
 from rigdesign.report.pages.difference import write_difference
 from tests.builders.browser import browser  # noqa: F401 - a fixture
 from tests.builders.report import make_check, make_result
@@ -35,8 +36,13 @@ CHECKS = [
 
 
 @pytest.fixture(scope="module")
-def first():
+def document():
     return results_document(make_result(inputs=INPUTS, checks=CHECKS, verdict="pass"))
+
+
+@pytest.fixture
+def first(document):
+    return copy.deepcopy(document)
 
 
 @pytest.fixture
@@ -49,8 +55,8 @@ def second(first):
     document["inputs"][2]["basis"] = "measured: torque flange"
     document["inputs"][3] = {"path": "drivetrain.motor.inertia", "value": "0.01 kg m2", "basis": ""}
     tip, outlet, root, flow = document["checks"]
-    tip.update(value=0.09, margin=-0.01, utilisation=0.1 / 0.09, verdict="fail")
-    outlet.update(value=145.5, margin=14.5, utilisation=145.5 / 160.0)
+    tip.update(value=0.09, margin=-0.01, distance=-0.1, verdict="fail")
+    outlet.update(value=145.5, margin=14.5, distance=14.5 / 160.0)
     root.update(value=900.0 * (1 + 1e-9))
     document["checks"][3] = {**flow, "id": "oil.other", "title": "other flow"}
     document["thermal"][0]["max_temperature_degC"] += 14.0
@@ -115,7 +121,7 @@ def test_names_and_titles_are_no_inputs(first, tmp_path):
 def test_a_check_that_applies_to_one_result_only_is_no_flip(first, tmp_path):
     other = copy.deepcopy(first)
     for check in other["checks"][:2]:
-        check.update(verdict="not applicable", value=None, margin=None, utilisation=None, reason="no housing")
+        check.update(verdict="not applicable", value=None, margin=None, distance=None, reason="no housing")
     a, b = written(first, tmp_path / "a"), written(other, tmp_path / "b")
     found = results_difference(a, b)
     assert not found.flipped and not any(row.worse for row in found.checks)
@@ -162,7 +168,7 @@ def test_verdicts_that_flipped_come_first_and_round_off_moves_nothing(pair):
         ("clearance.tip", "flipped"), ("temperature.outlet", "moved"), ("oil.other", "added"), ("oil.flow", "removed"),
     ]  # fmt: skip
     assert found.checks[0].worse
-    assert found.checks[0].utilisation_change == pytest.approx(0.1 / 0.09 - 0.1 / 0.106)
+    assert found.checks[0].distance_change == pytest.approx(-0.1 - (1.0 - 0.1 / 0.106))
     assert headline(found) == (
         "pass → fail: 3 inputs changed, 1 verdict flipped, 1 other check moved, 2 checks in one result only"
     )
@@ -210,7 +216,7 @@ def without(key):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (damaged(schema_version="2"), "schema_version 2, this version reads 1; run `rigdesign check` again"),
+        (damaged(schema_version="1"), "schema_version 1, this version reads 2; run `rigdesign check` again"),
         (
             without("inputs"),
             rf"lists no inputs \(written by rigdesign {__version__}\); run `rigdesign check` again",
@@ -277,8 +283,8 @@ def test_the_terminal_keeps_to_80_columns(pair, capsys):
     assert "pass → fail: 3 inputs changed" in text
     assert "140 degC → 160 degC" in text
     flip = next(n for n, line in enumerate(lines) if "clearance.tip" in line)
-    assert lines[flip - 1].endswith("share of the limit used") and lines[flip].endswith("94.3 → 111 %")
-    assert "hot tip clearance: 0.106 → 0.09" in lines[flip + 1] and "limit 0.1" in lines[flip + 1]
+    assert lines[flip - 1].endswith("distance to the limit") and lines[flip].endswith("5.66 → −10 %")
+    assert "hot tip clearance: 0.106 → 0.09" in lines[flip + 1] and "limit ≥ 0.1 mm" in lines[flip + 1]
     assert text.index("verdicts flipped (1)") < text.index("inputs changed (3)") < text.index("checks moved")
     assert "+ tip meets fillet" in text and str(Path("out") / "diff.html") in text
 
@@ -340,3 +346,58 @@ def test_titles_are_escaped_and_nothing_differs_is_a_page(first, tmp_path):
     text = (tmp_path / "out" / "diff.html").read_text(encoding="utf-8")
     assert "&lt;b&gt;rig&lt;/b&gt;" in text and "<b>rig" not in text and "<svg" not in text
     assert "nothing differs: pass in both" in text
+
+
+# ---------------------------------------------------------------------------- one unit, the right limit, new fails
+
+
+def test_a_power_that_crosses_ten_kilowatts_stands_in_one_unit(first, tmp_path, capsys):
+    other = copy.deepcopy(first)
+    total = sum(row["power_W"] for row in first["losses"] if row["stage"] == first["losses"][0]["stage"])
+    first["losses"][0]["power_W"] += 9_900.0 - total
+    other["losses"][0]["power_W"] += 11_640.0 - total
+    found = results_difference(written(first, tmp_path / "a"), written(other, tmp_path / "b"))
+    print_difference(found, None, everything=True)
+    line = next(line for line in capsys.readouterr().out.splitlines() if "losses in all" in line)
+    assert line.rstrip().endswith("9.9 → 11.6 kW")
+    assert quantity_texts((9_900.0, None, 11_640.0), "W") == ["9.9 kW", "–", "11.64 kW"]
+    assert change_text(9_000.0, 9_900.0, "W") == "9000 → 9900 W"
+
+
+@pytest.mark.parametrize(
+    ("after", "shown"),
+    [
+        ({"limit": 700.0}, "700 … 1100 N/mm²"),
+        ({"limit": 800.0}, "700 … 1100 N/mm² → 800 … 1100 N/mm²"),
+    ],
+)
+def test_a_window_is_shown_whole_and_a_limit_that_moved_twice(after, shown, first, tmp_path, capsys):
+    before = {"value": 1050.0, "comparison": "within", "limit": 700.0, "upper_limit": 1100.0, "margin": 50.0}
+    first["checks"][2].update(before)
+    other = copy.deepcopy(first)
+    other["checks"][2].update(value=2351.0, margin=-1251.0, distance=-1.1, verdict="fail", **after)
+    found = results_difference(written(first, tmp_path / "a"), written(other, tmp_path / "b"))
+    print_difference(found, None)
+    write_difference(found, tmp_path / "out")
+    page = (tmp_path / "out" / "diff.html").read_text(encoding="utf-8")
+    assert f"limit {shown}" in capsys.readouterr().out and f'<td class="n">{shown}</td>' in page
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_check_that_fails_now_and_did_not_apply_before_comes_first(there, first, tmp_path, capsys):
+    """Whether the other result has it as not applicable, or not at all."""
+    other = copy.deepcopy(first)
+    other["checks"][0].update(value=0.09, margin=-0.01, distance=-0.1, verdict="fail", reason="too warm")
+    first["checks"][0].update(verdict="not applicable", value=None, margin=None, distance=None)
+    first["checks"] = first["checks"][0 if there else 1 :]
+    found = results_difference(written(first, tmp_path / "a"), written(other, tmp_path / "b"))
+    assert found.checks[0].change == "newly failing" and found.checks[0].worse
+    assert "1 check newly failing" in headline(found) and "now applicable" not in headline(found)
+    print_difference(found, None)
+    shown = capsys.readouterr().out
+    assert (
+        "now failing, not applicable before (1)" in shown and "too warm" in shown and "limit ≥ 0.1" in shown
+    )
+    write_difference(found, tmp_path / "out")
+    page = (tmp_path / "out" / "diff.html").read_text(encoding="utf-8")
+    assert 'class="banner fail"' in page and "Now failing, not applicable before (1)" in page

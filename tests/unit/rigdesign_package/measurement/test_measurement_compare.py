@@ -85,6 +85,28 @@ def test_an_order_is_located_in_its_band(folder: Path, case) -> None:
     assert "off by up to 0.8 N m" in headline(comparison)
 
 
+def test_each_quantity_of_a_group_has_its_own_size_and_unit(folder: Path, case) -> None:
+    """Power 163 to 324 W and torque 2.1 to 4 N m below the simulation: no number of one in the unit of the other."""
+    with (folder / "measurement.toml").open("a", encoding="utf-8") as file:
+        file.write('[channels.M_drive]\nquantity = "drive_torque"\nunit = "N m"\nuncertainty = "0.02 N m"\n')
+    names, given, *rows = (folder / "data.csv").read_text(encoding="utf-8").splitlines()
+    lines = [f"{names},M_drive", f"{given},N m"]
+    for row in rows:
+        speed, power = row.split(",")[2], row.split(",")[7]
+        lines.append(f"{row},{float(power) / (np.pi / 30 * float(speed)) if power else ''}")
+    (folder / "data.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    steps = {
+        "P": dict(zip(("P01", "P02", "P03", "P04", "P05", "P06"), (163, 163, 200, 220, 250, 324))),
+        "M_drive": dict(zip(("P01", "P02", "P03", "P04", "P05", "P06"), (4.0, 3.5, 3.0, 2.9, 2.5, 2.1))),
+    }
+
+    def change(feature, setting, value):
+        return value + steps.get(feature.channel, {}).get(feature.setting, 0.0)
+
+    sentence = held_against(folder, case, change).sentences[0]
+    assert sentence.startswith("Drive power and torque: below the simulation by up to 324 W and 4 N m, all")
+
+
 def test_chance_alone_is_seldom_significant(folder: Path, case) -> None:
     """Noise as declared: over 40 draws of some ten groups fewer than 2 % come out."""
     measurement = load_measurement(folder, case)

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.oil_circuit.cooler import TankCooler
 from rigdesign.oil_circuit.heat_content import enthalpy
-from rigdesign.oil_circuit.history import CircuitHistory, circuit_history
 from rigdesign.oil_circuit.line_balance import consumer_return
 from rigdesign.oil_circuit.parts import Heater, Pipe, Pump
 from rigdesign.oil_circuit.state import CircuitState, Energies
 from rigdesign.oil_circuit.steady import steady_circuit
+from tests.builders.circuit_history import CircuitHistory, circuit_history
 from tests.builders.oil_circuit import LITRE_A_MINUTE, ZERO, circuit, cooler, line
 
 PIPE = Pipe(volume=3e-3, wall_conductance=4.0)

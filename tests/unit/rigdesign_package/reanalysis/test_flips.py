@@ -1,38 +1,37 @@
 """Inputs that would turn the verdict: which checks count, and that the value found does turn them."""
 
 from dataclasses import replace
+from typing import cast
 
 import pytest
 
 from rigdesign import Case, load_case, run_case
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.reanalysis.flips import Search, governing
-from rigdesign.results.check import Check
+from rigdesign.reanalysis.flips import Search, with_flips
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.report.flips import searched
+from rigdesign.results.check import Check, Checks
+from rigdesign.results.flips import FlipSearch
 from rigdesign.results.result import RunResult
 from tests.builders.checks import check
+from tests.builders.report import make_result
 
-BROKEN = replace(check("specimen.root_stress_iso.test.pinion", "", "fail"), utilisation=1.8)
-WORSE = replace(check("temperature.housing", "", "fail"), utilisation=2.1)
-UNKNOWN = replace(check("dynamics.lift_off.test", "", "fail"), utilisation=1.1)
-HELD = replace(check("clearance.backlash", "", "pass"), utilisation=0.7)
-NEARER = replace(check("oil.flow", "", "pass"), utilisation=0.9)
-
-
-def test_all_broken_checks_have_to_turn_the_worst_first() -> None:
-    assert governing([BROKEN, HELD, WORSE]) == [WORSE, BROKEN]
+BROKEN = replace(
+    check("specimen.root_stress_iso.test.pinion", "", "fail"), value=3.6, margin=-1.6, distance=-0.8
+)
+WORSE = replace(check("lateral.stability", "", "fail"), value=4.2, margin=-2.2, distance=-1.1)
+HELD = check("clearance.backlash", "", "pass")
 
 
-def test_a_broken_check_that_is_not_looked_at_leaves_nothing_to_show() -> None:
-    assert governing([BROKEN, UNKNOWN]) == []
+def result_of(*checks: Check) -> RunResult:
+    return cast("RunResult", replace(make_result(), checks=Checks(checks)))
 
 
-def test_without_a_broken_check_the_nearest_one_counts() -> None:
-    assert governing([HELD, replace(HELD, utilisation=0.3)]) == [HELD]
-    assert governing([HELD, replace(NEARER, by_definition=True)]) == [HELD]
-
-
-def test_a_nearer_check_that_is_not_looked_at_leaves_nothing_to_show() -> None:
-    assert governing([HELD, NEARER]) == []
+def test_what_takes_the_whole_run_again_is_named_as_not_looked_at() -> None:
+    """Nothing was moved, and the sheet says so; it once said that no input turns the verdict."""
+    looked = with_flips(cast("SolvedRig", None), result_of(WORSE, HELD))
+    assert looked.flips == [] and looked.flip_search == FlipSearch(not_searched=("lateral.stability",))
+    assert "Not looked at" in searched(looked) and "Moved" not in searched(looked)
 
 
 def test_a_changed_case_is_solved_once() -> None:
@@ -43,12 +42,12 @@ def test_a_changed_case_is_solved_once() -> None:
         solved.append(changed.schedule.test_torque)
         if changed.schedule.test_torque > 305.0:
             raise NotConvergedError("no state")
-        return {BROKEN.id: replace(BROKEN, utilisation=0.9), HELD.id: replace(HELD, utilisation=1.2)}
+        return {BROKEN.id: replace(BROKEN, value=1.8), HELD.id: replace(HELD, margin=-0.4)}
 
-    search = Search([BROKEN], [HELD], solve)
+    search = Search([BROKEN], [HELD], solve, final=True)
     for torque in (301.0, 310.0, 301.0, 310.0):
         changed = case.with_value("schedule.test_torque", f"{torque} N m")
-        assert search.utilisation(changed) == (0.9 if torque < 305.0 else None)
+        assert search.used(changed, BROKEN) == (0.9 if torque < 305.0 else None)
     found = search.broken(case.with_value("schedule.test_torque", "301 N m"))
     assert [check.id for check in found] == [HELD.id]
     assert solved == [301.0, 310.0]
@@ -69,8 +68,8 @@ def test_the_value_found_brings_the_broken_checks_to_their_limit(stressed: tuple
     flips = {flip.path: flip for flip in result.flips}
     torque = flips["schedule.test_torque"]
     turned = run_case(case.with_value(torque.path, torque.needed), fidelity="quick")
-    assert turned.checks[torque.check].utilisation == pytest.approx(1.0, abs=0.03)
-    others = {check.id for check in turned.checks if check.verdict == "fail"} - {torque.check}
+    assert turned.checks[torque.check].distance == pytest.approx(0.0, abs=0.03)
+    others = {check.id for check in turned.checks if check.status == "fail"} - {torque.check}
     assert torque.turns == (not others)
     assert (torque.holds, torque.stated) == (False, "300 N m")
 

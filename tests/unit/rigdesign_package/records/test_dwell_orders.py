@@ -6,9 +6,7 @@ from typing import Any
 from rigdesign.records.dwell_speeds import _orders
 from rigdesign.records.near_dwell import Bounds, NearDwell
 from rigdesign.results.campbell import CampbellCrossing
-from rigdesign.results.dwell import AvoidedResonance, NearResonance
-
-NOTHING = NearResonance(distance=0.15, resonance=None)
+from rigdesign.results.dwell import AvoidedResonance
 
 
 def order(speed: float, mode: str) -> AvoidedResonance:
@@ -26,8 +24,8 @@ def tracked(speed: float) -> CampbellCrossing:
 def test_every_dwell_has_the_orders_of_its_own_modes() -> None:
     """Dwells at 100 and 300 rad/s; a mode that bearings stiffen is met at 105 by the first, at 95 by the second."""
     near = {
-        100.0: NearDwell(NOTHING, (order(105.0, "at 100"), order(290.0, "at 100"))),
-        300.0: NearDwell(NOTHING, (order(95.0, "at 300"), order(310.0, "at 300"))),
+        100.0: NearDwell(100.0, 0.1, (), (order(105.0, "at 100"), order(290.0, "at 100"))),
+        300.0: NearDwell(300.0, 0.1, (), (order(95.0, "at 300"), order(310.0, "at 300"))),
     }
     diagram = SimpleNamespace(
         modes=[SimpleNamespace(number=1, name="bow")], crossings=[tracked(98.0), tracked(200.0)]

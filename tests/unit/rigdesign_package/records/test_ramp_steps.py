@@ -11,11 +11,12 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.records import start_torque as module
+from rigdesign.records.near_dwell import NearDwell
 from rigdesign.records.ramp_steps import RampLimits, ramp_steps
 from rigdesign.records.resonance_bands import bands, safe_windows
 from rigdesign.records.speed_limits import SpeedLimit, speed_limit
 from rigdesign.records.start_torque import StagePeak, StartResponse, first_speed, start_torque, worst_start
-from rigdesign.results.dwell import AvoidedResonance, NearResonance, RampStep
+from rigdesign.results.dwell import AvoidedResonance, RampStep
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 
@@ -34,8 +35,8 @@ def peak(rpm: float) -> AvoidedResonance:
         where="test_pinion",
         speed=rpm * RAD,
         share=0.7,
-        low=0.9 * rpm * RAD,
-        high=1.1 * rpm * RAD,
+        low=rpm * RAD / 1.1,
+        high=rpm * RAD / 0.9,
     )
 
 
@@ -63,8 +64,7 @@ def steps(
     run: Any = SimpleNamespace(
         curves=SimpleNamespace(named={"180 Nm": (180.0, SimpleNamespace(points=points))})
     )
-    nearest = min(found, key=lambda one: one.distance(TEST), default=None)
-    near = NearResonance(distance=0.15 if nearest is None else nearest.distance(TEST), resonance=nearest)
+    near = NearDwell(TEST, 0.1, tuple(found)).nearest
     high = 13500.0 * RAD if limit is None else min(13500.0 * RAD, limit.speed)
     limits = RampLimits(
         run=run, bands=avoided, safe=safe_windows(avoided, 500.0 * RAD, high), near={rig().pinion_speed(TEST): near},
@@ -112,13 +112,20 @@ def test_peaks_of_the_time_run_are_those_of_stages_under_the_start_torque_in_the
 
 
 def test_no_safe_speed_is_advised_beyond_the_limit_of_the_rig() -> None:
-    """A peak at 11,100 rpm: safe are 9990 rpm and below, and 12,210 rpm that the rig may not turn."""
+    """A peak at 11,100 rpm: safe are 10,090 rpm and below, and 12,334 rpm that the rig may not turn."""
     limit = speed_limit(rig())
     assert limit is not None and limit.speed == pytest.approx(TEST)
     assert limit.source == "limits.bought_parts.rig_speed"
-    inside, beyond = steps([11100.0], limit=limit)["dwell"].reason, steps([11100.0])["dwell"].reason
-    assert "nearest safe speed 9990 rpm, none above it up to the limit of the rig, 12000 rpm" in inside
-    assert "7.5 % away" in inside and "nearest safe speed 12210 rpm" in beyond
+    inside, beyond = steps([11100.0], limit=limit), steps([11100.0])
+    assert (
+        "nearest safe speed 10090 rpm, none above it up to the limit of the rig, 12000 rpm"
+        in inside["dwell"].reason
+    )
+    assert "7.5 % away" in inside["dwell"].reason
+    assert "nearest safe speed 12334 rpm" in beyond["dwell"].reason
+    for found, rpm in ((inside, 11100.0 / 1.1), (beyond, 11100.0 / 0.9)):
+        for action in ("run up without a stop", "raise to the test torque", "dwell", "relieve"):
+            assert found[action].speed == pytest.approx(rpm * RAD)
     slower = steps(limit=SpeedLimit(11000.0 * RAD, "limits.bought_parts.motor"))["dwell"].reason
     assert "above the limit of the rig, 11000 rpm (limits.bought_parts.motor)" in slower
 
@@ -132,13 +139,13 @@ def test_part_of_the_torque_stays_below_the_test_torque_at_the_peaks_passed() ->
 
 
 def test_a_speed_raised_to_where_contact_holds_is_not_moved_back_to_where_it_parts() -> None:
-    """Flanks part at 725 to 775 rpm, so that the torque is raised at 800, in a band of 738 to 902: its lower end lies
+    """Flanks part at 725 to 775 rpm, so that the torque is raised at 800, in a band of 745 to 911: its lower end lies
     where they part, its upper end is free, or is not where they part again up to 950."""
     case = load_case(CASES / "uhcf_prototype").with_value("limits.ramp.transition_speed", None)
     film_less = build_rig(case, "quick")
     for own in (film_less, rig()):
         found = steps([820.0], start=response([(725.0, 775.0)]), own=own)["run up"]
-        assert found.speed == pytest.approx(902.0 * RAD)
+        assert found.speed == pytest.approx(820.0 / 0.9 * RAD)
         assert "moved from 800 rpm" in found.reason
         again = steps([820.0], start=response([(725.0, 775.0), (900.0, 950.0)]), own=own)["run up"]
         assert again.speed == pytest.approx(975.0 * RAD)

@@ -147,7 +147,8 @@ def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
     limits = found.case.with_value("limits.dynamics.dangerous_force_share", 0.02)
     rig = replace(found.rig, case=limits)
     assert found.run is not None
-    (near,) = (one.nearest for one in near_dwells(rig, found.run).values())
+    assert found.loads is not None
+    (near,) = (one.nearest for one in near_dwells(rig, found.run, found.loads).values())
     assert near.resonance is not None
     (check,) = checks(replace(found, rig=rig))
     vibration = loop_vibration(replace(found, rig=rig))

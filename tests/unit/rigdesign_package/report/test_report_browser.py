@@ -34,7 +34,7 @@ for (const used of document.querySelectorAll('.used')) {
 }
 return cut;
 """
-"""Labels of the utilisation bars that the page or a box with an edge cuts off."""
+"""Labels of the bars of the checks that the page or a box with an edge cuts off."""
 
 
 @pytest.fixture(scope="module")
@@ -133,7 +133,7 @@ def test_first_printed_page_is_the_decision_sheet_and_the_body_has_eight(
     for text in (
         "FAIL",
         "Why",
-        "Inputs that would turn the verdict",
+        "Inputs that would turn a failing check",
         "The rig",
         "prepared",
         "checked",

@@ -94,7 +94,7 @@ def test_one_of_two_methods_failing_is_enough_and_others_are_counted():
     given = [*two_methods(2033.0, 900.0), make_check("oil.room", 4.0, 3.0)]
     first = reasons.why(make_result(checks=given)).sentences[0]
     assert "over the path of contact (pass)" in first
-    assert first.endswith("; 1 more check fails.")
+    assert first.endswith("; fails as well: oil.room (4 mm against ≤ 3 mm).")
 
 
 def test_methods_that_agree_are_not_set_against_each_other():
@@ -116,28 +116,26 @@ def test_any_other_failing_check_says_what_it_is_and_what_would_decide_it():
     )
     why = reasons.why(make_result(checks=[replace(check, left_out=("b",), assumptions=("x", "y"))]))
     assert why.sentences == (
-        "Heat to the room: 4 kW against ≤ 3 kW (133 % of the limit used).",
+        "Heat to the room: 4 kW against ≤ 3 kW, missed by 33.3 %.",
         "Stage test.",
     )
     assert "the 2 assumed inputs it depends on" in why.decided_by
-    error = replace(check, discretisation_error=2.0)
-    assert "finer mesh" in reasons.why(make_result(checks=[error])).decided_by
     stated = replace(check, by_definition=True)
     assert "states value and limit" in reasons.why(make_result(checks=[stated])).decided_by
 
 
 def test_reservations_and_a_clean_pass_name_the_nearest_check():
-    warned = replace(make_check("a", 0.5, 1.0, verdict="warn"), left_out=("the room",))
+    warned = replace(make_check("a", 0.5, 1.0, verdict="open"), left_out=("the room",))
     near = make_check("b", 0.99, 1.0)
     why = reasons.why(make_result(checks=[warned, near]))
-    assert why.sentences[0].startswith(
-        "No limit is missed; 1 of 2 checks carry a reservation, 1 of them because"
+    assert why.sentences[0] == (
+        "No limit that binds is missed; 1 of 2 checks are open: 1 leaving out a known contributor."
     )
     assert "Nearest to its limit is b" in why.sentences[1]
     assert "the room" in why.decided_by
     commanded = replace(make_check("c", 1.0, 1.0), by_definition=True)
     assert reasons.why(make_result(checks=[near, commanded])).sentences == (
-        "All 2 checks that apply hold.", "Nearest to its limit is b: 0.99 mm against ≤ 1 mm, 99 % used.",
+        "All 2 checks that apply hold.", "Nearest to its limit is b: 0.99 mm against ≤ 1 mm, 1 % of it left.",
     )  # fmt: skip
     assert "No check applies" in reasons.why(make_result(checks=[])).sentences[0]
 
@@ -165,7 +163,7 @@ def test_inputs_the_run_has_found_stand_before_those_of_the_ranges():
         turns=True, effect="root stress holds",
     )  # fmt: skip
     page = report_html(make_result(inputs=rig_inputs(), flips=[found], ranges=ranges()))
-    first = page[page.index("Inputs that would turn the verdict") : page.index("The rig")]
+    first = page[page.index("Inputs that would turn a failing check") : page.index("The rig")]
     assert "<td>test torque</td>" in first
     assert "99 N m" in first and "root stress holds" in first
     assert "Within their ranges, assumed inputs turn" in first

@@ -3,6 +3,8 @@
 import csv
 import json
 import re
+import shutil
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import meshio
@@ -10,11 +12,13 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import OutputError
-from rigdesign.base.json_text import to_plain, to_text
+from rigdesign.base.json_text import csv_text, to_plain, to_text
 from rigdesign.base.output_folder import file_stem, staged
+from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
-from rigdesign.report.csv_text import csv_text
 from rigdesign.report.junit import check_seconds, write_junit
+from rigdesign.report.results_json import read_result
+from tests.builders.commands import Rigdesign
 from tests.builders.report import gearbox_field, make_check, make_result, small_result
 
 
@@ -28,11 +32,11 @@ def written(tmp_path_factory):
 
 def test_results_json_keeps_the_contract(written):
     document = json.loads((written[0] / "results.json").read_text(encoding="utf-8"))
-    assert document["schema_version"] == "1"
+    assert document["schema_version"] == "2"
     assert set(document["case"]) >= {"name", "path", "hash"}
     assert document["verdict"] == "fail"
     assert set(document["checks"][0]) >= {
-        "id", "title", "value", "limit", "unit", "margin", "utilisation", "verdict", "source",
+        "id", "title", "value", "limit", "unit", "margin", "distance", "verdict", "flags", "error", "source",
     }  # fmt: skip
     gearbox = document["dynamics"]["gearboxes"]["test"]
     assert set(gearbox["dynamic_factor"][0]) >= {
@@ -107,7 +111,7 @@ def test_junit_has_a_testcase_per_check(written):
     assert "2180 N/mm², limit ≤ 950 N/mm², margin −1230 N/mm²" in failure.get("message")
     assert "ISO 6336-3" in failure.text
     assert cases["bought_part_coupling"].find("skipped").get("message") == "no coupling is fitted"
-    assert "warning: holds" in cases["axial_play"].find("system-out").text
+    assert "close: holds" in cases["axial_play"].find("system-out").text
     assert cases["axial_play"].find("failure") is None
     assert root.get("failures") == "1"
     assert root.get("skipped") == "1"
@@ -189,6 +193,40 @@ def test_csv_cells():
     assert csv_text(("a", "b"), [(1.0, None), (2e-12, 'say "x", y')]) == 'a,b\n1,\n2e-12,"say ""x"", y"\n'
 
 
+@pytest.mark.parametrize(
+    ("text", "cell"),
+    [
+        ("=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"),
+        ("@SUM(1+1)", "'@SUM(1+1)"),
+        ("+1+cmd|x", "'+1+cmd|x"),
+        ("-2 degC|calc!A0", "'-2 degC|calc!A0"),
+        ("-10 degC", "-10 degC"),
+        ("-4.5e-3 W/(m2 K)", "-4.5e-3 W/(m2 K)"),
+        ("+12", "+12"),
+        (-3.5, "-3.5"),
+        ("two\nlines", "two lines"),
+        ("a\u202eb\x1b", "a\\u202eb\\u001b"),
+    ],
+)
+def test_no_cell_is_a_formula_and_each_is_one_line(text, cell):
+    """OWASP, CSV injection; numbers keep their sign."""
+    assert csv_text((text,), [(text,)]) == f"{cell}\n" * 2
+
+
+def test_texts_of_a_case_are_no_formula_and_turn_no_line_of_the_output(tmp_path, capsys):
+    title = "turned \u202e title\nverdict: pass"
+    result = small_result(checks=[make_check("gap", 1.0, 0.3, title="=1+1", reason="\u2066moved")])
+    result = replace(result, case={**result.case, "title": title})
+    write_results(result, tmp_path)
+    table = (tmp_path / "curves/checks.csv").read_text(encoding="utf-8")
+    assert "'=1+1" in table
+    print_checks(result, None, everything=True)
+    shown = capsys.readouterr().out
+    assert "\nverdict: pass" not in shown and "turned \\u202e title verdict: pass" in shown
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert not re.search("[\u202a-\u202e\u2066-\u2069]", table + shown + page)
+
+
 def test_file_names_are_safe():
     assert file_stem("../../etc", "a b/c") == "etc_a_b_c"
     assert file_stem("..") == "unnamed"
@@ -265,3 +303,81 @@ def test_staging_reports_a_disk_that_fills_up(tmp_path):
         (scratch / "half").write_text("written")
         raise OSError(28, "No space left on device")
     assert list((tmp_path / "out").iterdir()) == []
+
+
+# ---------------------------------------------------------------------------- printed again without solving
+
+
+def test_a_result_comes_back_from_its_folder(written):
+    out, result = written
+    again, file = read_result(out)
+    assert file == out / "results.json" and results_document(again) == results_document(result)
+    assert len(again.fields) == len(result.fields) > 0
+    for own, read in zip(result.fields, again.fields):
+        assert (own.gearbox, own.stage) == (read.gearbox, read.stage)
+        np.testing.assert_allclose(read.temperature, own.temperature, rtol=1e-12)
+        np.testing.assert_array_equal(read.displacement, own.displacement)
+        np.testing.assert_array_equal(read.mesh.cells, own.mesh.cells)
+        for kind in ("bodies", "surfaces"):
+            before, after = getattr(own.mesh, kind), getattr(read.mesh, kind)
+            assert list(before) == list(after)
+            for name in before:
+                np.testing.assert_array_equal(after[name], before[name])
+
+
+def test_the_report_printed_again_is_the_report(written, rigdesign: Rigdesign, tmp_path):
+    """Numbers of the file have ten digits."""
+    out, _ = written
+    ended = rigdesign("report", out, "--html", "--out", tmp_path)
+    assert ended.status == 0 and "verdict: fail" in ended.out and str(tmp_path / "report.html") in ended.out
+    pages = [(folder / "report.html").read_text(encoding="utf-8") for folder in (out, tmp_path)]
+    words, again = (_words(page) for page in pages)
+    assert re.sub(r"\d+", "", words) == re.sub(r"\d+", "", again) and "Verdict" in words
+    first, second = (np.array(re.findall(r"\d+", text), dtype=float) for text in (words, again))
+    assert np.count_nonzero(first != second) <= 2, "a tie may be rounded either way"
+    assert [page.count("<path") for page in pages] == [pages[0].count("<path")] * 2
+
+
+def _words(page: str) -> str:
+    """The page without its pictures and what names their parts."""
+    return re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
+
+
+def test_a_pdf_beside_the_result_belongs_to_it(rigdesign: Rigdesign, tmp_path, monkeypatch):
+    """The next run in the folder removes it."""
+    monkeypatch.setattr("rigdesign.report.pdf.require_pdf", lambda: None)
+    monkeypatch.setattr(
+        "rigdesign.report.pdf.write_pdf", lambda page, path: path.write_text("pdf", encoding="utf-8")
+    )
+    write_results(make_result(fields=[]), tmp_path)
+    before = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert rigdesign("report", tmp_path / "results.json", "--pdf").status == 0
+    after = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert sorted([*before.pop("files"), "report.pdf"]) == after.pop("files") and before == after
+    write_results(make_result(fields=[]), tmp_path)
+    assert not (tmp_path / "report.pdf").exists()
+
+
+def test_a_report_without_the_files_of_its_fields_has_no_pictures_of_them(written, tmp_path):
+    out, _ = written
+    shutil.copy(out / "results.json", tmp_path)
+    again, _ = read_result(tmp_path)
+    assert again.fields == [] and again.thermal
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (lambda d: d | {"schema_version": "0"}, "schema_version 0"),
+        (lambda d: d | {"losses": [{"place": 3}]}, "is damaged"),
+        (lambda d: {key: value for key, value in d.items() if key != "growth"}, "is damaged"),
+        (lambda d: {}, "is no results.json of a check; report takes"),
+    ],
+)
+def test_what_is_no_result_is_refused_with_what_to_do(damage, said, written, rigdesign: Rigdesign, tmp_path):
+    document = json.loads((written[0] / "results.json").read_text(encoding="utf-8"))
+    (tmp_path / "results.json").write_text(json.dumps(damage(document)), encoding="utf-8")
+    ended = rigdesign("report", tmp_path, "--html")
+    assert ended.status == 2 and said in ended.err and not (tmp_path / "report.html").exists()
+    refused = rigdesign("report", written[0], "--out", tmp_path)
+    assert refused.status == 2 and "--html or --pdf" in refused.err

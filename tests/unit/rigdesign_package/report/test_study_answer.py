@@ -28,8 +28,8 @@ def test_a_check_that_always_fails_is_named_and_hides_nothing():
     )
 
 
-def test_the_crossing_is_where_the_value_meets_the_limit_not_where_a_line_through_utilisations_does():
-    """The clearance is linear in the temperature, its utilisation limit/value is not."""
+def test_the_crossing_is_where_the_value_meets_the_limit_not_where_a_line_through_distances_does():
+    """The clearance is linear in the temperature, its distance 1 - limit/value is not."""
     answer = answered(oil_points((90, 125)), "clearance.*")
     assert answer.passing.ranges[0].high.value == pytest.approx(118.0, rel=1e-12)
     assert (answer.passing.ranges[0].high.held, answer.passing.ranges[0].high.beyond) == (90.0, 125.0)

@@ -40,8 +40,8 @@ def pages(tmp_path_factory):
     inputs = (OIL, TORQUE, WIDTH)
     found = {
         "swings": [
-            Swing(check="clearance.tip", path=path, low="low", high="high", utilisation_stated=0.8,
-                  utilisation_low=0.8 - 0.1 * number, utilisation_high=0.8 + 0.2 * number)
+            Swing(check="clearance.tip", path=path, low="low", high="high", distance_stated=0.2,
+                  distance_low=0.2 + 0.1 * number, distance_high=0.2 - 0.2 * number)
             for number, path in enumerate(inputs)
         ],
         "probabilities": [PassProbability(check="clearance.tip", probability=0.42, low=0.4, high=0.44, samples=990)],

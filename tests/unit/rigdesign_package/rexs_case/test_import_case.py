@@ -11,8 +11,9 @@ from rigdesign.rexs.gear_unit_import import import_gear_unit
 from rigdesign.rexs.reader import parse_rexs
 from rigdesign.rexs_case.pinion_load import pinion_loads
 from rigdesign.rexs_case.write import ImportedCase, import_case
+from rigdesign.rig.model import build_rig
 from tests.builders.commands import Rigdesign, rigdesign
-from tests.builders.rexs import SUFFIXES, archive_of, changed, rexs_file
+from tests.builders.rexs import SUFFIXES, UnitText, archive_of, changed, rexs_file
 
 __all__ = ["rigdesign"]
 DESIGNATION = ('<attribute id="catalogue_designation">NJ 406</attribute>', "")
@@ -101,7 +102,7 @@ def test_torque_at_the_pinion_is_the_same_power_from_either_side(side: str) -> N
         load = replace(case.loads[0], shaft=4, torque=-372.6 * 1.5)
         case = replace(case, speeds={4: -1500.0 * math.pi / 30.0}, loads=(load,))
         unit = replace(unit, operating_cases=(case,))
-    first = pinion_loads(unit, unit.meshes[0])[0]
+    first = pinion_loads(unit, unit.meshes[:1])[0]
     assert first.torque == pytest.approx(372.6)
     assert first.speed == pytest.approx(2250.0 * math.pi / 30.0)
 
@@ -268,3 +269,139 @@ def test_sign_of_the_helix_angle_becomes_the_hand_of_the_pinion(
     box = load_case(tmp_path / "case").gearboxes["test"]
     assert box.meshes["main"].helix_angle == pytest.approx(math.radians(8.0))
     assert (box.gears["pinion"].helix_hand, box.gears["wheel"].helix_hand) == (hand, None)
+
+
+def of_unit(folder: Path, unit: UnitText, stage: int | None = None) -> ImportedCase:
+    """Import of a unit that was put together part by part."""
+    (folder / "unit.rexs").write_text(unit.text())
+    return import_case(folder / "unit.rexs", folder / "case", stage)
+
+
+def only(texts: tuple[str, ...], words: str) -> str:
+    """The one of some texts that has these words."""
+    (found,) = [text for text in texts if words in text]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("place", "loads"), [(330, (4401.0, 27287.0)), (-0.0, (24647.0, 1760.0)), (150, (11443.0, 11443.0))]
+)
+def test_a_gear_outside_its_bearings_stays_there(
+    tmp_path: Path, place: float, loads: tuple[float, float]
+) -> None:
+    """F = 22886 N on bearings at 20 and 280 mm, by the lever rule."""
+    result = of_unit(tmp_path, UnitText().pair(place, ((0, 360, 60),)))
+    assert (result.needed, result.left_out) == ((), ())
+    box = load_case(tmp_path / "case").gearboxes["test"]
+    front, rear = (box.bearings[f"pinion_{side}"].position for side in ("front", "rear"))
+    gear = box.gears["pinion"].position
+    assert (front, gear, rear) == pytest.approx((0.02, 1e-3 * place, 0.28))
+    assert front is not None
+    assert rear is not None
+    assert gear is not None
+    force = 1000.0 / (0.0465 * math.cos(math.radians(20.0)))
+    forces = [force * abs(rear - gear) / 0.26, force * abs(gear - front) / 0.26]
+    assert forces == pytest.approx(loads, rel=1e-3)
+
+
+def test_a_shaft_counted_from_its_rear_is_turned(tmp_path: Path) -> None:
+    unit = UnitText().pair(sections=((0, 100, 60), (100, 260, 60)))
+    text = unit.text()
+    for shaft, axis in (("10", "0 0 1"), ("20", "0 0 -1")):
+        vector = "".join(f"<c>{number}</c>" for number in axis.split())
+        place = f'<attribute id="u_axis_vector" unit="none"><array>{vector}</array></attribute>'
+        head = f'type="shaft" name="shaft {shaft}">'
+        assert head in text
+        text = text.replace(head, head + place)
+    text = text.replace(">280<", ">250<")
+    (tmp_path / "unit.rexs").write_text(text)
+    import_case(tmp_path / "unit.rexs", tmp_path / "case")
+    box = load_case(tmp_path / "case").gearboxes["test"]
+    places = [box.bearings[f"wheel_{side}"].position for side in ("front", "rear")]
+    assert places == pytest.approx([0.05, 0.28])
+    assert box.bearings["wheel_front"].label == "NJ 212 ECP"
+    assert [box.bearings[f"pinion_{side}"].position for side in ("front", "rear")] == pytest.approx(
+        [0.02, 0.25]
+    )
+
+
+def test_a_double_helical_stage_is_one_mesh(tmp_path: Path) -> None:
+    """Two stages of opposite hand between the same shafts: whole torque, no bearing that has to hold."""
+    unit = UnitText()
+    unit.shaft(10, rotational_speed=1500)
+    unit.shaft(20)
+    for shaft in (10, 20):
+        unit.bearing(shaft + 2, shaft, 20, "NU 212 ECP")
+        unit.bearing(shaft + 3, shaft, 280, "NU 212 ECP" if shaft == 10 else "NJ 212 ECP")
+    for half, (place, helix) in enumerate(((110, 25.0), (190, -25.0))):
+        unit.gear(30 + 2 * half, 10, place, helix=helix)
+        unit.gear(31 + 2 * half, 20, place, teeth=62, helix=-helix)
+        unit.stage(40 + half, 30 + 2 * half, 31 + 2 * half, 153.92122)
+    unit.load(50, 10, 1000)
+    unit.load(51, 20)
+    result = of_unit(tmp_path, unit)
+    assert (result.needed, result.left_out) == ((), ())
+    case = load_case(tmp_path / "case")
+    box, mesh = case.gearboxes["test"], case.gearboxes["test"].meshes["main"]
+    assert (mesh.double_helical, mesh.sharing, box.gears["pinion"].position) == (True, 2, pytest.approx(0.15))
+    assert case.schedule.test_torque == pytest.approx(1000.0)
+    assert not any(bearing.locating for name, bearing in box.bearings.items() if name.startswith("pinion"))
+
+
+def test_bearings_that_a_case_does_not_have_are_named(tmp_path: Path) -> None:
+    """A third bearing, and one that joins both shafts."""
+    unit = UnitText().pair()
+    unit.bearing(14, 10, 100)
+    unit.bearing(15, 10, 290, outer=20)
+    result = of_unit(tmp_path, unit)
+    assert "in two bearings, that of the pinion in its outermost ones, 12 and 13" in only(
+        result.left_out, "bearing 14"
+    )
+    assert "between the shaft of the pinion and another turning part" in only(result.left_out, "bearing 15")
+    text = (tmp_path / "case/case.toml").read_text()
+    assert "# not in this case: bearing 14" in text
+    assert "# not in this case: bearing 15" in text
+    assert load_case(tmp_path / "case").gearboxes["test"].bearings["pinion_rear"].position == pytest.approx(
+        0.28
+    )
+
+
+@pytest.mark.parametrize("kind", ["same shafts", "two wheels", "two wheels, one torque unknown"])
+def test_power_that_branches_is_shared_by_statics_or_asked_for(tmp_path: Path, kind: str) -> None:
+    """Two stages of equal hand between two shafts share nothing by statics; of two wheels each has its own load."""
+    unit = UnitText().pair(100)
+    unit.gear(32, 10, 200)
+    if kind == "same shafts":
+        unit.gear(33, 20, 200, teeth=62)
+    else:
+        unit.shaft(70)
+        unit.gear(33, 70, 200, teeth=62)
+        unit.load(71, 70, 1400 if kind == "two wheels" else None)
+    unit.stage(41, 32, 33)
+    result = of_unit(tmp_path, unit, 1)
+    named = only(result.left_out, "cylindrical_stage 41")
+    assert "its forces on the shaft of the pinion" in named
+    if kind == "two wheels":
+        assert result.needed == ()
+        assert load_case(tmp_path / "case").schedule.test_torque == pytest.approx(300.0)
+    else:
+        needed = only(result.needed, "schedule.test_torque")
+        assert "power branches" in needed
+        assert ("71" in needed) == (kind != "same shafts")
+
+
+def test_a_pinion_cut_into_its_shaft_is_solid(tmp_path: Path) -> None:
+    """80 mm under a root circle of 85.5 mm is no bore: the gear has the inertia of the ring round its shaft."""
+    of_unit(tmp_path, UnitText().pair(sections=((0, 40, 60), (40, 220, 80), (260, 40, 60))))
+    case = load_case(tmp_path / "case")
+    box = case.gearboxes["test"]
+    assert [gear.bore_diameter for gear in box.gears.values()] == [0.0, pytest.approx(0.06)]
+    assert box.seat_diameter("pinion") == pytest.approx(0.06)
+    (mark,) = [mark for mark in case.origin.marks if mark.path == "gearboxes.test.gears.pinion.bore_diameter"]
+    assert "cut into its shaft" in (mark.assumed or "")
+    train = build_rig(case, "quick").drivetrain
+    assert train is not None
+    (disc,) = [gear for gear in train.gears if gear.name == "test.pinion"]
+    ring = math.pi * 7850.0 * 0.05 * (0.093**4 - 0.08**4) / 32.0
+    assert disc.inertia == pytest.approx(ring, rel=5e-3)
+    assert disc.mass == pytest.approx(7850.0 * 0.05 * math.pi / 4.0 * (0.093**2 - 0.08**2), rel=5e-3)

@@ -6,8 +6,7 @@ from typing import cast
 import pytest
 
 from rigdesign.checks.rules import with_error
-from rigdesign.results.check import Check
-from rigdesign.results.verdict import Verdict
+from rigdesign.results.check import Check, Verdict
 from rigdesign.run.mesh_convergence import EDGE_ORDER, richardson
 
 NODES = (1_000, 3_000, 24_000)
@@ -55,29 +54,26 @@ def test_without_an_order_the_largest_change_is_the_error(
 def check(margin: float, verdict: str = "pass", reason: str = "") -> Check:
     return Check(
         id="clearance.seal_gap", title="gap", value=0.3 + margin, limit=0.3, unit="mm", comparison=">=",
-        margin=margin, utilisation=0.9, verdict=cast("Verdict", verdict), source="limits", role="rig", reason=reason,
+        margin=margin, distance=0.1, verdict=cast("Verdict", verdict), source="limits", role="rig", reason=reason,
     )  # fmt: skip
 
 
 def test_a_margin_within_the_error_warns_and_says_so() -> None:
     found = with_error(check(0.01, reason="front at 90 deg"), 0.02)
-    assert found.verdict == "warn"
-    assert found.discretisation_error == 0.02
-    assert (
-        found.reason
-        == "front at 90 deg; the discretisation leaves 0.02 mm open, more than the margin: refine it"
-    )
+    assert found.verdict == "open"
+    assert found.error == 0.02
+    assert found.reason == "front at 90 deg; the discretisation leaves 0.02 mm open, more than the margin"
 
 
-@pytest.mark.parametrize(("margin", "verdict"), [(0.05, "pass"), (0.05, "warn"), (-0.05, "fail")])
+@pytest.mark.parametrize(("margin", "verdict"), [(0.05, "pass"), (0.05, "open"), (-0.05, "fail")])
 def test_a_margin_beyond_the_error_keeps_its_verdict(margin: float, verdict: str) -> None:
     found = with_error(check(margin, verdict), 0.02)
-    assert found == replace(check(margin, verdict), discretisation_error=0.02)
+    assert found == replace(check(margin, verdict), error=0.02)
 
 
-def test_a_broken_rule_stays_broken_within_the_error() -> None:
+def test_a_missed_limit_within_the_error_is_open_too() -> None:
     found = with_error(check(-0.01, "fail"), 0.02)
-    assert found.verdict == "fail" and "refine" in found.reason
+    assert found.verdict == "open" and "more than the margin" in found.reason
 
 
 def test_without_an_error_nothing_is_said() -> None:

@@ -25,7 +25,7 @@ def test_it_comes_to_a_verdict(result: RunResult) -> None:
         "dynamics.dynamic_factor.test",
         "clearance.bearing_clearance",
     } <= applied
-    assert len(applied) >= 20 and result.verdict in ("pass", "warn", "fail")
+    assert len(applied) >= 20 and result.verdict in ("pass", "open", "fail")
 
 
 def test_its_losses_are_those_of_the_hand_calculation(result: RunResult) -> None:

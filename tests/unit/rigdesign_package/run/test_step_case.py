@@ -1,8 +1,10 @@
 """A case whose housing is a STEP file, end to end: faces by name and rule, field, clearances, picture, refusals."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rigdesign import load_case
@@ -16,8 +18,11 @@ from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
 from rigdesign.run.main import run_case
 from tests.builders import step_housing
+from tests.builders.msh_file import write_msh
 from tests.builders.paths import CASES
+from thermal.fe.mesh import NamedMesh
 from thermal.housing.mesh_file import read_mesh
+from thermal.housing.step_file import read_step
 
 STEP_CASE = CASES.parent / "tests" / "step_housing" / "case.toml"
 AT = "gearboxes.test.housing"
@@ -108,9 +113,47 @@ def test_the_picture_is_drawn_before_all_faces_have_names(
 def test_parts_of_another_size_or_kind_are_faults_of_the_key(tmp_path: Path) -> None:
     refused(variant(tmp_path, "gone.step"), f'{AT}.step_file = "gone.step"', "correct the path of the file")
     step_housing.draw(tmp_path, "inch.step", unit="INCH")
-    refused(variant(tmp_path, "inch.step"), "housing.height is 220 mm", "check the unit of the STEP file")
+    inch = ("height is 5588 mm, housing.height 220 mm", "scale the part by 0.03", "check its unit")
+    refused(variant(tmp_path, "inch.step"), *inch)
     step_housing.draw(tmp_path, "two.step", solids=2)
     refused(variant(tmp_path, "two.step"), "holds 2 solids", "export the housing alone")
+
+
+@pytest.mark.parametrize(
+    ("scale", "words"),
+    [
+        (10.0, ("width is 3200 mm, housing.width 280 mm", "scale the part by 0.1:")),
+        (2.54, ("height is 558.8 mm, housing.height 220 mm", "scale the part by 0.3937:")),
+        (
+            1 / 2.54,
+            ("bearing_bore_test_pinion_front is 11.83 mm, its bearing 30.05 mm", "scale the part by 2.54:"),
+        ),
+        (
+            1.2,
+            (
+                "bearing_bore_test_wheel_front is 109.8 mm, that of their axes 91.5 mm",
+                "scale the part by 0.8333:",
+            ),
+        ),
+        ((1.0, 1.0, 2.5), ("height is 550 mm, housing.height 220 mm", "check its unit, its axes")),
+    ],
+)
+def test_a_mesh_of_another_size_is_refused_with_both_sizes_and_the_factor(
+    scale: float | tuple[float, float, float], words: tuple[str, ...], tmp_path: Path
+) -> None:
+    """The same measures as of a STEP file: decimetres, inches, and every axis by itself."""
+    part = read_part_mesh()
+    scaled = replace(part, points=part.points * np.asarray(scale))
+    write_msh(scaled, tmp_path / "housing.msh")
+    text = STEP_CASE.read_text().replace('step_file = "housing.step"', 'mesh_file = "housing.msh"')
+    (tmp_path / "case.toml").write_text(text)
+    refused(load_case(tmp_path / "case.toml"), f'{AT}.mesh_file = "housing.msh"', *words)
+
+
+@cache
+def read_part_mesh() -> NamedMesh:
+    """The shipped part as a coarse mesh."""
+    return read_step(STEP_CASE.parent / "housing.step", {}, 0.1, 8)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base import worker_pool
 from rigdesign.base.errors import MissingLibraryError
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers
 from rigdesign.cli.ending import exit_status
@@ -153,6 +154,86 @@ def test_worker_processes_stay_from_call_to_call():
 
 def process_number(task):
     return os.getpid()
+
+
+UNGUARDED = """
+import sys
+from pathlib import Path
+from tests.builders.study import run_study
+from tests.builders.study_functions import CURVES, curves
+def own(case, *, fidelity):
+    return curves(case, fidelity=fidelity)
+print("the script runs")
+found = run_study(CURVES, "oil.inlet=80:120:10 degC", Path(sys.argv[1]), run={run}, workers=1, note=print)
+print(found.completed, found.failed)
+"""
+NOTEBOOK = """
+from rigdesign.base.worker_pool import ProcessWorkers
+def double(number):
+    return 2 * number
+def computed(_):
+    with ProcessWorkers(1) as workers:
+        print(sum(outcome for _, outcome in workers.compute(double, [1, 2])), workers.remark)
+"""
+ANOTHER_POOL = """
+from multiprocessing import Pool
+if __name__ == "__main__":
+    with Pool(1) as pool:
+        pool.map(computed, [None])
+"""
+
+
+@pytest.mark.whole_run
+@pytest.mark.parametrize(
+    ("text", "ends", "noted"),
+    [
+        (UNGUARDED.format(run="curves"), "5 []", ""),
+        (UNGUARDED.format(run="own"), "5 []", "does the script call this below if __name__"),
+        (NOTEBOOK + "computed(None)", "6 ", "Can't get attribute 'double'"),
+        (NOTEBOOK + ANOTHER_POOL, "6 ", "a pool that allows it none of its own"),
+    ],
+    ids=["unguarded script", "function of an unguarded script", "function of a notebook", "in another pool"],
+)
+def test_where_workers_cannot_compute_this_process_does(text, ends, noted, tmp_path):
+    """Before, every point failed for an invented reason, in the ledger for ever."""
+    (tmp_path / "script.py").write_text(text, encoding="utf-8")
+    command = ["-c", text] if text.endswith("computed(None)") else [str(tmp_path / "script.py")]
+    done = subprocess.run(
+        [sys.executable, *command, str(tmp_path / "out")], env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True, text=True, check=True, timeout=60,
+    )  # fmt: skip
+    assert done.stderr == "" and done.stdout.splitlines()[-1].startswith(ends)
+    assert noted in done.stdout
+    assert ("all is computed in this process, one after the other" in done.stdout) == bool(noted)
+    assert noted or done.stdout.count("the script runs") == 1
+
+
+def test_a_machine_without_room_for_processes_computes_in_this_one(monkeypatch):
+    def refused(*arguments):
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(ProcessPoolExecutor, "submit", refused)
+    with ProcessWorkers(2) as workers:
+        assert dict(workers.compute(process_number, [None, None])) == dict.fromkeys(range(2), os.getpid())
+        assert "Resource temporarily unavailable" in workers.remark
+
+
+def dies(task):
+    os._exit(9)
+
+
+@pytest.mark.whole_run
+def test_processes_that_no_longer_start_make_no_result(monkeypatch):
+    """A task whose process died is only to blame if the next one would start."""
+    with ProcessWorkers(1) as workers:
+        workers.open(dies, [None])
+        monkeypatch.setattr(worker_pool, "_ProcessPool", no_pool)
+        with pytest.raises(LostWorkersError, match="no room"):
+            list(workers.compute(dies, [None]))
+
+
+def no_pool(count):
+    raise OSError("no room")
 
 
 def test_every_finished_point_is_counted(tmp_path):

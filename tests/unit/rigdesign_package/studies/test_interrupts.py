@@ -1,4 +1,4 @@
-"""Ctrl-C twice in a running study: it ends as after one, and no process is left."""
+"""A command that is told to end: as after one Ctrl-C, whatever the signal, and no process is left."""
 
 import os
 import random
@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.file_lock import FileLock
 from rigdesign.cli import ending
 from rigdesign.studies.ledger import read_points
 from rigdesign.studies.shards import LEDGER_NAME, LOCK_NAME
@@ -31,8 +32,49 @@ if __name__ == "__main__":
 """
 
 
+AT_WORK = """
+import ctypes, os, sys, time
+sys.path.insert(0, {root!r})
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+from rigdesign.base import parallel
+from rigdesign.base.file_lock import FileLock
+from rigdesign.base.worker_pool import ProcessWorkers
+from rigdesign.cli import main as command
+
+def compiled(folder):
+    (folder / f"begun-{{os.getpid()}}").touch()
+    ctypes.PyDLL(None).sleep(60)  # no other thread of Python runs meanwhile
+
+def interpreted(folder):
+    (folder / f"begun-{{os.getpid()}}").touch()
+    time.sleep(60)
+
+def works(_):
+    folder, system = Path(sys.argv[1]), sys.argv[2]
+    parallel.cores = lambda: 2
+    parallel.sys = SimpleNamespace(platform=system)
+    work = partial(compiled if system == "linux" else interpreted, folder)
+    with FileLock(folder / "lock"), parallel.BackgroundTasks([work, work]), ProcessWorkers(2) as pool:
+        list(pool.compute(compiled, [folder, folder]))
+
+if __name__ == "__main__":
+    command.run = works
+    command.main()
+"""
+
+
 def begun(folder: Path, count: int) -> bool:
     return len(list(folder.glob("ended-*"))) >= count
+
+
+def started(command: list[str]) -> subprocess.Popen[str]:
+    """In a session of its own, as from a terminal: a test run in the background hands on that it ignores Ctrl-C."""
+    return subprocess.Popen(
+        [sys.executable, *command], stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )  # fmt: skip
 
 
 def living(group: int) -> list[str]:
@@ -53,10 +95,7 @@ def test_two_interrupts_at_any_distance_end_a_study_as_one(longest: float, tmp_p
     (tmp_path / "trace").mkdir()
     (tmp_path / "driver.py").write_text(DRIVER.format(root=str(ROOT)), encoding="utf-8")
     chosen = random.Random(longest)
-    study = subprocess.Popen(
-        [sys.executable, str(tmp_path / "driver.py"), str(tmp_path)],
-        stderr=subprocess.PIPE, text=True, start_new_session=True,
-    )  # fmt: skip
+    study = started([str(tmp_path / "driver.py"), str(tmp_path)])
     try:
         until = time.monotonic() + 60.0
         while not begun(tmp_path / "trace", 3) and time.monotonic() < until:
@@ -83,11 +122,45 @@ def test_two_interrupts_at_any_distance_end_a_study_as_one(longest: float, tmp_p
     assert not (out / LOCK_NAME).exists()
 
 
+@pytest.mark.parametrize(
+    ("number", "system", "status", "said"),
+    [
+        ("SIGTERM", "linux", 143, "rigdesign: interrupted by SIGTERM"),
+        ("SIGHUP", "linux", 129, "rigdesign: interrupted by SIGHUP"),
+        ("SIGKILL", "linux", -9, ""),
+        ("SIGKILL", "one without prctl", -9, ""),
+    ],
+)
+@pytest.mark.skipif(sys.platform != "linux", reason="the signal that follows a dead parent is Linux's own")
+def test_no_process_outlives_a_command(
+    number: str, system: str, status: int, said: str, tmp_path: Path
+) -> None:
+    """Copies and worker processes in compiled code; the signal reaches the command alone."""
+    (tmp_path / "driver.py").write_text(AT_WORK.format(root=str(ROOT)), encoding="utf-8")
+    command = started([str(tmp_path / "driver.py"), str(tmp_path), system])
+    try:
+        until = time.monotonic() + 60.0
+        while len(list(tmp_path.glob("begun-*"))) < 4 and time.monotonic() < until:
+            time.sleep(0.01)
+        command.send_signal(getattr(signal, number))
+        _, reported = command.communicate(timeout=10)
+        assert command.returncode == status
+        assert reported.strip() == said or number == "SIGKILL"  # Python counts what a killed process leaves
+        until = time.monotonic() + 1.0
+        while living(command.pid) and time.monotonic() < until:
+            time.sleep(0.05)
+        assert living(command.pid) == []
+    finally:
+        if living(command.pid):
+            os.killpg(command.pid, signal.SIGKILL)
+    FileLock(tmp_path / "lock").release()
+
+
 def test_a_later_interrupt_counts_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """One that a library has swallowed must not leave a command that nobody can stop."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        ending.first_interrupt_counts()
+        ending.first_stop_counts()
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
@@ -101,7 +174,7 @@ def test_a_later_interrupt_counts_again(monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_command_in_the_background_stays_without_interrupts() -> None:
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        ending.first_interrupt_counts()
+        ending.first_stop_counts()
         assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGINT, before)

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.base import worker_pool as study_pool
 from rigdesign.base.errors import CaseError, OutputError, UsageError
+from rigdesign.base.parallel import stops_held
 from rigdesign.studies import ledger as study_ledger
 from rigdesign.studies.grid import Variation, combinations, parse_variation
 from rigdesign.studies.ledger import Ledger, point_key
@@ -33,6 +33,10 @@ pytestmark = pytest.mark.whole_run
         ("a=-2:-3:-0.5 mm", ["-2 mm", "-2.5 mm", "-3 mm"]),
         ("a=1e3:3e3:1e3 rpm", ["1000 rpm", "2000 rpm", "3000 rpm"]),
         ("a=5 mm:5 mm:1 mm", ["5 mm"]),
+        ("a=60,75,90 degC", ["60 degC", "75 degC", "90 degC"]),
+        ("a = 0, -1.5 mm", ["0 mm", "-1.5 mm"]),
+        ("a=6208,22208 E", ["6208", "22208 E"]),
+        ("a=0.1,0.3", ["0.1", "0.3"]),
         ("a=MIL-PRF-23699,FVA 3", ["MIL-PRF-23699", "FVA 3"]),
         ('a="x, y",z', ["x, y", "z"]),
         ("a=../b:c", ["../b:c"]),
@@ -170,7 +174,7 @@ def test_study_page_and_plot(study):
     page = (out / "study.html").read_text(encoding="utf-8")
     assert "Example &lt;rig&gt;" in page
     assert "Example <rig>" not in page
-    assert "margin, 1 − utilisation" in page
+    assert "distance to the limit" in page
     assert (out / "study.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert not list(out.glob(".rigdesign-*"))
 
@@ -306,7 +310,7 @@ def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_sta
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         thread.start()
-        with pytest.raises(KeyboardInterrupt), study_pool._interrupts_held():
+        with pytest.raises(KeyboardInterrupt), stops_held():
             starting.set()
             thread.join()
             reached.append("all started")

@@ -226,10 +226,10 @@ def test_checks_hold_the_worst_planned_moment(case: Case) -> None:
         "transient.soak.test": "pass",
         "transient.soak.other": "not applicable",
     }
-    assert checks["transient.housing_temperature"].utilisation == pytest.approx(80.0 / 160.0)
+    assert checks["transient.housing_temperature"].distance == pytest.approx(80.0 / 160.0)
     warm = checks_over_time(case.with_value("ambient.temperature", "40 degC"), history)
-    assert warm["transient.housing_temperature"].utilisation == pytest.approx(80.0 / 160.0)
-    assert checks["transient.soak.test"].utilisation == pytest.approx(0.5)
+    assert warm["transient.housing_temperature"].distance == pytest.approx(80.0 / 160.0)
+    assert checks["transient.soak.test"].distance == pytest.approx(0.5)
     assert checks["transient.soak.test"].unit == "h"
 
 

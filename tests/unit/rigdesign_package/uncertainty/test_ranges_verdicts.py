@@ -24,8 +24,8 @@ def end(path: str, which: str, value: str) -> RangeEnd:
     )  # type: ignore[arg-type]
 
 
-def at(margin: float, utilisation: float, verdict: str = "pass") -> CheckAtEnd:
-    return CheckAtEnd(value=0.0, margin=margin, utilisation=utilisation, verdict=verdict)  # type: ignore[arg-type]
+def at(margin: float, used: float, verdict: str = "pass") -> CheckAtEnd:
+    return CheckAtEnd(value=0.0, margin=margin, distance=1.0 - used, verdict=verdict)  # type: ignore[arg-type]
 
 
 def outcome(hottest: float | None = 150.0, error: str | None = None, **checks: CheckAtEnd) -> EndResult:
@@ -62,11 +62,11 @@ def test_a_margin_at_an_end_is_that_of_the_run_plus_what_the_end_changes() -> No
     assert line.decided_by == ()
 
 
-def test_a_check_that_fails_at_an_end_warns_and_names_the_assumption() -> None:
+def test_a_check_that_fails_at_an_end_is_open_and_names_the_assumption() -> None:
     """0.055 mm are lost between the stated value and the end; the run has 0.05 mm."""
     broken = outcome(seal_gap=at(-0.015, 1.03, "fail"))
     result = ranged(STATED, both(GAP, broken, STATED), GAP_CHECK)
-    assert result.checks[0].verdict == "warn" and result.verdict == "warn"
+    assert result.checks[0].verdict == "open" and result.verdict == "open"
     assert f"decided by assumption {GAP}: fails at 4 mm (margin -0.005 mm)" in result.checks[0].reason
     assert result.ranges is not None
     assert result.ranges.checks[0].decided_by == (GAP,)
@@ -74,11 +74,11 @@ def test_a_check_that_fails_at_an_end_warns_and_names_the_assumption() -> None:
     assert (result.ranges.margins[0].verdict_low, result.ranges.margins[0].verdict_high) == ("fail", "pass")
 
 
-def test_what_breaks_at_quick_and_holds_at_the_run_is_only_near_its_limit() -> None:
+def test_what_breaks_at_quick_and_holds_at_the_run_holds() -> None:
     result = ranged(STATED, both(GAP, outcome(seal_gap=at(-0.005, 1.01, "fail")), STATED), GAP_CHECK)
     assert result.checks[0].verdict == "pass"
     assert result.ranges is not None
-    assert result.ranges.margins[0].verdict_low == "warn"
+    assert result.ranges.margins[0].verdict_low == "pass"
     assert result.ranges.margins[0].margin_low == pytest.approx(0.005)
 
 
@@ -91,12 +91,12 @@ def test_a_check_that_fails_as_stated_stays_failed_and_says_where_it_would_hold(
     assert result.ranges is not None and result.ranges.checks[0].decided_by == (GAP,)
 
 
-def test_an_end_without_a_result_makes_what_rests_on_it_warn() -> None:
+def test_an_end_without_a_result_makes_what_depends_on_it_open() -> None:
     other = replace(make_check("backlash", 0.1, 0.02, comparison=">="), assumptions=(OIL,))
     stated = outcome(seal_gap=at(0.04, 0.9), backlash=at(0.08, 0.2))
     lost = outcome(None, "coupling did not converge\nin 30 passes")
     result = ranged(stated, both(GAP, lost, stated), GAP_CHECK, other)
-    assert [check.verdict for check in result.checks] == ["warn", "pass"]
+    assert [check.verdict for check in result.checks] == ["open", "pass"]
     assert (
         f"no result at {GAP} = 4 mm, on which it depends: coupling did not converge"
         in result.checks[0].reason
@@ -163,7 +163,7 @@ def test_report_and_json_have_the_ranges_only_where_they_were_evaluated() -> Non
     broken, lost = outcome(142.0, seal_gap=at(-0.03, 1.06, "fail")), outcome(None, "did <not> settle")
     result = ranged(STATED, [*both(GAP, broken, STATED), *both(OIL, lost, STATED)], GAP_CHECK)
     document = results_document(result)["ranges"]
-    assert document["checks"][0]["verdict"] == "warn"
+    assert document["checks"][0]["verdict"] == "open"
     assert document["inputs"][1]["low_error"] == "did <not> settle"
     page = report_html(result)
     assert "Verdicts over the ranges" in page and "Checks that an assumption decides" in page

@@ -1,10 +1,10 @@
-"""Warnings of a run by their reason: most of them share a few."""
+"""Why checks are open, advisory, close or in doubt, by reason: most of them share a few."""
 
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from rigdesign.checks.rules import WARN_UTILISATION
+from rigdesign.checks.rules import CLOSE
 from rigdesign.results.check import Check
 
 OF_GEARBOX = re.compile(r"\bgearbox (\w+)\b")
@@ -17,8 +17,11 @@ NO_HOUSING, UNEXPANDED = "it has no housing", "its housing is not expanded"
 
 
 @dataclass(frozen=True)
-class WarningGroup:
-    """Checks that warn for one reason."""
+class ReasonGroup:
+    """Checks that are open, or carry a flag, for one reason."""
+
+    head: str
+    """``open``, ``advisory``, ``close`` or ``doubt``."""
 
     reason: str
     """With the verb in the number of the checks: ``leave out …``."""
@@ -28,14 +31,14 @@ class WarningGroup:
     def text(self) -> str:
         """The checks and the reason: a number of checks, or the id of the only one."""
         who = self.checks[0].id if len(self.checks) == 1 else f"{len(self.checks)} checks"
-        return f"{who} {self.reason}"
+        return f"{who}{' ' if self.reason.startswith(VERBS) else ': '}{self.reason}"
 
 
 @dataclass(frozen=True)
 class _Cause:
-    """One cause of a warning.
+    """One cause.
 
-    kind : broken, near, mesh, decided, gearbox, left out or doubt
+    kind : advisory, close, error, decided, gearbox, left out, open or doubt
     scope : what the checks of a group have in common beyond the kind: a gearbox, a reason
     what, why : what a value leaves out, and why
     """
@@ -47,23 +50,27 @@ class _Cause:
 
 
 WORDS = {
-    "broken": ("breaks a rule of good practice", "break rules of good practice"),
-    "near": (
-        f"uses more than {100 * WARN_UTILISATION:.0f} % of its limit",
-        f"use more than {100 * WARN_UTILISATION:.0f} % of their limits",
+    "advisory": ("misses a limit that does not bind", "miss limits that do not bind"),
+    "close": (
+        f"has less than {100 * CLOSE:.0f} % of its limit left",
+        f"have less than {100 * CLOSE:.0f} % of their limits left",
     ),
-    "mesh": ("has a margin below the error of the mesh", "have margins below the error of the mesh"),
+    "error": ("has a margin below the error of its value", "have margins below the errors of their values"),
 }
 """Causes without further words, of one check and of several."""
+VERBS = ("leave", "has ", "have ", "miss", "is ", "are ")
+"""Beginnings of reasons that follow their subject."""
+FLAGS = {"advisory": "advisory", "close": "close", "doubt": "doubt"}
+"""Causes that are flags; all others make a check open."""
 
 
-def warning_groups(checks: Iterable[Check]) -> list[WarningGroup]:
-    """The checks that warn by cause, the largest group first; a check with several causes is in several groups."""
+def reason_groups(checks: Iterable[Check]) -> list[ReasonGroup]:
+    """The checks that do not simply pass or fail by cause, open ones first, then the largest group; a check with
+    several causes is in several groups."""
     found: dict[tuple[str, str], list[tuple[_Cause, Check]]] = {}
     for check in checks:
-        if check.verdict == "warn":
-            for cause in _causes(check):
-                found.setdefault((cause.kind, cause.scope), []).append((cause, check))
+        for cause in _causes(check):
+            found.setdefault((cause.kind, cause.scope), []).append((cause, check))
     together: dict[tuple[object, ...], list[_Cause]] = {}
     members: dict[tuple[object, ...], tuple[Check, ...]] = {}
     for (kind, scope), entries in found.items():
@@ -72,21 +79,22 @@ def warning_groups(checks: Iterable[Check]) -> list[WarningGroup]:
         together.setdefault(key, []).extend(cause for cause, _ in entries)
         members[key] = tuple(own.values())
     groups = [
-        WarningGroup(_reason(causes, len(members[key])), members[key]) for key, causes in together.items()
+        ReasonGroup(FLAGS.get(causes[0].kind, "open"), _reason(causes, len(members[key])), members[key])
+        for key, causes in together.items()
     ]
-    return sorted(groups, key=lambda group: -len(group.checks))
+    return sorted(groups, key=lambda group: (group.head != "open", -len(group.checks)))
 
 
 def _causes(check: Check) -> Iterator[_Cause]:
-    """Why a check warns, from its record; the words of its reason where nothing else tells."""
+    """Of its flags, and why it is open, from its record; the words of its reason where nothing else tells."""
+    for flag in check.flags:
+        yield _Cause(flag, check.reason if flag == "doubt" else "", why=check.reason.rpartition("; ")[2])
+    if check.verdict != "open":
+        return
     causes = []
-    if check.margin is not None and check.margin < 0.0:
-        causes.append(_Cause("broken"))
-    elif check.utilisation is not None and check.utilisation > WARN_UTILISATION:
-        causes.append(_Cause("near"))
-    error = check.discretisation_error
+    error = check.error
     if error is not None and check.margin is not None and abs(check.margin) < error:
-        causes.append(_Cause("mesh"))
+        causes.append(_Cause("error"))
     doubts = [part for part in check.reason.split("; ") if part.startswith(DECIDED)]
     causes += [_Cause("decided", part, why=part) for part in doubts]
     for text in check.left_out:
@@ -94,7 +102,7 @@ def _causes(check: Check) -> Iterator[_Cause]:
         box = OF_GEARBOX.search(what)
         kind, scope = ("gearbox", box[1]) if box is not None else ("left out", why if what else text)
         causes.append(_Cause(kind, scope, what or text, why if what else ""))
-    yield from causes or [_Cause("doubt", check.reason, why=check.reason.rpartition("; ")[2])]
+    yield from causes or [_Cause("open", check.reason, why=check.reason.rpartition("; ")[2])]
 
 
 def _reason(causes: list[_Cause], number: int) -> str:
@@ -104,8 +112,8 @@ def _reason(causes: list[_Cause], number: int) -> str:
         return WORDS[kind][number > 1]
     if kind == "decided":
         return f"{'are' if number > 1 else 'is'} {causes[0].why}"
-    if kind == "doubt":
-        return f"{'warn' if number > 1 else 'warns'}: {causes[0].why}"
+    if kind in ("open", "doubt"):
+        return causes[0].why
     whats = list(dict.fromkeys(cause.what for cause in causes))
     whys = list(dict.fromkeys(cause.why for cause in causes if cause.why))
     if NO_HOUSING in whys and UNEXPANDED in whys:

@@ -11,7 +11,7 @@ from rigdesign.strain_gauge.low_pass import LowPass
 from rigdesign.strain_gauge.measuring_point import MeasuringPoint
 from rigdesign.strain_gauge.rolling_angle import RollingAngle
 from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve, turn_average
-from rigdesign.strain_gauge.zero import UnloadedAngles, ZeroReadings
+from tests.builders.strain_zero import UnloadedAngles, ZeroReadings
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from rigdesign.diagnosis.residual.sensors import TIMES
 
 HEAD = """# Effects that a diagnosis can name
 
-Written by `python -m rigdesign.diagnosis.effects_page CASE ...`; do not edit by hand.
+Written by `python -m tests.builders.effects_page CASE ...`; do not edit by hand.
 
 `rigdesign diagnose` names an effect of this page, a group that the data cannot separate, or nothing. An entry is named
 `kind:place`. It changes the case, and the ordinary model computes what follows; bounds are physical limits,
