@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
@@ -110,21 +111,57 @@ class Sampling:
 
 
 def default_speed_control(
-    system: LinearSystem, laws: Sequence[MeshLaw], torque_limit: float, *, bandwidth: float = 2.0
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    torque_limit: float,
+    *,
+    bandwidth: float = 2.0,
+    sample_time: float = 25e-6,
 ) -> SpeedControl:
     """Return a controller of ``bandwidth`` [Hz] for the rigid inertia of the rig, damped 1.0.
+
+    Torque and measured speed act at one place, so that without delay the loop is stable whatever lies behind; the delay
+    of the sampled controller, one and a half ``sample_time`` [s], drives oscillations of the motor against the rig
+    above 1 / sqrt(time constant x delay). The bandwidth is lowered until it cannot: a light rotor before heavy wheels.
 
     Source: second-order loop J s^2 + k_p s + k_i with both roots at -2 pi bandwidth.
     """
     ratios = pinion_ratios(system, laws)
-    inertia = float(ratios @ system.inertia @ ratios) / float(ratios[system.drive_dof]) ** 2
-    rate = 2.0 * pi * bandwidth
-    return SpeedControl(
-        proportional=2.0 * inertia * rate,
-        integral=inertia * rate**2,
-        torque_limit=torque_limit,
-        time_constant=0.1 / rate,
-    )
+    drive = system.drive_dof
+    inertia = float(ratios @ system.inertia @ ratios) / float(ratios[drive]) ** 2
+    delay = 1.5 * sample_time
+    frequency, mobility = _drive_modes(system, laws)
+    # what is left of the rig where all springs are soft: the rotor alone
+    rotor = 1.0 / float(np.linalg.inv(system.inertia)[drive, drive])
+    rate = min(2.0 * pi * bandwidth, rotor / (16.0 * inertia * delay))
+    for _ in range(20):
+        control = SpeedControl(
+            proportional=2.0 * inertia * rate,
+            integral=inertia * rate**2,
+            torque_limit=torque_limit,
+            time_constant=0.1 / rate,
+        )
+        fast = frequency > 1.0 / np.sqrt(control.time_constant * delay)
+        gain = control.proportional / np.hypot(1.0, control.time_constant * frequency) * mobility
+        if not fast.any() or float(gain[fast].max()) <= 0.5:
+            break
+        rate /= np.sqrt(2.0)
+    return control
+
+
+def _drive_modes(system: LinearSystem, laws: Sequence[MeshLaw]) -> tuple[Array, Array]:
+    """Of every mode with mean mesh stiffness: frequency [rad/s], peak of the speed of the drive per torque on
+    it [rad/(N m s)]."""
+    stiffness, damping = system.stiffness.copy(), system.damping.copy()
+    for law, (pinion, wheel) in zip(laws, system.mesh_ports):
+        row = np.zeros(len(stiffness))
+        row[pinion], row[wheel] = law.base_radius_1, -law.base_radius_2
+        stiffness += law.mean_stiffness * np.outer(row, row)
+        damping += law.damping * np.outer(row, row)
+    squared, shapes = scipy.linalg.eigh(0.5 * (stiffness + stiffness.T), system.inertia)
+    frequency = np.sqrt(np.maximum(squared, 1.0))
+    damped = np.einsum("im,ij,jm->m", shapes, damping, shapes)
+    return frequency, shapes[system.drive_dof] ** 2 / np.maximum(damped, 2e-3 * frequency)
 
 
 def check_command(command: Command, n_meshes: int) -> None:

@@ -73,6 +73,9 @@ class LoopEnergy:
         return self.input_work + self.bracing_work - self.losses - self.circulation - self.change
 
 
+PER_SAMPLE = ("time", "speed", "speed_command", "drive_torque", "twist", "angle")
+
+
 @dataclass(frozen=True, kw_only=True)
 class TimeResponse:
     """Response over a schedule; n samples at ``1 / sample_time``, windows of ``windows.duration``.
@@ -90,6 +93,7 @@ class TimeResponse:
     speed_missed : lag behind the speed command at the end of the schedule [rad/s]
     end : state at the end; unconverged_steps : contact iterations that ended early
     sections : torque of the springs asked for in the same windows, None if none were
+    cut : why it ends before its command, empty if it does not; see ``until``
     """
 
     time: Array
@@ -110,6 +114,33 @@ class TimeResponse:
     unconverged_steps: int
     warnings: tuple[str, ...] = field(default=())
     sections: SectionEnvelopes | None = None
+    cut: str = ""
+
+    def until(self, time: float, reason: str) -> "TimeResponse":
+        """The run up to ``time`` [s], without its energy: what comes after ``reason`` is not to be used."""
+        samples = slice(int(np.searchsorted(self.time, time * (1.0 + 1e-12), side="right")))
+        windows = slice(int(np.searchsorted(self.windows.time, time + 1e-9, side="right")))
+        begin = float(self.time[0]) - (float(self.time[1]) - float(self.time[0]))
+        sections = self.sections and replace(
+            self.sections,
+            **{name: getattr(self.sections, name)[:, windows] for name in ("least", "mean", "greatest")},
+        )
+        kept = {
+            name: getattr(self.windows, name)[..., windows]
+            for name in ("time", "speed", "least", "mean", "greatest", "out_of_contact", "longest_gap")
+        }
+        return replace(
+            self,
+            **{name: getattr(self, name)[samples] for name in PER_SAMPLE},
+            drag_torque={name: torque[samples] for name, torque in self.drag_torque.items()},
+            torque=self.torque[:, : int((time - begin) / self.torque_step)],
+            windows=replace(self.windows, **kept),
+            lift_off=tuple(replace(one, end=min(one.end, time)) for one in self.lift_off if one.start < time),
+            energy=None,
+            sections=sections,
+            warnings=(*self.warnings, f"what comes after {time:.2f} s was not evaluated: {reason}"),
+            cut=reason,
+        )
 
     @property
     def torque_band(self) -> float:
@@ -209,7 +240,9 @@ def run_schedule(
     if n_periodic:
         march.follow(FollowingLoads(TurningLoads(system), wound.state.angles))
     limits = np.broadcast_to(np.asarray(motor.torque_limit, float), command.time.shape)
-    control = motor.speed_control or default_speed_control(system, laws, float(limits[0]))
+    control = motor.speed_control or default_speed_control(
+        system, laws, float(limits[0]), sample_time=1.0 / sample_rate
+    )
     bracing = None if command.torque is None else TorqueControl(stiffness=wound.loop_stiffness)
     feed_forward = (
         (np.zeros(1), np.zeros(1)) if command.torque is None else _twists(system, laws, command.torque)

@@ -113,7 +113,7 @@ Size = Annotated[float, Quantity("length", above="0 mm", at_most="20 m", example
 """A measure of a housing, a plate, a shaft."""
 Clearance = Annotated[float, Quantity("length", above="0 mm", at_most="20 m", example="80 um")]
 """A gap between two parts that move."""
-Gap = Annotated[float, Quantity("length", at_least="0 mm", at_most="1 m")]
+Gap = Annotated[float, Quantity("length", at_least="0 mm", at_most="20 m")]
 """A length that may be zero."""
 Play = Annotated[float, Quantity("length", at_least="0 mm", at_most="1 m", example="80 um")]
 """A clearance that may be zero."""

@@ -30,7 +30,9 @@ def omissions(solved: SolvedRig, check: Check) -> tuple[Omission, ...]:
     if check.margin is None:
         return ()
     family = REGISTRY.family_of(solved.case, check)
-    found = (omission for finder in family.leaves_out for omission in finder(solved, check))
+    found = [omission for finder in family.leaves_out for omission in finder(solved, check)]
+    if reason := family.cut_run(solved):
+        found.insert(0, Omission(reason))
     return tuple(dict.fromkeys(found))
 
 

@@ -105,6 +105,15 @@ class RuleFamily:
         """Paths of the limits of one of its rules."""
         return self.limit_keys or tuple(PATH.findall(rule.source.partition(";")[0]))[:1]
 
+    def cut_run(self, solved: SolvedRig) -> str:
+        """Which stages a rule over the time run lacks and why; empty where it has all."""
+        if "time run" not in self.moved_by or solved.run is None or not solved.run.ramp.cut:
+            return ""
+        end = float(solved.run.ramp.windows.time[-1])
+        return (
+            f"the stages of the time run after {end:.2f} s, which were not evaluated: {solved.run.ramp.cut}"
+        )
+
     def worst(self, solved: SolvedRig, rule: Rule, values: Values) -> Check:
         """Hold the governing one of some values against a rule of this family, or say why there is none."""
         if rule.limit is None:
@@ -115,9 +124,10 @@ class RuleFamily:
             return (not_evaluated if asked else not_applicable)(rule, self.needs.reason)
         listed = list(values)
         if not listed:
-            reason = self.absent if isinstance(self.absent, str) else self.absent(solved)
-            lacks_housing = reason in (NO_HOUSING, solved.no_clearances)
-            return (not_evaluated if lacks_housing else not_applicable)(rule, reason)
+            absent = self.absent if isinstance(self.absent, str) else self.absent(solved)
+            missing = self.cut_run(solved) or absent
+            lacking = missing != absent or missing in (NO_HOUSING, solved.no_clearances)
+            return (not_evaluated if lacking else not_applicable)(rule, missing)
         value, where = worst(listed, smallest=self.comparison == ">=")
         return hold(rule, self.unit.shown(value), where)
 

@@ -32,6 +32,8 @@ DRAG_SHARES = (0.02, 0.0625, 0.125, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
 """Shares of the highest speed at which drag torques are computed for the run."""
 SPEED_TOLERANCE = 0.01
 """Share of the test speed that may be missing at the end of a run-up."""
+DIVERGED = 2.0
+"""Error of the speed, in highest speeds of the schedule, from which a run diverges."""
 WINDOW = 0.01
 """Length of the envelope windows [s]."""
 LEAST_TORQUE = 1.0
@@ -79,10 +81,12 @@ def run_ramp(
 ) -> TimeResponse:
     """March over the schedule with the warm gears and films of ``warm``.
 
+    A run that misses the speed of a stage ends before that stage, with the reason and the torque balance.
+
     Raises
     ------
     NotConvergedError
-        The motor does not reach a speed the schedule asks for; the message shows the torque balance.
+        The first stage is missed: there is nothing before it.
     """
     assert rig.case.drivetrain is not None
     schedule = schedule_of(rig)
@@ -114,8 +118,13 @@ def run_ramp(
         motor=MotorDrive(torque_limit=torque_limits(rig)[command.stage]),
         sampling=replace(sampling, keep_channels=sampling.torques_kept(command.time[-1]) <= MOST_KEPT),
     )
-    require_speeds(rig, schedule, response)
-    return response
+    missed = missed_stage(rig, schedule, response)
+    if missed is None:
+        return response
+    number, reason = missed
+    if number == 0:
+        raise NotConvergedError(reason, {"stage": schedule.stages[0].name, "traces": _traces(response)})
+    return response.until(float(schedule.starts[number]), reason)
 
 
 def highest_mesh_frequency(rig: Rig, speed: float) -> float:
@@ -201,24 +210,42 @@ def drags_at(
     return drag_torques(rotating_losses(rig, point, coupling_state, warm.models, bearings), rig, speed)
 
 
-def require_speeds(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:
-    """Every stage must end at its speed before the next begins, a dwell at the speed it holds.
+def missed_stage(rig: Rig, schedule: Schedule, response: TimeResponse) -> tuple[int, str] | None:
+    """Number of the first stage that does not end at its speed, a dwell at the speed it holds, and what went wrong.
 
-    The speed is the mean over whole mesh periods before the end of the stage: a vibration is no lack of speed.
-    Raises NotConvergedError with the torque balance at the end of the first stage that does not.
+    The speed is the mean over whole mesh periods before the end of the stage: a vibration is no lack of speed. None
+    where all stages do.
     """
-    limit = SPEED_TOLERANCE * max(max(stage.speed) for stage in schedule.stages)
-    for stage, end, most in zip(schedule.stages, schedule.starts[1:], torque_limits(rig)):
+    top = max(max(stage.speed) for stage in schedule.stages)
+    limit = SPEED_TOLERANCE * top
+    off = np.abs(response.speed - response.speed_command) > DIVERGED * top
+    lost = float(response.time[np.argmax(off)]) if off.any() else np.inf
+    for number, (stage, end, most) in enumerate(
+        zip(schedule.stages, schedule.starts[1:], torque_limits(rig))
+    ):
+        if lost <= end:
+            return number, _diverged(stage, response, lost)
         mean = response.mean_speed(float(end), mesh_synchronous_window(rig, stage.speed[1], stage.duration))
         excess = mean - stage.speed[1]
         if abs(excess) > limit:
             at = min(int(np.searchsorted(response.time, end)), len(response.time) - 1)
-            raise NotConvergedError(
+            return number, (
                 f"stage {stage.name!r} {_missed(stage, excess)}: {mean / RPM:.0f} rpm against "
                 f"{stage.speed[1] / RPM:.0f} rpm at {end:.2f} s, limit {limit / RPM:.0f} rpm. "
-                f"{_balance(rig, response, at)}; {_remedy(float(response.drive_torque[at]), float(most))}",
-                {"stage": stage.name, "traces": _traces(response)},
+                f"{_balance(rig, response, at)}; {_remedy(float(response.drive_torque[at]), float(most))}"
             )
+    return None
+
+
+def _diverged(stage: Stage, response: TimeResponse, lost: float) -> str:
+    """What is said of a run whose speed leaves that of all stages: more torque would not help."""
+    low, high = (value / RPM for value in (response.speed.min(), response.speed.max()))
+    commands = [value / RPM for value in (response.speed_command.min(), response.speed_command.max())]
+    return (
+        f"the time run diverges in stage {stage.name!r} from {lost:.2f} s on: speed {low:.0f} to {high:.0f} rpm where "
+        f"{commands[0]:.0f} to {commands[1]:.0f} rpm are asked. The speed control shakes the motor against the rig, "
+        "its torque is not too small; raise numerics.sample_rate or correct drivetrain.motor.inertia"
+    )
 
 
 def _traces(response: TimeResponse) -> dict[str, list[float]]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.gear.pair import GearPair
+from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.model import Case
 
 Array = NDArray[np.float64]
@@ -22,15 +23,23 @@ def loop_forces(case: Case, pairs: Mapping[str, GearPair], lines: Mapping[str, i
 
     Raises
     ------
-    ValueError
+    CaseError
         The first mesh is in no loop: nothing can be locked into it.
     """
     forces = _forces(_balance(case, pairs, lines))
     if forces is None:
-        raise ValueError(
-            f"mesh {next(iter(pairs))}, where drivetrain.torque_at counts the torque, is in no closed loop: nothing "
-            "holds a torque in it; close the loop through a second gearbox or name a gear of the loop"
+        joined = (
+            "; ".join(f"{name}: {', '.join(one.shafts)}" for name, one in case.drivetrain.couplings.items())
+            if case.drivetrain
+            else "none"
         )
+        fault = Fault(
+            "drivetrain.couplings", joined,
+            f"leaves mesh {next(iter(pairs))}, where drivetrain.torque_at counts, in no closed loop: nothing holds a "
+            "torque in it",
+            "close the loop through a second gearbox or let torque_at name a gear of the loop",
+        )  # fmt: skip
+        raise CaseError([fault], f"case {case.name}")
     return dict(zip(pairs, map(float, forces)))
 
 

@@ -52,7 +52,7 @@ class DynamicWork:
         Raises
         ------
         NotConvergedError
-            The motor does not reach a speed the schedule asks for.
+            The motor does not hold the first stage of the schedule.
         """
         if self._run is None and self._plan is not None:
             ramp, *curves = self._works.results()

@@ -27,6 +27,10 @@ STUB = 2.5
 """Length from the last bearing to the coupling, in diameters of the shaft."""
 FLANGE = (3.25, 0.35)
 """Diameter and width of half a coupling, in diameters of the shaft: a steel flange."""
+FOUR_POLE = 1500.0 * math.tau / 60.0
+"""Speed of a four-pole motor at the mains [rad/s]; a faster motor of the same torque has no larger rotor."""
+STEEPEST = 1.875
+"""Largest slope of a stage over its mean, see `dynamics.response.schedule.s_derivative`."""
 DAMPING_TIME = 2e-5
 """Damping over stiffness of a coupling [s]: a loss factor of 0.06 at 500 Hz."""
 
@@ -220,8 +224,8 @@ def _motor_inertia(tree: RawTree) -> Filling:
     limit, speed = tree.si("drivetrain.motor.torque_limit", "torque"), _speed_at_motor(tree)
     if limit is None or speed is None:
         return None
-    kilowatt = 1e-3 * limit * speed
-    reason = "rotor of a four-pole motor of this power, 0.0019 kg m2 (P/kW)^1.4"
+    kilowatt = 1e-3 * limit * min(speed, FOUR_POLE)
+    reason = "rotor of a four-pole motor of this torque, 0.0019 kg m2 (P/kW)^1.4, P at 1500 rpm at most"
     return around(0.0019 * kilowatt**1.4, "kg m2", reason) if kilowatt > 0.0 else None
 
 
@@ -253,20 +257,29 @@ def _speed_at_motor(tree: RawTree) -> float | None:
 
 
 def run_up_time(tree: RawTree) -> float | None:
-    """Time [s] in which half of the motor torque brings rotor and gears up to speed, at least 4 s."""
+    """Time [s] in which half of the motor torque brings rotor, gears and couplings up to speed, at least 4 s."""
     limit, speed = tree.si("drivetrain.motor.torque_limit", "torque"), _speed_at_motor(tree)
-    rotor = tree.si("drivetrain.motor.inertia", "inertia")
+    rotor, driven = tree.si("drivetrain.motor.inertia", "inertia"), tree.text("drivetrain.motor.shaft")
     if not limit or speed is None or rotor is None:
         return None
     total = rotor
-    for box in tree.names("gearboxes"):
-        for gear in tree.names(f"gearboxes.{box}.gears"):
-            teeth = tree.number(f"gearboxes.{box}.gears.{gear}.teeth")
+    motor_side = (
+        "pinion" if any(_side(tree, box, "pinion") == driven for box in _two_boxes(tree)) else "wheel"
+    )
+    for box in _two_boxes(tree):
+        mesh = f"gearboxes.{box}.meshes.{only_mesh(tree, box)}"
+        sides = {side: tree.text(f"{mesh}.{side}") for side in ("pinion", "wheel")}
+        teeth = {side: tree.number(f"gearboxes.{box}.gears.{gear}.teeth") for side, gear in sides.items()}
+        for side, gear in sides.items():
             width = tree.length(f"gearboxes.{box}.gears.{gear}.face_width")
-            module = normal_module(tree, box, gear)
-            if teeth is not None and width is not None and module is not None:
-                total += math.pi * STEEL * width * (module * teeth) ** 4 / 32.0
-    return max(math.ceil(total * speed / (0.5 * limit)), 4.0)
+            module, own, motor = normal_module(tree, box, gear or ""), teeth[side], teeth[motor_side]
+            if not own or not motor or width is None or module is None:
+                continue
+            inertia = math.pi * STEEL * width * (module * own) ** 4 / 32.0
+            shaft = f"drivetrain.shafts.{_side(tree, box, side)}.discs"
+            inertia += sum(tree.si(f"{shaft}.{disc}.inertia", "inertia") or 0.0 for disc in tree.names(shaft))
+            total += inertia * (motor / own) ** 2
+    return max(math.ceil(STEEPEST * total * speed / (0.5 * limit)), 4.0)
 
 
 @book.default("drivetrain.bracing.mode")

@@ -88,7 +88,7 @@ def _stages(tree: RawTree) -> Filling:
     run_up = run_up_time(tree) or 4.0
     times = assumed(
         f"{run_up:g} s",
-        "half of the motor torque accelerates, at least 4 s",
+        "half of the motor torque at most accelerates, at least 4 s",
         f"{run_up / 2:g} s",
         f"{run_up * 5:g} s",
     )

@@ -36,6 +36,7 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
             yield from _on_shaft(
                 f"drivetrain.shafts.{name}.discs.{disc_name}.position", disc.position, lengths[name]
             )
+    lines = {name: {name} for name in shafts}
     for name, coupling in train.couplings.items():
         for shaft_name in coupling.shafts:
             if shaft_name not in shafts:
@@ -45,6 +46,16 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
                 f"drivetrain.couplings.{name}.shafts", written(coupling.shafts[0]), "joins a shaft to itself",
                 "name two shafts",
             )  # fmt: skip
+        elif set(coupling.shafts) <= lines.keys():
+            front, rear = (lines[shaft] for shaft in coupling.shafts)
+            if front is rear:
+                yield Fault(
+                    f"drivetrain.couplings.{name}.shafts", ", ".join(map(written, coupling.shafts)),
+                    "joins shafts that other couplings make one line already, so that the loop stays open",
+                    "name the shafts of the line that is left, e.g. those of the wheels",
+                )  # fmt: skip
+            joined = front | rear
+            lines |= dict.fromkeys(joined, joined)
     if train.motor.shaft not in shafts:
         yield unknown("drivetrain.motor.shaft", train.motor.shaft, shafts, "shaft")
     if train.torque_at not in gears:

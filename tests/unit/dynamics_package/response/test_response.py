@@ -223,3 +223,23 @@ def test_a_run_keeps_more_torques_than_samples_where_their_band_asks_for_it() ->
     dense, coarse = (Sampling(sample_rate=40e3, substeps=8, torque_band=band) for band in (60e3, 0.0))
     assert dense.steps_kept == 2 and dense.torques_kept(10.0) == pytest.approx(4.0 * 40e3 * 10.0)
     assert coarse.torques_kept(10.0) == pytest.approx(40e3 * 10.0)
+
+
+def test_speed_control_of_a_light_rotor_before_heavy_wheels_is_stable() -> None:
+    """The delay of a controller made for the whole inertia would shake a rotor of a two-thousandth of it."""
+    system = assemble(prototype(linear_drag=7e-4))
+    heavy = np.full(len(system.inertia), 50.0)
+    heavy[system.drive_dof] = 1.0
+    system = replace(system, inertia=system.inertia * np.sqrt(np.outer(heavy, heavy)))
+    command = Command(
+        time=np.array([0.0, 0.1, 0.2]),
+        speed=np.array([0.0, 20.0, 20.0]) * RPM,
+        torque=np.array([20.0, 20.0, 20.0]),
+    )
+    response = run_schedule(
+        system, prototype_laws(), command, motor=MotorDrive(torque_limit=5e3),
+        sampling=Sampling(sample_rate=10e3, substeps=16),
+    )  # fmt: skip
+    off = np.abs(response.speed - response.speed_command)
+    assert off.max() < 40.0 * RPM and off[-200:].max() < 10.0 * RPM
+    assert np.abs(response.drive_torque).max() < 4e3

@@ -7,16 +7,19 @@ from typing import cast
 import numpy as np
 import pytest
 
+from dynamics.response.envelopes import EnvelopeWindows, LiftOff
+from dynamics.response.march_inputs import DriveState
 from dynamics.response.time_response import TimeResponse
-from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import load_case
+from rigdesign.checks.registry import REGISTRY
 from rigdesign.coupling.time_run import (
     WINDOW,
     mesh_synchronous_window,
-    require_speeds,
+    missed_stage,
     schedule_of,
     torque_limits,
 )
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 
@@ -57,9 +60,9 @@ def run_of(
 
 
 def complaint(stage: str, excess_rpm: float, drive: float = 20.0) -> str:
-    with pytest.raises(NotConvergedError) as raised:
-        require_speeds(rig(), schedule_of(rig()), response(stage, excess_rpm, drive))
-    return str(raised.value)
+    found = missed_stage(rig(), schedule_of(rig()), response(stage, excess_rpm, drive))
+    assert found is not None and schedule_of(rig()).stages[found[0]].name == stage
+    return found[1]
 
 
 @pytest.mark.parametrize(
@@ -98,7 +101,52 @@ def test_a_constant_drive_torque_limits_its_own_stage_only() -> None:
 
 @pytest.mark.parametrize("excess", [-100.0, 100.0])
 def test_within_the_tolerance(excess: float) -> None:
-    require_speeds(rig(), schedule_of(rig()), response("run_up", excess, 20.0))
+    assert missed_stage(rig(), schedule_of(rig()), response("run_up", excess, 20.0)) is None
+
+
+def test_a_run_that_diverges_is_no_weak_motor() -> None:
+    schedule = schedule_of(rig())
+    command = schedule.command(1e-3)
+    shaken = command.speed + np.where(command.time > 3.0, 30000.0 * RPM * np.sin(500.0 * command.time), 0.0)
+    run = run_of(command.time, shaken, 20.0)
+    run.speed_command = command.speed
+    number, text = missed_stage(rig(), schedule, run) or (-1, "")
+    assert schedule.starts[number] <= 3.01 <= schedule.starts[number + 1]
+    assert "diverges" in text and "its torque is not too small" in text and "raise the limit" not in text
+
+
+def test_a_missed_stage_leaves_what_comes_before_it() -> None:
+    """The run ends before the stage; checks over it name the stage and its reason, those of held stages stay."""
+    windows = EnvelopeWindows(
+        duration=0.5, time=0.5 * np.arange(1.0, 9.0), speed=np.ones(8),
+        **{name: np.ones((1, 8)) for name in ("least", "mean", "greatest", "out_of_contact", "longest_gap")},
+    )  # fmt: skip
+    time = 0.01 * np.arange(1.0, 401.0)
+    whole = TimeResponse(
+        time=time, speed=time, speed_command=time, drive_torque=time, twist=time, angle=time, drag_torque={"a": time},
+        torque=np.ones((1, 800), np.float32), torque_step=0.005, windows=windows,
+        lift_off=tuple(LiftOff(mesh=0, start=at, end=3.5, out_of_contact=0.1, longest_gap=0.1) for at in (1.0, 3.2)),
+        energy=None,
+        drive_limited_share=0.0, speed_missed=0.0, end=DriveState(angles=time, speeds=time), unconverged_steps=0,
+    )  # fmt: skip
+    cut = whole.until(3.0, "stage 'run_down' does not come down")
+    assert (
+        cut.time[-1] == pytest.approx(3.0)
+        and cut.windows.time[-1] == 3.0
+        and cut.windows.mean.shape == (1, 6)
+    )
+    assert (
+        cut.torque.shape == (1, 600)
+        and [one.end for one in cut.lift_off] == [3.0]
+        and len(cut.drag_torque["a"]) == 300
+    )
+    solved = cast("SolvedRig", SimpleNamespace(run=SimpleNamespace(ramp=cut), case=rig().case))
+    ramp_peak, kv = (
+        next(family for family in REGISTRY.families() if family.key == key)
+        for key in ("dynamics.ramp_peak", "dynamics.dynamic_factor")
+    )
+    assert "after 3.00 s, which were not evaluated: stage 'run_down'" in ramp_peak.cut_run(solved)
+    assert kv.cut_run(solved) == "" and ramp_peak.cut_run(SimpleNamespace(run=None)) == ""
 
 
 def test_a_vibration_is_no_lack_of_speed() -> None:
@@ -110,7 +158,7 @@ def test_a_vibration_is_no_lack_of_speed() -> None:
     angle = np.cumsum(command.speed) / 40e3 + swing / omega * np.sin(omega * command.time)
     ends = np.searchsorted(command.time, schedule.starts[1:] - 1e-9)
     assert np.abs(speed - command.speed)[ends].max() > 200.0 * RPM
-    require_speeds(rig(), schedule, run_of(command.time, speed, 20.0, angle))
+    assert missed_stage(rig(), schedule, run_of(command.time, speed, 20.0, angle)) is None
 
 
 @pytest.mark.parametrize("rpm", [12000.0, 750.0, 61.0, 30.0])
