@@ -17,10 +17,12 @@ BOX_HALF, WALL, GEAR_HALF = 0.3, 0.36, 0.055
 """Half widths of a gearbox, of its reach above the outer shafts, and of a gear, in distances between gearboxes."""
 SMALL = 7.0
 BRACINGS = {
-    "torque_controlled": "load unit shifts it axially, torque controlled",
-    "shift_held": "shifted axially and held",
-    "twist_held": "twisted and held",
+    ("torque_controlled", "gear"): "load unit shifts it axially, torque controlled",
+    ("shift_held", "gear"): "shifted axially and held",
+    ("torque_controlled", "coupling"): "twisted, torque controlled",
+    ("twist_held", "coupling"): "twisted and held",
 }
+"""What happens to the part that braces, by mode and part."""
 
 
 @dataclass(frozen=True)
@@ -292,11 +294,9 @@ def _couplings(axes: "Axes", case: CaseSheet, plan: RigPlan) -> None:
             axes.plot([start, end], [level, level], color=INK, linewidth=2.0)
         for x in (middle - 0.02, middle + 0.02):
             axes.plot([x, x], [level - 0.17, level + 0.17], color=INK, linewidth=2.4, solid_capstyle="butt")
-        twisted = (
-            case.raw("drivetrain.bracing.mode") == "twist_held"
-            and case.raw("drivetrain.bracing.coupling") == name
-        )
-        words = plan.form.coupling_words(name.replace("_", " "), BRACINGS["twist_held"] if twisted else "")
+        own = case.raw("drivetrain.bracing.coupling") == name
+        twisted = BRACINGS.get((case.raw("drivetrain.bracing.mode"), "coupling"), "") if own else ""
+        words = plan.form.coupling_words(name.replace("_", " "), twisted)
         axes.text(middle, level + 0.22, plain(words), ha="center", va="top", fontsize=6.5, color=INK)
 
 
@@ -354,12 +354,9 @@ def _bracing(axes: "Axes", case: CaseSheet, plan: RigPlan) -> None:
     at = case.raw("drivetrain.torque_at")
     lines = [f"Test point {point}{f', counted at {at}' if at else ''}."]
     if mode:
-        what = (
-            f"{shifted}: {BRACINGS[mode]}"
-            if shifted and mode != "twist_held"
-            else f"a coupling is {BRACINGS[mode]}"
-        )
-        lines.append(f"Bracing: {what}." if mode in BRACINGS else f"Bracing: {mode}.")
+        part = "gear" if shifted and mode != "twist_held" else "coupling"
+        name = shifted if part == "gear" else f"coupling {case.raw('drivetrain.bracing.coupling')}".strip()
+        lines.append(f"Bracing: {name}: {BRACINGS.get((mode, part), mode)}.")
     axes.text(
         0.01, 0.99, plain(fill("  ".join(lines), plan.form.note)), transform=axes.transAxes, ha="left", va="top",
         fontsize=SMALL, color=MUTED,

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rigdesign.case import load_case
+from rigdesign.case.inputs import InputRow
 from rigdesign.report import flips, reasons
 from rigdesign.report.assumption_groups import assumption_groups, in_braces, most_influential
 from rigdesign.report.case_sheet import CaseSheet
@@ -214,6 +215,33 @@ def test_schematic_names_what_the_rig_is_made_of():
         "load unit shifts it axially",
     ):  # fmt: skip
         assert words in texts, words
+
+
+@pytest.mark.parametrize(
+    ("bracing", "words"),
+    [
+        (
+            {"mode": "torque_controlled", "coupling": "pinion_side"},
+            "Bracing: coupling pinion_side: twisted, torque controlled.",
+        ),
+        ({"mode": "twist_held", "coupling": "upper"}, "Bracing: coupling upper: twisted and held."),
+        (
+            {"mode": "shift_held", "shifted_gear": "test.pinion"},
+            "Bracing: test.pinion: shifted axially and held.",
+        ),
+        (
+            {"mode": "torque_controlled", "shifted_gear": "test.pinion"},
+            "Bracing: test.pinion: load unit shifts it axially, torque controlled.",
+        ),
+    ],
+)
+def test_the_schematic_says_which_part_braces_the_loop_and_how(bracing, words):
+    others = [row for row in rig_inputs() if not row.path.startswith("drivetrain.bracing.")]
+    own = [InputRow(path=f"drivetrain.bracing.{key}", value=value) for key, value in bracing.items()]
+    with drawing_style():
+        figure = schematic_figure(CaseSheet.of([*others, *own]))
+    texts = " ".join(" ".join(text.get_text().split()) for text in figure.axes[0].texts)
+    assert words in texts
 
 
 def test_no_words_of_the_schematic_of_a_phone_meet():
