@@ -130,8 +130,7 @@ class RollingBearing:
         if carried == 0.0:
             raise BearingError(
                 f"rolling bearing {self.data.designation}: oil flow = 0 m3/s, shaft and housing without temperature or "
-                "conductance: nothing carries the friction heat; feed oil or give shaft_temperature, "
-                "housing_temperature"
+                "conductance: nothing carries the friction heat; feed oil"
             )
 
         def excess(temperature: float) -> float:

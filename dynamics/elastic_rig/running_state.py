@@ -92,5 +92,5 @@ class RunningState:
             elif np.abs(stiffness[axial]).max() > 0.0:
                 raise DrivetrainError(
                     f"bearing {name!r} has an axial stiffness of {stiffness[axial, axial]:.6g} N/m but does not count "
-                    "as locating: must be 0; name it in axially_locating"
+                    "as locating: must be 0; make it the locating bearing of its shaft"
                 )

@@ -170,7 +170,7 @@ def _known(law: str) -> None:
 def _length(bath: OilBath) -> float:
     if bath.hydraulic_length is None:
         raise LossError(
-            "oil bath: hydraulic_length is missing: ISO/TR 14179-2 needs 4 x inner plan area / perimeter of the "
+            "oil bath: the hydraulic length is missing: ISO/TR 14179-2 needs 4 x inner plan area / perimeter of the "
             'chamber; give it or take law = "changenet_2011"'
         )
     return bath.hydraulic_length

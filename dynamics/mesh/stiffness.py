@@ -177,8 +177,8 @@ def _ring_shape(pair: GearPair, index: int) -> tuple[float, float]:
     bore = 0.5 * pair.bore_diameters[index]
     if not bore > 0.0:
         raise DynamicsInputError(
-            f"bore_diameters[{index}] = {pair.bore_diameters[index]} m must be positive for the ring body; "
-            'give the bore or use body="half_plane"'
+            f"bore of gear {index + 1} = {pair.bore_diameters[index]} m must be positive for the ring body; give "
+            "the bore"
         )
     outline = tooth_outline(pair.gears[index])
     return pair.gears[index].root_radius / bore, 0.5 * outline.root_chord / outline.root_radius

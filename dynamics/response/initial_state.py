@@ -169,7 +169,7 @@ class _Winding:
             right[n] = (torque / self._laws[0].base_radius_1 - preload[0]) / stiffness[0]
             if np.linalg.cond(matrix) > 1e12:
                 raise DynamicsInputError(
-                    "the bracing twist does not load the first mesh; give a twist_load that winds it"
+                    "the bracing twist does not load the first mesh; twist a coupling between its shafts"
                 )
         solution = np.asarray(np.linalg.solve(matrix, right), float)
         return solution[:n], float(solution[n] / (turn or 1.0))

@@ -81,8 +81,8 @@ class Oil:
                 )
         if not -2e-3 <= self.density_slope <= 0.0:
             raise OilError(
-                f"oil {self.name!r}: density_slope = {self.density_slope:.3g} 1/K: must lie within "
-                "-2e-3 to 0; give the relative change per kelvin, about -6.5e-4"
+                f"oil {self.name!r}: the density changes by {self.density_slope:.3g} of itself per kelvin: must lie "
+                "within -2e-3 to 0; correct the densities, usual is about -6.5e-4"
             )
 
     @classmethod

@@ -13,7 +13,9 @@ MAX_POINTS = 100_000
 KELVIN_STEPS = {"degC", "°C", "celsius", "degree_Celsius"}
 """Temperatures in these units may be stepped in kelvin."""
 
-EXAMPLE = "write PATH=START:STOP:STEP ('oils.mil.inlet_temperature=90 degC:140 degC:10 K') or PATH=v1,v2"
+EXAMPLE = (
+    "write PATH=START:STOP:STEP ('gearboxes.test.oil.inlet_temperature=90 degC:140 degC:10 K') or PATH=v1,v2"
+)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ ASSUMED = "assumed"
 """What --vary takes for every assumed input with a range."""
 DIGITS = 6
 """Significant digits of a value, so that it is the same text, and the same point, on every machine."""
-EXAMPLE = "write PATH=LOW:HIGH ('oils.mil.inlet_temperature=90 degC:140 degC'), or --vary assumed"
+EXAMPLE = "write PATH=LOW:HIGH ('gearboxes.test.oil.inlet_temperature=90 degC:140 degC'), or --vary assumed"
 
 
 @dataclass(frozen=True)

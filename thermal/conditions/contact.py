@@ -107,8 +107,7 @@ def join(elements: FiniteElements, contact: Contact) -> SurfaceJoint:
     if touching < contact.least_coverage * smaller or touching == 0.0:
         raise ConditionError(
             f"{_place(contact)}: {touching / smaller:.3g} of the smaller surface touches the other within "
-            f"{reach:.3g} m, below the limit of {contact.least_coverage:g}; check which surfaces touch, raise "
-            "reach, or lower least_coverage"
+            f"{reach:.3g} m, below the limit of {contact.least_coverage:g}; name two surfaces that touch"
         )
     n_nodes = len(points)
     return SurfaceJoint(

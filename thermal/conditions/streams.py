@@ -193,9 +193,7 @@ def _check_flows(network: StreamNetwork) -> None:
                 "with a stream to None for what leaves the model"
             )
         if volume.plug_flow and into == 0.0:
-            raise ConditionError(
-                f"volume {volume.name!r} is a plug flow without inflow; give it a stream or plug_flow = False"
-            )
+            raise ConditionError(f"volume {volume.name!r} is a plug flow without inflow; give it a stream")
 
 
 def _check_number(

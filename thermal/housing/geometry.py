@@ -85,7 +85,7 @@ class HousingGeometry:
 
     def __post_init__(self) -> None:
         if self.foot_joint and self.field is None:
-            raise GeometryError("foot_joint = True without a field; give the field the housing stands on")
+            raise GeometryError("a joint of the foot without a field; give the field the housing stands on")
         optional = {"shafts", "field", "foot_joint", *PARTITIONS}
         require_positive(self, *(f.name for f in fields(self) if f.name not in optional))
         if any(getattr(self, name) != 0.0 for name in PARTITIONS):
@@ -240,8 +240,9 @@ class HousingGeometry:
         if self.one_chamber and sum(bosses) + MINIMUM_LAND > self.chamber_length:
             raise GeometryError(
                 f"shaft {shaft.name}: bearings of width {shaft.front.width:g} m and {shaft.rear.width:g} m protrude "
-                f"{bosses[0]:g} m and {bosses[1]:g} m from their end walls, chamber_length = {self.chamber_length:g} m "
-                "leaves no room between; narrow the bearings or thicken the end wall"
+                f"{bosses[0]:g} m and {bosses[1]:g} m from their end walls, the clear length "
+                f"{self.chamber_length:g} m of the chamber leaves no room between; narrow the bearings or "
+                "thicken the end wall"
             )
         for side, boss in zip(SIDES, bosses, strict=True):
             if not self.one_chamber and boss + MINIMUM_LAND > self.cold_length(side):
@@ -261,8 +262,8 @@ class HousingGeometry:
             if start < low + MINIMUM_LAND or end > high - MINIMUM_LAND:
                 raise GeometryError(
                     f"shaft {shaft.name}: gear of width {shaft.gear.width:g} m at offset "
-                    f"{shaft.gear.offset:g} m does not fit chamber_length = {self.chamber_length:g} m, of which "
-                    f"{high - low:g} m are free; lengthen the chamber"
+                    f"{shaft.gear.offset:g} m does not fit the clear length {self.chamber_length:g} m of the chamber, "
+                    f"of which {high - low:g} m are free; lengthen the chamber"
                 )
 
     def _radii(self, shaft: ShaftGeometry, side: Side) -> dict[str, float]:
@@ -294,5 +295,5 @@ class HousingGeometry:
             raise GeometryError(
                 f"shafts {first.name} and {second.name}: distance {distance:g} m is less than the "
                 f"{needed:g} m their bores, bosses and seats need; move the axes apart or "
-                "reduce diameters or boss_wall"
+                "make bearings or seals smaller"
             )

@@ -123,8 +123,8 @@ class ShaftGeometry:
             )
         if self.gear is not None and self.gear.outer_diameter < self.seat_diameter + 2.0 * MINIMUM_LAND:
             raise GeometryError(
-                f"shaft {self.name}: gear outer_diameter = {self.gear.outer_diameter:g} m must exceed "
-                f"seat_diameter = {self.seat_diameter:g} m; enlarge the gear or reduce the seat"
+                f"shaft {self.name}: outside diameter of the gear = {self.gear.outer_diameter:g} m must exceed "
+                f"that of its seat = {self.seat_diameter:g} m; enlarge the gear or reduce the seat"
             )
 
     def bearing(self, side: Side) -> EndBearing:

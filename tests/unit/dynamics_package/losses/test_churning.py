@@ -114,7 +114,7 @@ def test_gear_alone_by_iso_has_a_dry_neighbour() -> None:
 
 
 def test_iso_needs_the_hydraulic_length() -> None:
-    with pytest.raises(LossError, match=r"hydraulic_length is missing.*changenet_2011"):
+    with pytest.raises(LossError, match=r"hydraulic length is missing.*changenet_2011"):
         churning_loss(WHEEL, bath(hydraulic_length=None), "iso_tr_14179_2")
     assert "iso_tr_14179_2" not in compare_churning(stage(), bath(hydraulic_length=None)).losses
 
