@@ -66,6 +66,12 @@ KINDS: Mapping[str, QuantityKind] = _kinds(
         "2 K/h",
     ),
     QuantityKind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),
+    QuantityKind(
+        "recording_time",
+        "s",
+        {"s": "s", "ms": "ms", "us": "us", "ns": "ns", "min": "minute", "h": "hour", "d": "day"},
+        "1 ms",
+    ),
     QuantityKind("frequency", "hertz", {"Hz": "hertz", "kHz": "kilohertz"}, "40 kHz"),
     QuantityKind(
         "speed",

@@ -6,6 +6,8 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
@@ -31,8 +33,10 @@ from rigdesign.diagnosis.residual.metrology import inspected
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain
 from rigdesign.diagnosis.residual.sensors import Stated
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
+from rigdesign.measurement.comparison.compare import compare as comparison
 from rigdesign.measurement.places import Places
-from rigdesign.prediction.model import Channel, OperatingCondition
+from rigdesign.measurement.processing.baseline import HealthySet, at_all
+from rigdesign.prediction.model import Channel, OperatingCondition, Prediction
 from rigdesign.run.solver_errors import solver_errors
 
 Progress = Callable[[str], None]
@@ -77,7 +81,13 @@ def diagnose_measurement(
     effects = _simplified(effects_of(case, channels=_channels(case, measurement)[0]), len(measurement.points))
     with solver_errors(case):
         data, residuals = read_residuals(case, measurement, effects, say)
-        before = None if healthy is None else read_residuals(case, healthy, effects, say)[1]
+        before = known = None
+        if healthy is not None:
+            data_before, before = read_residuals(case, healthy, effects, say)
+            known = HealthySet(
+                measurement=healthy, data=data_before, prediction=_predicted(data_before, before)
+            )
+        data = _compared(measurement, data, _predicted(data, residuals), known)
         problem = Problem(
             residuals=residuals,
             baseline=before,
@@ -148,6 +158,20 @@ def calibrate_case(
         title=f"{case.title}, constants fitted to a healthy set",
         values=values,
     )
+
+
+def _predicted(data: Data, residuals: ResidualProblem) -> Prediction:
+    """What the library has of the numbers of a set."""
+    library = residuals.library
+    return at_all(data, Prediction(features=residuals.features, values=library.base, error=library.error))
+
+
+def _compared(
+    measurement: MeasurementSet, data: Data, prediction: Prediction, healthy: HealthySet | None
+) -> Data:
+    """The data with what a comparison finds: exchanged channels, other units."""
+    predicted = replace(data, usable=data.usable & np.isfinite(prediction.values))
+    return replace(data, findings=comparison(measurement, predicted, prediction, healthy).findings)
 
 
 def _simplified(effects: tuple[Effect, ...], points: int) -> tuple[Effect, ...]:

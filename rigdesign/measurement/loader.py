@@ -90,12 +90,13 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     at = {"", *(point.name for point in points)}
     readings = {feature: values for feature, values in readings.items() if feature.setting in at}
     found = {feature.channel for feature in readings}
+    told = {name for finding in findings if finding.weight == "dropped" for name in finding.channels}
     findings += [
         DataFinding(
             id="missing_channel", weight="dropped", channels=(name,),
             text=f"{name}: no column, order or recording holds this channel; add it or remove [channels.{name}]",
         )
-        for name in channels if name not in found
+        for name in channels if name not in found and name not in told
     ]  # fmt: skip
     if not readings:
         reasons = "; ".join(finding.text for finding in findings if finding.weight == "dropped")

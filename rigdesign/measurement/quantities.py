@@ -110,6 +110,13 @@ def unit_kind(text: str) -> str | None:
     return next((kind for kind in KINDS if accepted_unit(text, kind) is not None), None)
 
 
+def unit_problem(text: str, kind: str) -> str:
+    """What is wrong with a unit that is not one of ``kind``."""
+    other = unit_kind(text)
+    what = "is not a known unit" if other is None else f"is a unit of {KINDS[other].label}"
+    return f"{what}, not of {KINDS[kind].label}"
+
+
 def same_worth(first: str, second: str, kind: str) -> bool:
     """Whether two texts spell units of ``kind`` that are worth the same: ``rpm``, ``1/min``."""
     spelled = [accepted_unit(text, kind) for text in (first, second)]

@@ -12,7 +12,7 @@ from rigdesign.base.json_text import to_plain
 from rigdesign.base.version import __version__
 from rigdesign.measurement.comparison.bands import Bands
 from rigdesign.measurement.comparison.locate import VARIABLES, Located, locate
-from rigdesign.measurement.comparison.suspects import swap_findings, unit_findings
+from rigdesign.measurement.comparison.suspects import swap_findings, thousands_findings, unit_findings
 from rigdesign.measurement.data import Data
 from rigdesign.measurement.processing.baseline import Foretold, HealthySet, foretold
 from rigdesign.measurement.processing.propagation import setting_spread
@@ -104,6 +104,7 @@ def compare(
             *data.findings,
             *(_of_baseline(data, healthy, known) if healthy is not None and known is not None else ()),
             *unit_findings(data, prediction.values),
+            *thousands_findings(data, prediction.values),
             *swap_findings(data, expected, spread),
         ),
         healthy=healthy,

@@ -46,6 +46,32 @@ def unit_findings(data: Data, simulated: Array) -> Iterator[DataFinding]:
                 break
 
 
+def thousands_findings(data: Data, simulated: Array) -> Iterator[DataFinding]:
+    """Channels of which a few readings are 1000 times less or more than simulated: thousands read as decimals."""
+    told = {name for finding in data.findings if finding.id == "thousands" for name in finding.channels}
+    rows: dict[str, list[int]] = {}
+    for i, feature in enumerate(data.features):
+        if data.usable[i] and feature.order == 0.0 and simulated[i] != 0.0:
+            rows.setdefault(feature.channel, []).append(i)
+    for name in rows.keys() - told:
+        entry, own = data.channels[name], np.array(rows[name])
+        kind = CHANNELS[entry.channel.quantity].kind
+        ratio = np.abs(data.values[own] / simulated[own])
+        for factor in (1e-3, 1e3):
+            hit = own[(ratio < RATIO * factor) & (ratio * RATIO > factor)]
+            if kind == "temperature" or not 0 < 2 * hit.size <= own.size:
+                continue
+            read, right = (
+                units.show(float(x[hit[0]]), kind, entry.unit, 4) for x in (data.values, simulated)
+            )
+            points = tuple(data.features[i].setting for i in hit)
+            yield DataFinding(
+                id="thousands", weight="suspect", channels=(name,), points=points,
+                text=f"{name} at {', '.join(points)}: reads {read}, simulated is {right}, a factor of 1000; look at "
+                "the decimal sign there",
+            )  # fmt: skip
+
+
 FAR = 3.0
 """How far off, in standard deviations, both channels have to be as they stand."""
 GAIN = 0.25

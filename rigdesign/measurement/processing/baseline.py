@@ -71,7 +71,7 @@ def foretold(data: Data, healthy: HealthySet) -> Foretold:
     shared = {channel.name for channel in shared_channels(data, healthy.data)}
     simulated = healthy.prediction.values
     known = np.isfinite(simulated) & healthy.data.usable
-    spread = setting_spread(healthy.data, np.where(np.isfinite(simulated), simulated, 0.0))
+    spread = setting_spread(healthy.data, simulated)
     rows = {feature: row for row, feature in enumerate(healthy.data.features) if known[row]}
     residual, variance, reading = (np.full(len(data.features), np.nan) for _ in range(3))
     for i, feature in enumerate(data.features):

@@ -73,7 +73,8 @@ def features(measurement: MeasurementSet) -> Data:
         findings=tuple(findings),
         strength="proven" if _repeated(names, repeats, counted) else "indicative",
     )
-    return replace(data, findings=(*findings, *consistency_findings(measurement, data)))
+    kept = replace(measurement, readings={**measurement.readings, **clean})
+    return replace(data, findings=(*findings, *consistency_findings(kept, data)))
 
 
 def _mean(values: NDArray[np.float64]) -> float:

@@ -100,12 +100,14 @@ def read_impacts(plan: SetPlan, findings: MutableSequence[DataFinding]) -> dict[
     """
     found: dict[str, list[float]] = {}
     for number, impact in enumerate(plan.document.data.impacts):
-        signals = read_signals(plan.folder, impact.file, plan.document.data)
+        asked = {n: c for n, c in plan.channels.items() if c.channel.quantity == "natural_frequency"}
+        wanted = (impact.force, *(channel.signal for channel in asked.values()))
+        signals = read_signals(plan.folder, impact.file, plan.document.data, wanted)
         if impact.force not in signals:
             at = f"data.impacts.{number}.force"
-            raise MeasurementError([unknown(at, impact.force, tuple(signals), f"signal in {impact.file}")])
-        for name, channel in plan.channels.items():
-            if channel.channel.quantity == "natural_frequency" and channel.signal in signals:
+            raise MeasurementError([unknown(at, impact.force, signals.names, f"signal in {impact.file}")])
+        for name, channel in asked.items():
+            if channel.signal in signals:
                 force, response = signals[impact.force], signals[channel.signal]
                 found.setdefault(name, []).extend(
                     _frequency(name, channel, impact, (force, response), findings)
@@ -137,6 +139,11 @@ def _frequency(
         return
     try:
         found = frequency_response(*signals, impact.length)
+        if channel.search_range[0] > found.frequency[-1]:
+            raise ValueError(
+                f"its samples show frequencies up to {found.frequency[-1]:.4g} Hz, search_range begins at "
+                f"{channel.search_range[0]:.4g} Hz; sample faster, or correct the unit of its time"
+            )
         peak = resonance_peak(found.frequency, np.abs(found.response), channel.search_range)
     except ValueError as error:
         say("no_resonance", "dropped", str(error))

@@ -18,7 +18,10 @@ Key = tuple[str, str]
 
 
 def setting_spread(data: Data, simulated: Array) -> Array:
-    """1 sigma of every simulated number from the scatter of the readings it was simulated at (n_features,) [SI]."""
+    """1 sigma of every simulated number from the scatter of the readings it was simulated at (n_features,) [SI].
+
+    Zero where nothing is simulated (NaN).
+    """
     keys = sorted({key for noise in data.setting_noise for key in noise})
     place = {setting.name: i for i, setting in enumerate(data.settings)}
     levels = np.array([[_level(setting, key) for key in keys] for setting in data.settings], dtype=float)
@@ -30,7 +33,7 @@ def setting_spread(data: Data, simulated: Array) -> Array:
     extent = np.abs(centred).max(axis=0)
     moving = extent > 5.0 * noise.max(axis=0)
     variance = np.zeros(len(data.features))
-    for rows in _series(data).values():
+    for rows in _series(data, np.isfinite(simulated)).values():
         at = [place[data.features[i].setting] for i in rows]
         values = simulated[rows]
         if moving.any() and len(rows) > 2:
@@ -49,10 +52,10 @@ def setting_spread(data: Data, simulated: Array) -> Array:
     return np.sqrt(variance)
 
 
-def _series(data: Data) -> dict[tuple[str, float, str], list[int]]:
+def _series(data: Data, known: NDArray[np.bool_]) -> dict[tuple[str, float, str], list[int]]:
     series: dict[tuple[str, float, str], list[int]] = {}
     for i, feature in enumerate(data.features):
-        if feature.setting:
+        if feature.setting and known[i]:
             series.setdefault((feature.channel, feature.order, feature.part), []).append(i)
     return series
 

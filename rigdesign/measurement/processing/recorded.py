@@ -20,6 +20,7 @@ from rigdesign.measurement.quality.signal_checks import (
     without_wrong_samples,
 )
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, same_worth, to_si
+from rigdesign.measurement.reading.columns import sensors_of
 from rigdesign.measurement.reading.document import MeasurementFile, Recording
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
 from rigdesign.measurement.reading.rows import Rows
@@ -29,8 +30,14 @@ from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Fe
 
 Readings = dict[Feature, NDArray[np.float64]]
 SPEED_OFF = 0.02
-"""Relative difference between the speed of the tach and that of the table from which one of them is wrong."""
-
+"""Relative difference between the speed of the tach and that of the table from which no angle is taken."""
+SURE, LEAST_OFF = 5.0, 1e-3
+"""Standard deviations of the speed of the table, and share of it, above which their difference is suspected."""
+TIME_RATIOS = {"ms": 1e-3, "us": 1e-6, "min": 1.0 / 60.0, "h": 1.0 / 3600.0}
+"""Unit of time that was taken for seconds -> speed over the true one."""
+NO_ORDERS = "nothing that depends on the angle is read from this recording"
+SHOWN = 10
+"""Signals of a file that are named."""
 SHORTER = 0.1
 """Part of its length that a recording may lack of the longest one of its point."""
 
@@ -69,17 +76,24 @@ def read_recordings(
     found: Readings = {}
     lasting: dict[str, dict[str, float]] = {}
     by_name = {point.name: point for point in plan.points}
+    channels = {n: c for n, c in plan.channels.items() if c.channel.quantity not in STANDING_QUANTITIES}
+    of_angle = ORDER_QUANTITIES | {"root_strain"}
+    timed = [channel.signal for channel in channels.values() if channel.channel.quantity in of_angle]
+    timed += document.data.tach.signals if document.data.tach and timed else ()
+    wanted = [*(channel.signal for channel in channels.values()), *timed]
     for entry in document.data.recordings:
         if entry.point not in by_name:
             continue
         try:
-            signals = read_signals(plan.folder, entry.file, document.data)
+            signals = read_signals(plan.folder, entry.file, document.data, wanted, timed)
         except MeasurementError as error:
             faults += error.faults
             continue
+        recorded = {name: channel for name, channel in channels.items() if channel.signal in signals}
+        if not recorded:
+            findings.append(_unused(entry, channels, signals))
+            continue
         lasting.setdefault(entry.point, {})[entry.file] = max(float(np.ptp(s.time)) for s in signals.values())
-        recorded = {name: channel for name, channel in plan.channels.items()
-                    if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
         roots = {name: one for name, one in recorded.items() if one.channel.quantity == "root_strain"}
         here = {name: one for name, one in recorded.items() if name not in roots}
         faults += unit_faults(entry.file, here, signals)
@@ -89,10 +103,11 @@ def read_recordings(
         assert place is not None
         count = len(rows.rows_of(entry.point))
         read = _Recording(entry, document, plan.places, by_name[entry.point], findings)
-        numbers = [
-            *read.numbers(here, signals),
-            *_of_gauges(plan, entry, by_name[entry.point], roots, findings),
-        ]
+        turning = [name for name, one in recorded.items() if one.channel.quantity in of_angle]
+        turn = read.turn(signals, turning) if turning else None
+        numbers = [*read.numbers(here, signals, turn)]
+        if turn is not None or document.data.tach is None:
+            numbers += _of_gauges(plan, entry, by_name[entry.point], roots, findings)
         for feature, value in numbers:
             if feature not in known:
                 found.setdefault(feature, np.full(count, np.nan))[place] = value
@@ -100,6 +115,17 @@ def read_recordings(
         raise MeasurementError(faults)
     findings.extend(_shorter(lasting))
     return found
+
+
+def _unused(entry: Recording, channels: Mapping[str, MeasuredChannel], signals: Signals) -> DataFinding:
+    """A recording without a signal of the set."""
+    wanted = ", ".join(dict.fromkeys(channel.signal for channel in channels.values()))
+    return DataFinding(
+        id="recording", weight="dropped", points=(entry.point,), channels=tuple(channels),
+        text=f"{entry.file}: holds none of {wanted}; it has {', '.join(signals.names[:SHOWN])}"
+        + (f" and {len(signals.names) - SHOWN} more" if signals.names[SHOWN:] else "")
+        + "; correct the names (signal of the channels)",
+    )  # fmt: skip
 
 
 def _of_gauges(
@@ -151,11 +177,9 @@ class _Recording:
         self._findings = findings
 
     def numbers(
-        self, channels: Mapping[str, MeasuredChannel], signals: Signals
+        self, channels: Mapping[str, MeasuredChannel], signals: Signals, turn: TurnAngle | None
     ) -> Iterator[tuple[Feature, float]]:
-        """Features with their numbers [SI]."""
-        by_orders = {name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES}
-        turn = self._turn(signals) if by_orders else None
+        """Features with their numbers [SI]; orders where the angle is known."""
         for name, channel in channels.items():
             measured = CHANNELS[channel.channel.quantity]
             kind = measured.kind
@@ -163,33 +187,44 @@ class _Recording:
             signal, said = without_wrong_samples(signals[channel.signal], measured, unit)
             if not self._looks_right(name, signal, said):
                 continue
-            if name in by_orders:
+            if channel.channel.quantity in ORDER_QUANTITIES:
                 if turn is not None:
                     yield from self._orders(name, channel, signal, turn, to_si(1.0, kind, unit))
             else:
                 yield Feature(name, self._point.name), to_si(float(np.nanmean(signal.values)), kind, unit)
 
-    def _turn(self, signals: Signals) -> TurnAngle | None:
+    def turn(self, signals: Signals, channels: Sequence[str]) -> TurnAngle | None:
+        """Angle of the reference gear; None without a tach, and, with a finding, where it cannot be right."""
         tach = self._document.data.tach
         if tach is None:
             return None
         try:
             turn = turn_angle(tach, signals, self._entry.start_turn)
         except TachError as error:
-            self._say("tach", "dropped", f"{error}; no orders are read from this recording")
+            self._say("tach", "dropped", f"{error}; {NO_ORDERS}", *channels)
             return None
         if turn.lost or turn.surplus:
             self._say(
                 "tach", "note", f"{turn.lost} tach pulses lost and filled, {turn.surplus} too many left out"
             )
-        speed = self._point.setting.speed
-        if abs(turn.speed - speed) > SPEED_OFF * speed:
-            self._say(
-                "tach_speed", "suspect",
-                f"the tach gives {turn.speed * 30 / math.pi:.5g} rpm, the table {speed * 30 / math.pi:.5g} rpm; "
-                "look at data.tach.pulses_per_turn and at the speed column",
-            )  # fmt: skip
-        return turn
+        stated = self._point.setting.speed
+        off = abs(turn.speed - stated)
+        if off <= max(SURE * self._speed_error(stated), LEAST_OFF * stated):
+            return turn
+        wrong = off > SPEED_OFF * stated
+        self._say(
+            "tach_speed", "dropped" if wrong else "suspect",
+            f"the tach gives {turn.speed * 30 / math.pi:.5g} rpm, the table {stated * 30 / math.pi:.5g} rpm"
+            + (f"; {NO_ORDERS}" if wrong else "")
+            + f"; look at {_cause(turn.speed / stated)}",
+            *channels,
+        )  # fmt: skip
+        return None if wrong else turn
+
+    def _speed_error(self, speed: float) -> float:
+        """1 sigma of the speed of the table [rad/s]."""
+        (sensor,) = (one for one in sensors_of(self._document).values() if one.quantity == "speed")
+        return math.hypot(sensor.noise, sensor.offset_sd, sensor.scale_sd * speed)
 
     def _looks_right(self, name: str, signal: Signal, said: Sequence[tuple[str, Weight, str]]) -> bool:
         for identity, weight, text in (*said, *signal_findings(signal)):
@@ -248,6 +283,14 @@ class _Recording:
                 text=f"{self._entry.file}: {text}", channels=channels, points=(self._point.name,),
             )
         )  # fmt: skip
+
+
+def _cause(ratio: float) -> str:
+    """What may be wrong where the speed of the tach is so many times that of the table."""
+    for unit, off in TIME_RATIOS.items():
+        if abs(ratio / off - 1.0) < SPEED_OFF:
+            return f'the unit of its time, which would fit as "{unit}" (data.time_unit)'
+    return "data.tach.pulses_per_turn, at the unit of its time and at the speed column"
 
 
 def _faults(document: MeasurementFile, rows: Rows) -> Iterator[Fault]:

@@ -9,7 +9,7 @@ import numpy as np
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.measurement.quality.signal_checks import signal_findings
-from rigdesign.measurement.quantities import accepted_unit, same_worth, to_si, unit_kind
+from rigdesign.measurement.quantities import accepted_unit, same_worth, to_si, unit_problem
 from rigdesign.measurement.reading.document import DataSection, Tach
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, turn_angle
@@ -99,8 +99,15 @@ def read_strain_records(folder: Path, recording: StrainRecording) -> StrainRecor
         A file that cannot be read or was cut off (`read_signals`); all channels that are missing or have no unit, the
         wrong one or different ones; a dead channel; a tach or speed that gives no angle.
     """
-    signals = read_signals(folder, recording.file, recording.data)
-    faults = list(_missing(recording, signals))
+    wanted = _wanted(recording)
+    signals = read_signals(folder, recording.file, recording.data, wanted.values())
+    faults = [
+        Fault(
+            f"{recording.file}, {key}", signal, f"no such channel; the file has {', '.join(signals.names)}",
+            "correct the name or export the channel",
+        )
+        for key, signal in wanted.items() if signal not in signals
+    ]  # fmt: skip
     if not faults:
         faults = [*_wrong_units(recording, signals), *_dead(recording, signals)]
     if faults:
@@ -113,21 +120,19 @@ def read_strain_records(folder: Path, recording: StrainRecording) -> StrainRecor
     return StrainRecords(records, _angle(recording, signals), notes)
 
 
-def _missing(recording: StrainRecording, signals: Signals) -> Iterator[Fault]:
+def _wanted(recording: StrainRecording) -> dict[str, str]:
+    """Signals that a recording needs, by key."""
     wanted = {f"gauges.{name}.signal": channel.signal for name, channel in recording.gauges.items()}
     wanted |= {
         f"gauges.{name}.supply": channel.supply
         for name, channel in recording.gauges.items()
         if channel.supply
     }
-    if isinstance(recording.angle, SpeedSignal | Tach):
+    if isinstance(recording.angle, SpeedSignal):
         wanted["angle.signal"] = recording.angle.signal
-    for key, signal in wanted.items():
-        if signal not in signals:
-            yield Fault(
-                f"{recording.file}, {key}", signal, f"no such channel; the file has {', '.join(signals)}",
-                "correct the name or export the channel",
-            )  # fmt: skip
+    elif isinstance(recording.angle, Tach):
+        wanted |= dict(zip(("angle.signal", "angle.index"), recording.angle.signals))
+    return wanted
 
 
 def _wrong_units(recording: StrainRecording, signals: Signals) -> Iterator[Fault]:
@@ -173,9 +178,7 @@ def _wrong_unit(at: str, stated: str, signal: Signal, kinds: tuple[str, ...]) ->
         return
     kind = next((kind for kind in kinds if accepted_unit(unit, kind)), None)
     if kind is None:
-        other = unit_kind(unit)
-        what = "is not a known unit" if other is None else f"is a unit of {KINDS[other].label}"
-        yield Fault(at, unit, f"{what}, not of {kinds[0]}", f"write one of {choices}")
+        yield Fault(at, unit, unit_problem(unit, kinds[0]), f"write one of {choices}")
     elif stated and signal.unit and not same_worth(stated, signal.unit, kind):
         yield Fault(
             at, stated, f'the file says "{signal.unit}"', "correct what is wrong; nothing is converted"

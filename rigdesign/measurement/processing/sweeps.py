@@ -98,7 +98,9 @@ class _Sweep:
 
     def __init__(self, plan: SetPlan, sweep: Sweep, at: str, findings: MutableSequence[DataFinding]) -> None:
         self._plan, self._sweep, self._at, self._findings = plan, sweep, at, findings
-        self._signals: Signals = read_signals(plan.folder, sweep.file, plan.document.data)
+        tach = plan.document.data.tach
+        wanted = [channel.signal for channel in plan.channels.values()] + [*(tach.signals if tach else ())]
+        self._signals: Signals = read_signals(plan.folder, sweep.file, plan.document.data, wanted)
         self._turn = self._angle()
         self._channels: Mapping[str, MeasuredChannel] = {
             name: channel for name, channel in plan.channels.items() if channel.signal in self._signals

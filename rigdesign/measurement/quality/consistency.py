@@ -41,7 +41,7 @@ FAST, STRONG, FLOWING = 2.0, 5.0, 20.0
 
 
 def consistency_findings(measurement: MeasurementSet, data: "Data") -> tuple[DataFinding, ...]:
-    """Everything the checks have to say; nothing is left out because of it."""
+    """Everything the checks have to say of a set without the readings that were dropped; nothing more is left out."""
     return (
         *_temperatures(measurement.case, data),
         *_settings(measurement, data),
@@ -205,7 +205,7 @@ def _scatter(measurement: MeasurementSet) -> Iterator[DataFinding]:
             times = math.sqrt(squares / freedom) / entry.noise
             yield DataFinding(
                 id="scatter", weight="note", channels=(name,),
-                text=f"{name}: repeats scatter {times:.2g} times more than declared; the scatter is taken",
+                text=f"{name}: repeats scatter {times:.2g} times more than declared; the noise is pooled from both",
             )  # fmt: skip
 
 

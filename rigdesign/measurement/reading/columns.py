@@ -13,7 +13,7 @@ from rigdesign.measurement.quantities import (
     SETTINGS,
     Measured,
     accepted_unit,
-    unit_kind,
+    unit_problem,
 )
 from rigdesign.measurement.reading.channel_rules import an, direction_faults, modal_faults
 from rigdesign.measurement.reading.directions import direction_of
@@ -232,15 +232,8 @@ def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
 
 def _unit_and_spread(at: str, unit: str, spreads: Mapping[str, str], measured: Measured) -> Iterator[Fault]:
     if accepted_unit(unit, measured.kind) is None:
-        other = unit_kind(unit)
-        problem = "is not a known unit" if other is None else f"is a unit of {KINDS[other].label}"
         choices = ", ".join(KINDS[measured.kind].units)
-        yield Fault(
-            f"{at}.unit",
-            written(unit),
-            f"{problem}, not of {KINDS[measured.kind].label}",
-            f"write one of {choices}",
-        )
+        yield Fault(f"{at}.unit", written(unit), unit_problem(unit, measured.kind), f"write one of {choices}")
     for key, text in spreads.items():
         try:
             value = units.parse(text, measured.spread)

@@ -84,7 +84,8 @@ class Tach(Part):
     kind: Literal["pulses", "angle"]
     """pulses: one or more a turn; angle: an encoder's angle."""
     signal: Label
-    pulses_per_turn: Annotated[int, Field(ge=1)] = 1
+    pulses_per_turn: Annotated[int, Field(ge=1)] | None = None
+    """Counted from index pulse to index pulse when left out, one without an index."""
     index: Label | None = None
     """Signal with one pulse a turn, which says where zero is; needed with several pulses a turn."""
     unit: Literal["deg", "rad", "mrad"] = "deg"
@@ -93,6 +94,11 @@ class Tach(Part):
     """Whether the angle starts again at zero every turn."""
     zero: Angle = 0.0
     """Angle of the reference gear at the index pulse, or where the encoder reads zero."""
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of its signals."""
+        return (self.signal,) if self.index is None else (self.signal, self.index)
 
 
 class DataSection(Part):
@@ -103,6 +109,8 @@ class DataSection(Part):
     delimiter: Literal[",", ";", "\t"] = ","
     decimal: Literal[".", ","] = "."
     encoding: Literal["utf-8", "cp1252", "utf-16"] = "utf-8"
+    time_unit: Literal["s", "ms", "us", "ns", "min", "h", "d"] | None = None
+    """Of the time of recordings whose files do not say; seconds when left out. Files that do are held against it."""
     size_limit: SizeLimit = 200e6
     """Most bytes of each file that is named here, and most samples read from it."""
     recordings: tuple[Recording, ...] = ()

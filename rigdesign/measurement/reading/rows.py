@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +46,9 @@ TIME = "time"
 """Column of when each row was read, from any start, with a unit of time; it needs no entry."""
 WHOLE = re.compile(r"[0-9]{1,9}")
 """A repeat as the table may have it."""
+GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
+"""A number with three decimals, or one in thousands."""
+THREE_DECIMALS = re.compile(r"[.,][0-9]{3}$")
 SHOWN = 5
 """Columns that are named of those not described."""
 
@@ -166,6 +170,7 @@ class Rows:
             )
             for name, rows in self._impossible.items() if name in channels
         ]  # fmt: skip
+        found += self._thousands()
         if unused:
             names = ", ".join(unused[:SHOWN]) + (f" and {len(unused) - SHOWN} more" if unused[SHOWN:] else "")
             text = f"{self.table.file}: no channel is described of column {names}; add [channels.{unused[0]}] to use it"
@@ -174,6 +179,27 @@ class Rows:
             text = f"{self.table.file} {self.table.cut}; export it again"
             found.append(DataFinding(id="cut_file", weight="dropped", text=text))
         return found
+
+    def _thousands(self) -> Iterator[DataFinding]:
+        """Numbers such as 2.871 that fit their column, where no other has three decimals, as 2871 only."""
+        decimal = self._document.data.decimal
+        for name, values in self._columns.items():
+            cells = [cell.strip() for cell in self.table.column(name)]
+            grouped = {row for row, cell in enumerate(cells) if GROUPED.fullmatch(cell)}
+            plain = [row for row in np.flatnonzero(np.isfinite(values)) if row not in grouped]
+            if not grouped or any(THREE_DECIMALS.search(cells[row]) for row in plain):
+                continue
+            shown = np.abs(numbers(self.table, name, decimal)[0])
+            middle = float(np.median(shown[plain])) if plain else 0.0
+            for row in sorted(grouped) if middle > 0.0 else ():
+                if abs(math.log(1e3 * shown[row] / middle)) > 0.5 * abs(math.log(shown[row] / middle)):
+                    continue
+                at = f"{self.table.file} line {self.table.lines[row]}, {name} = {written(cells[row])}"
+                yield DataFinding(
+                    id="thousands", weight="suspect", channels=(name,), points=(self.points[row],),
+                    text=f"{at}: the rest of its column is about {middle:.4g}, {1e3 * shown[row]:.6g} would fit it, a "
+                    f'factor of 1000; look whether its sign parts thousands (data.decimal = "{decimal}")',
+                )  # fmt: skip
 
     def _read_keys(self) -> tuple[tuple[str, ...], tuple[int, ...], list[Fault]]:
         file = self.table.file
@@ -184,7 +210,11 @@ class Rows:
             )
             return (), (), [missing]
         cells = tuple(cell.strip() or STATIC_TESTS for cell in self.table.column("point"))
-        repeats = [1] * len(cells)
+        met: Counter[str] = Counter()
+        repeats = []
+        for cell in cells:  # without a column of repeats the rows of a point are counted
+            met[cell] += 1
+            repeats.append(met[cell])
         if "repeat" in self.table.names:
             for row, cell in enumerate(self.table.column("repeat")):
                 text = cell.strip()

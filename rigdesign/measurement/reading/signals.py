@@ -1,27 +1,56 @@
-"""Raw time data on disk: TDMS, HDF5, MDF4 and CSV as signals over time, each with its unit."""
+"""Raw time data on disk: TDMS, HDF5, MDF4 and CSV as signals over one time, each with its unit."""
 
 import logging
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base import units
 from rigdesign.base.errors import Fault, MeasurementError
+from rigdesign.case.faults import written
+from rigdesign.measurement.quantities import accepted_unit, same_worth, unit_problem
 from rigdesign.measurement.reading.document import DataSection
 from rigdesign.measurement.reading.files import refused, set_file
-from rigdesign.measurement.reading.hdf5_samples import AGAIN, RefusedError, read_datasets
-from rigdesign.measurement.reading.table import MOST_FAULTS, numbers, read_table
+from rigdesign.measurement.reading.hdf5_samples import (
+    AGAIN,
+    TIME_NAMES,
+    RefusedError,
+    is_meant,
+    read_datasets,
+)
+from rigdesign.measurement.reading.table import Table, numbers, read_table
 
 Array = NDArray[np.float64]
-TIME_NAMES = ("time", "Time", "t", "Zeit")
-"""Signals that hold the time [s] of the others."""
+AXIS = "recording_time"
+"""Kind of quantity of a time axis."""
 FASTEST, SLOWEST = 1e-9, 1e5
 """Least and most time from sample to sample of a logger [s]."""
 LONGEST = 1e11
 """Largest time of a sample [s]; seconds since 1904 are below."""
+SPACING_OFF = 1e-3
+"""Relative difference between the length of a time signal and that by the sampling rate that is a contradiction."""
+PLACES_IN_TIME = re.compile(
+    r"delay|pre_?trigger|trigger_?(time|offset|position)|start_?(time|offset|stamp)|time_?(offset|shift)|^t_?0$",
+    re.I,
+)
+"""Attributes that say when a signal began."""
+STAMP = re.compile(
+    r"(?:(\d{4})-(\d\d)-(\d\d)[T ]|(\d\d?)\.(\d\d?)\.(\d{4}) )?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,6})\d*)?Z?"
+)
+"""Date, as 2026-03-04 or 4.3.2026 and optional, and time of day."""
+SPELLED = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "µsec": "us", "usec": "us"}
+"""Spellings of units of time in recordings."""
+STEP_UNITS = ("wf_xunit_string", "dt_unit", "dt_units")
+"""Attributes with the unit of wf_increment and wf_start_offset, or of dt."""
+STARTS = ("wf_start_time", "start_time", "t0")
+"""Attributes with the time of the first sample: a time stamp, or seconds that all signals of the file count alike."""
+NO_START = np.datetime64("1904-01-01", "us")
+"""What LabVIEW writes where it has no start."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +65,60 @@ class Signal:
     unit: str = ""
 
 
-Signals = Mapping[str, Signal]
+class Signals(dict[str, Signal]):
+    """Signals of a file by the names they were asked for; ``names``: of all that the file holds."""
+
+    names: tuple[str, ...] = ()
 
 
-def read_signals(folder: Path, name: str, data: DataSection) -> Signals:
-    """All signals of a file by name; where names repeat in groups, by ``group/name``, too.
+@dataclass(frozen=True, kw_only=True)
+class _Column:
+    """A signal as its file has it.
+
+    name : ``group/signal``; attributes : that its file says of it; time : (n,) signal of times of its group, numbers in
+    ``time_unit`` or time stamps (datetime64)
+    """
+
+    name: str
+    samples: NDArray[Any]
+    unit: str
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    time: NDArray[Any] | None = None
+    time_unit: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Axis:
+    """Time of a signal [s] from its ``start``, maybe unknown; ``marks``: attributes that place it otherwise."""
+
+    time: Array
+    start: np.datetime64 | None = None
+    marks: Mapping[str, Any] = field(default_factory=dict)
+
+
+_Read = tuple[tuple[str, ...], list[_Column]]
+"""Names of all signals of a file, and those that go by a wanted name."""
+
+
+def read_signals(
+    folder: Path, name: str, data: DataSection, wanted: Iterable[str], timed: Collection[str] | None = None
+) -> Signals:
+    """Those of the wanted signals that a file holds, in one time; nothing else of the file is read.
+
+    Parameters
+    ----------
+    wanted : ``group/signal``, or the signal alone where one group has it
+    timed : those of them that are set against each other in time; all when left out
 
     Raises
     ------
     MeasurementError
         No file of the set (`rigdesign.measurement.reading.files.set_file`), an unknown kind of file, content that
-        cannot be read, fewer samples than its header states, more than ``data.size_limit``, no time.
+        cannot be read, fewer samples than its header states, more than ``data.size_limit``. Of a wanted signal: two of
+        its name, no numbers, no time, time in no unit of time or in another one than ``data.time_unit``, a start
+        relative to the others that is not known.
     """
-    readers: dict[str, Callable[[Path, str, DataSection], Signals]] = {
+    readers: dict[str, Callable[[Path, str, DataSection, Collection[str]], _Read]] = {
         ".tdms": _tdms, ".h5": _hdf5, ".hdf5": _hdf5, ".mf4": _mdf, ".csv": _csv,
     }  # fmt: skip
     kind = Path(name.replace("\0", "")).suffix.lower()
@@ -56,32 +126,181 @@ def read_signals(folder: Path, name: str, data: DataSection) -> Signals:
     if reader is None:
         raise refused(name, f"unknown kind of file {kind!r}", f"write one of {', '.join(readers)}")
     path = set_file(folder, name, data.size_limit)
+    wanted = tuple(dict.fromkeys(wanted))
     try:
         with np.errstate(all="ignore"):
-            signals = reader(path, name, data)
+            names, columns = reader(path, name, data, wanted)
     except MeasurementError:
         raise
     except Exception as error:  # readers of binary files raise whatever a damaged byte leads them to
         said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         raise refused(name, f"cannot be read or was cut off ({said})", AGAIN) from None
-    if not signals:
+    if not names:
         raise refused(name, "holds no signal", "export it again with its channels")
-    for key, signal in signals.items():
-        if len(signal.time) < 2 or not np.all(np.diff(signal.time) > 0.0):
-            raise refused(
-                f"{name}, {key}", "its time does not increase", "export it with a sampling rate or time"
-            )
-        if not np.abs(signal.time[[0, -1]]).max() <= LONGEST:
-            raise refused(f"{name}, {key}", f"its time reaches {signal.time[-1]:.3g} s", "correct its time")
+    faults: list[Fault] = []
+    chosen: dict[str, tuple[_Column, _Axis]] = {}
+    for one in wanted:
+        try:
+            column = _meant(name, one, columns)
+            if column is not None:
+                chosen[one] = column, _axis(f"{name}, {one}", column, data)
+        except MeasurementError as error:
+            faults += error.faults
+    related = {one: axis for one, (_, axis) in chosen.items() if timed is None or one in timed}
+    faults += _apart(name, related)
+    if faults:
+        raise MeasurementError(faults)
+    signals = Signals()
+    signals.names = names
+    first = min((axis.start for axis in related.values() if axis.start is not None), default=None)
+    for one, (column, axis) in chosen.items():
+        time = axis.time
+        if first is not None and one in related:
+            time = time + (axis.start - first) / np.timedelta64(1, "s")
+        signals[one] = Signal(time, np.asarray(column.samples, dtype=float), column.unit)
     return signals
 
 
-def _tdms(path: Path, name: str, data: DataSection) -> Signals:
+def _meant(file: str, wanted: str, columns: Iterable[_Column]) -> _Column | None:
+    """The column that goes by a name; None where there is none."""
+    meant = [column for column in columns if is_meant(column.name, wanted)]
+    exact = [column for column in meant if column.name == wanted]
+    meant = exact or meant
+    if len(meant) > 1:
+        names = " and ".join(column.name for column in meant)
+        remedy = f'write the one that is meant in full, e.g. "{meant[-1].name}"'
+        remedy = "give groups or signals other names" if exact else remedy
+        raise refused(f"{file}, {wanted}", f"{len(meant)} signals have this name: {names}", remedy)
+    return meant[0] if meant else None
+
+
+def _axis(at: str, column: _Column, data: DataSection) -> _Axis:
+    """Time of a signal, by its group's signal of times or by its sampling rate."""
+    count = len(column.samples)
+    if column.samples.dtype.kind not in "fiub":
+        raise refused(at, f"holds {column.samples.dtype}, no numbers", "export it as numbers")
+    if count < 2:
+        raise refused(at, f"holds {count} samples", "name a signal over time")
+    known = dict(column.attributes)
+    marks = {key: value for key, value in known.items() if PLACES_IN_TIME.search(key)}
+    step, time, start = _step(at, known, data), column.time, None
+    if time is not None and len(time) != count:
+        time = None
+    if time is not None and time.dtype.kind == "M":
+        start, time = time[0], (time - time[0]) / np.timedelta64(1, "s")
+    elif time is not None:
+        time = np.asarray(time, dtype=float) * _unit_of_time(at, column.time_unit, data)
+    if step is not None and time is not None and abs((count - 1) * step / np.ptp(time) - 1.0) > SPACING_OFF:
+        raise refused(
+            at, f"lasts {(count - 1) * step:g} s by its sampling rate, {np.ptp(time):g} s by its signal of times",
+            "correct the wrong one or its unit",
+        )  # fmt: skip
+    if time is None and step is not None:
+        unit = next((str(known[key]) for key in STEP_UNITS if key in known), "")
+        offset = float(marks.pop("wf_start_offset", 0.0)) * _unit_of_time(at, unit, data)
+        time = offset + step * np.arange(count)
+        for key in STARTS:
+            if (stamp := _stamp(marks.get(key))) is not None:
+                del marks[key]
+                start = None if stamp == NO_START else stamp
+    if time is None:
+        raise refused(
+            at, "neither a sampling rate nor a signal 'time' of the same length",
+            "export it with wf_increment (TDMS), the attribute sample_rate (HDF5) or a signal 'time'",
+        )  # fmt: skip
+    if not np.all(np.diff(time) > 0.0):
+        raise refused(at, "its time does not increase", "export it with a sampling rate or time")
+    if not np.abs(time[[0, -1]]).max() <= LONGEST:
+        raise refused(at, f"its time reaches {time[-1]:.3g} s", "correct its time, or state data.time_unit")
+    return _Axis(time=np.asarray(time, dtype=float), start=start, marks=marks)
+
+
+def _step(at: str, known: Mapping[str, Any], data: DataSection) -> float | None:
+    """Time from sample to sample [s] by the attributes of a signal; None where they do not say."""
+    for key in ("wf_increment", "dt"):
+        if key in known and (step := _number(at, key, known[key])) > 0.0:
+            unit = next((str(known[key]) for key in STEP_UNITS if key in known), "")
+            step *= _unit_of_time(at, unit, data)
+            if not FASTEST <= step <= SLOWEST:
+                remedy = f"write {FASTEST:g} to {SLOWEST:g} s"
+                raise refused(at, f"{step:g} s from sample to sample", remedy)
+            return step
+    if "sample_rate" not in known:
+        return None
+    rate, unit = _number(at, "sample_rate", known["sample_rate"]), str(known.get("sample_rate_unit", "Hz"))
+    spelled = accepted_unit(unit, "frequency")
+    if spelled is None:
+        raise refused(at, f'sample_rate_unit = "{unit}" {unit_problem(unit, "frequency")}', "write Hz or kHz")
+    rate *= units.worth("frequency", spelled)[0]
+    if not 1.0 / SLOWEST <= rate <= 1.0 / FASTEST:
+        limits = f"{1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz"
+        raise refused(at, f"sample_rate = {rate:g}, outside {limits}", "correct the attribute")
+    return 1.0 / rate
+
+
+def _number(at: str, key: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise refused(at, f"{key} = {written(str(value))} is no number", "correct the attribute") from None
+
+
+def _unit_of_time(at: str, said: str, data: DataSection) -> float:
+    """Worth [s] of the unit of a time axis: of the file, else as declared, else seconds."""
+    plain = said.strip().strip("[]()")
+    unit = accepted_unit(SPELLED.get(plain.lower(), plain) or data.time_unit or "s", AXIS)
+    if unit is None and (unit := data.time_unit) is None:
+        problem = f"unit {written(said)} of its time {unit_problem(plain, AXIS)}"
+        raise refused(at, problem, "correct it, or state data.time_unit if the file is right")
+    if plain and data.time_unit is not None and not same_worth(unit, data.time_unit, AXIS):
+        problem = f'its time is in "{plain}", data.time_unit says "{data.time_unit}"'
+        raise refused(at, problem, "correct what is wrong")
+    return units.worth(AXIS, unit)[0]
+
+
+def _apart(file: str, axes: Mapping[str, _Axis]) -> Iterator[Fault]:
+    """Signals that cannot be placed against each other in time."""
+    with_start = [name for name, axis in axes.items() if axis.start is not None]
+    without = [name for name, axis in axes.items() if axis.start is None]
+    if with_start and without:
+        yield Fault(
+            f"{file}, {without[0]}", "", f"has no start, {with_start[0]} has one",
+            "export both with their start (wf_start_time), or both without where they began together",
+        )  # fmt: skip
+    for key in sorted({key for axis in axes.values() for key in axis.marks}):
+        said = {name: axis.marks.get(key) for name, axis in axes.items()}
+        if len(set(said.values())) > 1:
+            shown = ", ".join(f"{value} at {name}" for name, value in said.items())
+            yield Fault(
+                f"{file}, {key}", shown, "signals that began apart, by an attribute that is not read",
+                "export them with a signal 'time' or wf_start_time each",
+            )  # fmt: skip
+
+
+def _stamp(said: Any) -> "np.datetime64 | None":
+    """A time stamp as such, as a text, without a date on some day, or as seconds since any day; None for all else."""
+    if isinstance(said, np.datetime64):
+        return np.datetime64(str(said), "us")
+    if isinstance(said, int | float) and abs(said) <= LONGEST:
+        return np.datetime64(round(1e6 * said), "us")
+    match = STAMP.fullmatch(said.strip()) if isinstance(said, str) else None
+    if match is None:
+        return None
+    year, month, day, day_de, month_de, year_de, *clock, fraction = match.groups()
+    date = f"{year or year_de or 2000}-{month or month_de or 1:0>2}-{day or day_de or 1:0>2}"
+    try:
+        return np.datetime64(f"{date}T{clock[0]:0>2}:{':'.join(clock[1:])}.{fraction or 0:0<6}", "us")
+    except ValueError:
+        return None
+
+
+def _tdms(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
     from nptdms import TdmsFile
     from nptdms.log import log_manager
 
     log_manager.set_level(logging.ERROR)
-    found: dict[str, Signal] = {}
+    found: list[_Column] = []
+    names: list[str] = []
     with path.open("rb") as stream, TdmsFile.open(stream) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
         stated = sum(len(channel) for channel in channels)
@@ -97,57 +316,46 @@ def _tdms(path: Path, name: str, data: DataSection) -> Signals:
                 AGAIN,
             )
         for group in file.groups():
-            times = {c.name: np.asarray(c[:], dtype=float) for c in group.channels() if c.name in TIME_NAMES}
-            time = next(iter(times.values()), None)
+            time = next((one for one in group.channels() if one.name in TIME_NAMES), None)
             for channel in group.channels():
-                if channel.name in TIME_NAMES or channel.dtype.kind not in "fiu":
+                names.append(f"{group.name}/{channel.name}")
+                if channel is time or not any(is_meant(names[-1], one) for one in wanted):
                     continue
-                values = np.asarray(channel[:], dtype=float)
-                step = channel.properties.get("wf_increment")
-                start = float(channel.properties.get("wf_start_offset", 0.0))
-                own = _time(f"{name}, {channel.name}", len(values), step, start, time)
-                signal = Signal(own, values, str(channel.properties.get("unit_string", "")))
-                found[f"{group.name}/{channel.name}"] = signal
-                found.setdefault(channel.name, signal)
-    return found
+                attributes = {**group.properties, **channel.properties}
+                found.append(
+                    _Column(
+                        name=names[-1], samples=np.asarray(channel[:]), attributes=attributes,
+                        unit=str(channel.properties.get("unit_string", "")),
+                        time=None if time is None else np.asarray(time[:]),
+                        time_unit="" if time is None else str(time.properties.get("unit_string", "")),
+                    )
+                )  # fmt: skip
+    return tuple(names), found
 
 
-def _hdf5(path: Path, name: str, data: DataSection) -> Signals:
+def _hdf5(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
     try:
-        datasets = read_datasets(path, data.size_limit)
+        names, datasets = read_datasets(path, data.size_limit, wanted)
     except RefusedError as error:
         raise refused(
             f"{name}, {error.place}" if error.place else name, error.problem, error.remedy
         ) from None
-    arrays = {one.name: np.frombuffer(one.samples, dtype=float) for one in datasets}
-    found: dict[str, Signal] = {}
-    for one in datasets:
-        group, _, short = one.name.rpartition("/")
-        if short in TIME_NAMES:
-            continue
-        times = (arrays.get(f"{group}/{time}" if group else time) for time in TIME_NAMES)
-        time = next((values for values in times if values is not None), None)
-        step = one.step
-        if step is None and one.rate is not None:
-            step = _step(f"{name}, {one.name}", one.rate)
-        own = _time(f"{name}, {one.name}", len(arrays[one.name]), step, 0.0, time)
-        found[one.name] = Signal(own, arrays[one.name], one.unit)
-        found.setdefault(short, found[one.name])
-    return found
-
-
-def _step(at: str, rate: float) -> float:
-    """Time from sample to sample [s] of a sampling rate [Hz]."""
-    if not 1.0 / SLOWEST <= rate <= 1.0 / FASTEST:
-        raise refused(
-            at,
-            f"sample_rate = {rate:g}, outside {1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz",
-            "correct the attribute",
+    arrays = {one.name: np.frombuffer(one.samples, dtype=one.dtype) for one in datasets}
+    said = {one.name: str(one.attributes.get("units", one.attributes.get("unit", ""))) for one in datasets}
+    return names, [
+        _Column(
+            name=one.name, samples=arrays[one.name], unit=said[one.name], attributes=one.attributes,
+            time=arrays.get(one.time), time_unit=said.get(one.time, ""),
         )
-    return 1.0 / rate
+        for one in datasets if one.name.rpartition("/")[2] not in TIME_NAMES
+    ]  # fmt: skip
 
 
-def _mdf(path: Path, name: str, data: DataSection) -> Signals:
+MASTERS = (2, 3)
+"""Types of channels of MDF4 that the others of their group are recorded over; of those over time the second is 1."""
+
+
+def _mdf(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
     try:
         from asammdf import MDF
     except ImportError:
@@ -155,49 +363,65 @@ def _mdf(path: Path, name: str, data: DataSection) -> Signals:
             name, "MDF4 needs asammdf, which is not installed", "pip install rigdesign[mdf]"
         ) from None
 
-    found: dict[str, Signal] = {}
+    found: list[_Column] = []
+    names: list[str] = []
     with MDF(path) as file:
-        for signal in file.iter_channels():
-            if signal.samples.dtype.kind in "fiu" and signal.samples.ndim == 1:
-                time = np.asarray(signal.timestamps, dtype=float)
-                found.setdefault(
-                    signal.name, Signal(time, np.asarray(signal.samples, dtype=float), signal.unit or "")
-                )
-    return found
+        for group, entry in enumerate(file.groups):
+            own = entry.channel_group.acq_name or entry.channel_group.comment or f"group {group}"
+            master = next((one for one in entry.channels if one.channel_type in MASTERS), None)
+            for index, channel in enumerate(entry.channels):
+                if channel is master:
+                    continue
+                names.append(f"{own}/{channel.name}")
+                if not any(is_meant(names[-1], one) for one in wanted):
+                    continue
+                if master is None or master.sync_type != 1:
+                    raise refused(
+                        f"{name}, {names[-1]}", "is not recorded over time", "export it with its time"
+                    )
+                signal = file.get(group=group, index=index)
+                time = np.asarray(signal.timestamps)  # of all groups from the start of the measurement
+                found.append(
+                    _Column(
+                        name=names[-1], samples=np.asarray(signal.samples), unit=signal.unit or "", time=time,
+                        time_unit=master.unit or "",
+                    )
+                )  # fmt: skip
+    return tuple(names), found
 
 
-def _csv(path: Path, name: str, data: DataSection) -> Signals:
+def _csv(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
     table = read_table(path.parent, path.name, data, with_units=True)
     if table.cut:
         raise refused(f"{name} {table.cut}", "the recording was cut off", AGAIN)
     key = next((time for time in TIME_NAMES if time in table.places), None)
     if key is None:
-        raise refused(name, "no column 'time'", "add the time of each row in seconds")
-    columns: dict[str, Array] = {}
+        raise refused(name, "no column 'time'", "add the time of each row, with its unit")
+    time = _times(table, key, data)
+    names = tuple(column for column in table.names if column != key)
     faults: list[Fault] = []
-    for column in table.names:
-        values, wrong = numbers(table, column, data.decimal)
-        columns[column] = np.array(values)
-        faults += wrong
-    if faults:
-        raise MeasurementError(faults[:MOST_FAULTS])
-    return {
-        column: Signal(columns[key], values, table.unit(column).strip("[]()"))
-        for column, values in columns.items()
-        if column != key
-    }
-
-
-def _time(at: str, count: int, step: Any, start: float, time: Array | None) -> Array:
-    if step is not None and float(step) > 0.0:
-        if not FASTEST <= float(step) <= SLOWEST:
-            raise refused(
-                at, f"{float(step):g} s from sample to sample", f"write {FASTEST:g} to {SLOWEST:g} s"
+    found: list[_Column] = []
+    for column in names:
+        if any(is_meant(column, one) for one in wanted):
+            values, wrong = numbers(table, column, data.decimal)
+            faults += wrong
+            unit = table.unit(column).strip("[]()")
+            found.append(
+                _Column(
+                    name=column, samples=np.array(values), unit=unit, time=time, time_unit=table.unit(key)
+                )
             )
-        return np.asarray(start + float(step) * np.arange(count), dtype=float)
-    if time is not None and len(time) == count:
-        return np.asarray(time, dtype=float)
-    raise refused(
-        at, "neither a sampling rate nor a signal 'time' of the same length",
-        "export it with wf_increment (TDMS), the attribute sample_rate (HDF5) or a signal 'time'",
-    )  # fmt: skip
+    if faults:
+        raise MeasurementError(faults)
+    return names, found
+
+
+def _times(table: Table, key: str, data: DataSection) -> NDArray[Any]:
+    """A column of times: numbers, or time stamps."""
+    stamps = [_stamp(cell) for cell in table.column(key)]
+    if all(stamp is not None for stamp in stamps):
+        return np.array(stamps)
+    values, faults = numbers(table, key, data.decimal)
+    if faults:
+        raise MeasurementError(faults)
+    return np.array(values)

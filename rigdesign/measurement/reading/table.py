@@ -20,6 +20,8 @@ MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
 """Cells that say that there is no reading."""
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 """What a cell with a number looks like: no other digits, no grouping, no infinity."""
+SEPARATOR = re.compile(r'"?sep=(.)"?[,;\s]*', re.I)
+"""First line of a file by which a spreadsheet says what parts the columns."""
 MOST_FAULTS = 20
 """Cells of one table that are complained of one by one."""
 
@@ -73,6 +75,7 @@ def read_table(folder: Path, name: str, data: DataSection, *, with_units: bool) 
     rows = _cells(text, name, data)
     if len(rows) < 2:
         raise refused(name, "holds no readings", "write names, units and at least one row")
+    _drop_empty_ends(rows)
     names = tuple(cell.strip() for cell in rows[0][1])
     faults = _names(name, names, data)
     units, body = ("",) * len(names), rows[1:]
@@ -94,12 +97,19 @@ def read_table(folder: Path, name: str, data: DataSection, *, with_units: bool) 
         cut = f"line {line}, {names[-1]} = {written(cells[-1])}: the file ends without a line end; the cell may be cut "
         cut += "and is left out"
         cells[-1] = ""
-    for line, cells in body:
-        if len(cells) != len(names):
-            faults.append(
-                Fault(f"{name} line {line}", "", f"has {len(cells)} cells, the names are {len(names)}",
-                      "correct the row; an empty cell is a missing reading")
-            )  # fmt: skip
+    wrong = [(line, len(cells)) for line, cells in body if len(cells) != len(names)]
+    if len(wrong) == len(body) > 1 and len({count for _, count in wrong}) == 1:
+        faults = [
+            Fault(f"{name} line {rows[0][0]}", written(data.delimiter.join(rows[0][1])),
+                  f"has {len(names)} cells, every row below {wrong[0][1]}",
+                  "the first line has to name the columns; remove what stands above them")
+        ]  # fmt: skip
+        wrong = []
+    for line, count in wrong:
+        faults.append(
+            Fault(f"{name} line {line}", "", f"has {count} cells, the names are {len(names)}",
+                  "correct the row; an empty cell is a missing reading")
+        )  # fmt: skip
     if not body and not faults:
         faults.append(Fault(name, "", "holds no complete row of readings", "write at least one row"))
     if faults:
@@ -164,7 +174,15 @@ def _text(path: Path, name: str, data: DataSection) -> str:
 
 
 def _cells(text: str, name: str, data: DataSection) -> list[tuple[int, list[str]]]:
-    """Rows that hold something, each with the line it begins in."""
+    """Rows that hold something and are no comment, each with the line it begins in."""
+    first, _, _ = text.partition("\n")
+    if match := SEPARATOR.fullmatch(first):
+        if match[1] != data.delimiter:
+            raise refused(
+                f"{name} line 1", f'says that "{match[1]}" parts the columns, data.delimiter is "{data.delimiter}"',
+                "correct the key",
+            )  # fmt: skip
+        text = text[len(first) :]
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=data.delimiter, strict=True)
     found: list[tuple[int, list[str]]] = []
     line = 1
@@ -175,7 +193,22 @@ def _cells(text: str, name: str, data: DataSection) -> list[tuple[int, list[str]
             line = rows.line_num + 1
     except csv.Error as error:
         raise refused(f"{name} line {line}", f"cannot be read: {error}", "correct it") from None
-    return found
+    return [(line, cells) for line, cells in found if not _is_comment(cells)]
+
+
+def _is_comment(cells: Sequence[str]) -> bool:
+    """Whether a row is a line of text behind a #."""
+    return cells[0].lstrip().startswith("#") and not any(cell.strip() for cell in cells[1:])
+
+
+def _drop_empty_ends(rows: Sequence[tuple[int, list[str]]]) -> None:
+    """Take away what a delimiter at the end of rows leaves: cells without a name that hold nothing in any row."""
+    named = rows[0][1]
+    while len(named) > 1 and not named[-1].strip():
+        named.pop()
+    for _, cells in rows[1:]:
+        while len(cells) > len(named) and not cells[-1].strip():
+            cells.pop()
 
 
 def _names(file: str, names: Sequence[str], data: DataSection) -> list[Fault]:
@@ -190,7 +223,7 @@ def _names(file: str, names: Sequence[str], data: DataSection) -> list[Fault]:
         if name and count > 1
     ]
     if len(names) == 1:
-        other = ";" if data.delimiter == "," else ","
+        other = next((one for one in ";,\t" if one in names[0]), ";" if data.delimiter == "," else ",")
         faults.append(
             Fault(f"{file} line 1", written(names[0]), "only one column was found",
                   f'write data.delimiter = "{other}" if that parts the columns')

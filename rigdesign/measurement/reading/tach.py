@@ -77,10 +77,11 @@ def turn_angle(tach: Tach, signals: Signals, start_turn: float | None) -> TurnAn
             f"{tach.signal}: {lost} pulses lost and {surplus} too many of {len(edges)}, above {MOST_LOST:.0%}; "
             "look at sensor, gap and trigger level"
         )
-    angle = 2.0 * math.pi * counts / tach.pulses_per_turn
-    found = TurnAngle(kept, angle, start_turn is not None, lost, surplus)
-    if tach.pulses_per_turn > 1:
-        found = _indexed(tach, found, signals)
+    marks = None if tach.index is None else rising_edges(_named(signals, tach.index))
+    pulses = _pulses_per_turn(tach, counts, kept, marks)
+    found = TurnAngle(kept, 2.0 * math.pi * counts / pulses, start_turn is not None, lost, surplus)
+    if pulses > 1:
+        found = _indexed(tach, found, marks)
     whole = 0.0 if start_turn is None else 2.0 * math.pi * start_turn
     return TurnAngle(found.time, found.angle + tach.zero + whole, found.absolute, lost, surplus)
 
@@ -140,14 +141,32 @@ def _running_median(values: Array) -> Array:
     return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, NEIGHBOURS), axis=1))
 
 
-def _indexed(tach: Tach, found: TurnAngle, signals: Signals) -> TurnAngle:
+def _pulses_per_turn(tach: Tach, counts: Array, kept: Array, marks: Array | None) -> int:
+    """As stated, which the pulses from one index pulse to the next have to confirm, or as these count them."""
+    passed = np.empty(0) if marks is None else np.interp(marks, kept, counts, np.nan, np.nan)
+    steps = np.diff(passed[np.isfinite(passed)])
+    counted = round(float(np.median(steps))) if steps.size else None
+    stated = tach.pulses_per_turn
+    if stated is not None and counted not in (None, stated):
+        raise TachError(
+            f"{tach.index} comes every {counted} pulses of {tach.signal}, data.tach.pulses_per_turn says {stated}; "
+            "correct the key, or look at both sensors"
+        )
+    if stated is None and marks is not None and counted is None:
+        raise TachError(
+            f"{tach.index}: fewer than two index pulses within the tach pulses; state pulses_per_turn"
+        )
+    return stated or counted or 1
+
+
+def _indexed(tach: Tach, found: TurnAngle, marks: Array | None) -> TurnAngle:
     """Zero of the angle at the index pulse."""
-    if tach.index is None:
+    if marks is None:
         raise TachError(
             f"{tach.pulses_per_turn} pulses a turn say nothing of where zero is; name data.tach.index, a signal with "
             "one pulse a turn"
         )
-    marks = found.at(rising_edges(_named(signals, tach.index)))
+    marks = found.at(marks)
     marks = marks[np.isfinite(marks)]
     if not marks.size:
         raise TachError(f"{tach.index}: no index pulse within the tach pulses; look at its cable")
@@ -182,5 +201,5 @@ def _encoder(tach: Tach, signal: Signal, start_turn: float | None) -> TurnAngle:
 
 def _named(signals: Signals, name: str) -> Signal:
     if name not in signals:
-        raise TachError(f"no signal {name} in the recording; it has {', '.join(signals)}")
+        raise TachError(f"no signal {name} in the recording; it has {', '.join(signals.names)}")
     return signals[name]

@@ -208,13 +208,32 @@ def test_a_bad_signal_is_left_out_and_said(
     assert words[identity] in str(caught.value)
 
 
-def test_a_tach_of_another_speed_is_suspected(tmp_path: Path, case) -> None:
+@pytest.mark.parametrize(
+    ("speed", "weight", "words"),
+    [
+        ("1500", "", ""),
+        ("1515", "suspect", "the table 1515 rpm"),
+        ("3000", "dropped", "nothing that depends on the angle is read"),
+        ("90000", "dropped", 'the unit of its time, which would fit as "min"'),
+    ],
+)
+def test_a_tach_of_another_speed_is_told_and_gives_no_orders(
+    tmp_path: Path, case, speed: str, weight: str, words: str
+) -> None:
+    """1 % is more than the table may be off (1 rpm), and less than leaves no doubt that one of them is wrong."""
     folder = labview(tmp_path)
-    replaced(folder, "data.csv", "P01,1,1500", "P01,1,3000")
+    replaced(folder, "data.csv", ",n,M", ",n,M,P")
+    replaced(folder, "data.csv", ",rpm,N m", ",rpm,N m,W")
+    replaced(folder, "data.csv", "P01,1,1500,100", f"P01,1,{speed},100,470")
+    replaced(folder, "measurement.toml", "[channels.M_wheel]",
+             '[channels.P]\nquantity = "motor_power"\nunit = "W"\nuncertainty = "5 W"\n[channels.M_wheel]')  # fmt: skip
     write_tdms(folder / "P01_1.tdms")
-    assert re.search(
-        r"tach gives 150\d\.?\d* rpm, the table 3000 rpm", findings_of(folder, case)["tach_speed"]
-    )
+    measurement = load_measurement(folder, case)
+    said = [finding for finding in measurement.findings if finding.id == "tach_speed"]
+    assert [finding.weight for finding in said] == ([weight] if weight else [])
+    assert not said or words in said[0].text
+    assert ("M_wheel" in measurement.channels) == (weight != "dropped")
+    assert not any(finding.id == "missing_channel" for finding in measurement.findings)
 
 
 def test_a_mesh_line_beside_its_order_is_suspected(tmp_path: Path, case) -> None:
