@@ -202,13 +202,18 @@ def _is_comment(cells: Sequence[str]) -> bool:
 
 
 def _drop_empty_ends(rows: Sequence[tuple[int, list[str]]]) -> None:
-    """Take away what a delimiter at the end of rows leaves: cells without a name that hold nothing in any row."""
-    named = rows[0][1]
-    while len(named) > 1 and not named[-1].strip():
-        named.pop()
-    for _, cells in rows[1:]:
-        while len(cells) > len(named) and not cells[-1].strip():
-            cells.pop()
+    """Take away what a delimiter at the end of all rows leaves: cells without a name that hold nothing."""
+    count = max((i for i, cell in enumerate(rows[0][1], start=1) if cell.strip()), default=0)
+    readings = [cells for _, cells in rows[2:]] or [rows[1][1]]
+    widths = {len(cells) for cells in readings[:-1]} | ({len(rows[0][1])} if len(readings) == 1 else set())
+    if (
+        len(widths) > 1
+        or max(widths) <= count
+        or any(cell.strip() for _, row in rows for cell in row[count:])
+    ):
+        return
+    for _, cells in rows:
+        del cells[count:]
 
 
 def _names(file: str, names: Sequence[str], data: DataSection) -> list[Fault]:

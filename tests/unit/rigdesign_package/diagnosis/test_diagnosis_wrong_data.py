@@ -1,11 +1,15 @@
 """Data that are wrong as they stand: exchanged channels and points, readings in another unit or with another sign."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from rigdesign.diagnosis import run
 from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.prediction.model import Channel, Feature
+from tests.builders.diagnosis import Rig, result_of, the_case, write_set
 
 CHANNELS = {
     "T_front": Channel(name="T_front", quantity="temperature", place="test.outer_cold_front"),
@@ -117,3 +121,35 @@ def test_exchanged_channels_are_recognised_where_a_reading_of_one_was_rejected()
     found = data_error(covariance, features, CHANNELS, values, expected, met_before=True)
     least = min(found, key=lambda one: float(one.residual @ one.residual))
     assert least.name == "swapped_channels:T_front,T_rear"
+
+
+@pytest.mark.parametrize("with_baseline", [False, True])
+def test_what_a_comparison_finds_is_told_by_the_diagnosis(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, with_baseline: bool
+) -> None:
+    """Exchanged thermocouples, and one number left out because its repeats are far apart."""
+
+    def by_formulas(case, measurement, effects, say=lambda message: None):
+        result = result_of(measurement.folder)
+        return result.data, result.problem.residuals
+
+    def exchange(point, values):
+        wild = 40.0 * next(wilder) if point == "P02" else 0.0
+        return {
+            **values,
+            "T_gear": values["T_bearing"],
+            "T_bearing": values["T_gear"],
+            "P": values["P"] + 99.0 * wild,
+        }
+
+    wilder = iter((0.0, 1.0, 0.0))
+    write_set(tmp_path / "healthy", Rig(seed=7))
+    folder = write_set(
+        tmp_path / "set", Rig(), baseline="../healthy" if with_baseline else "", spoil=exchange
+    )
+    monkeypatch.setattr(run, "read_residuals", by_formulas)
+    found = run.diagnose_measurement(the_case(), folder, propose=False).data.findings
+    [swap] = [one for one in found if one.id == "swapped_channels"]
+    assert set(swap.channels) == {"T_gear", "T_bearing"} and swap.weight == "suspect"
+    [left_out] = [one for one in found if one.id == "repeat_outlier"]
+    assert left_out.points == ("P02",)

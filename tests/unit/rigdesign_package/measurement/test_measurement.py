@@ -194,6 +194,77 @@ def test_a_spoilt_file_is_refused_with_a_remedy(folder: Path, case, name, spoil,
     assert words in faults(folder, case)
 
 
+LEFT_BY_SPREADSHEETS = {
+    "sep": lambda text: "sep=,\n" + text,
+    "sep of a whole row": lambda text: '"sep=,",,,,\r\n' + text,
+    "delimiter at the end": lambda text: text.replace("\n", ",\n"),
+    "empty columns at the end": lambda text: text.replace("\n", ",,,\n"),
+    "delimiter at the end of readings": lambda text: re.sub(r"^(P\d.*)$", r"\1,", text, flags=re.M),
+    "comment": lambda text: "# exported 4.3.2026\n" + text.replace("P03,1", "# warmer\nP03,1"),
+    "comment of a whole row": lambda text: "# exported,,,,,\n" + text,
+}
+
+
+@pytest.mark.parametrize("change", LEFT_BY_SPREADSHEETS.values(), ids=LEFT_BY_SPREADSHEETS)
+def test_what_a_spreadsheet_leaves_around_a_table_is_no_reading(folder: Path, case, change) -> None:
+    expected = loaded(folder, case)[1]
+    for name in ("data.csv", "orders.csv"):
+        path = folder / name
+        path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8", newline="")
+    data = loaded(folder, case)[1]
+    np.testing.assert_array_equal(data.values, expected.values)
+    assert not data.findings
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            lambda text: "sep=;\n" + text,
+            'data.csv line 1: says that ";" parts the columns, data.delimiter is ","',
+        ),
+        (lambda text: "exported 4.3.2026\n" + text, "has 1 cells, every row below 10"),
+        (lambda text: "Test bench,4\n" + text, "has 2 cells, every row below 10"),
+    ],
+)
+def test_what_stands_above_the_names_is_one_fault(folder: Path, case, change, words: str) -> None:
+    path = folder / "data.csv"
+    path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
+    said = faults(folder, case)
+    assert words in said and "faults" not in said
+
+
+def test_rows_of_a_point_are_counted_where_no_column_of_repeats_is(folder: Path, case) -> None:
+    expected = loaded(folder, case)[1]
+    text = (folder / "data.csv").read_text(encoding="utf-8").splitlines()
+    rows = [[cell for place, cell in enumerate(line.split(",")) if place != 1] for line in text]
+    (folder / "data.csv").write_text("\n".join(",".join(row) for row in rows) + "\n", encoding="utf-8")
+    np.testing.assert_array_equal(loaded(folder, case)[1].values, expected.values)
+
+
+@pytest.mark.parametrize(
+    ("cells", "suspected"),
+    [
+        (["470", "2.871", "466", "2864", "1802", "1796"], ["P01"]),
+        (["1.470", "2.871", "1.466", "2.864", "1802", "1796"], ["P01", "P01", "P02", "P02"]),
+        (["1.470", "2.871", "1.466", "2.864", "1.802", "1.796"], []),
+        (["470.123", "2.871", "466.456", "2864.789", "1802", "1796"], []),
+        (["470", "0.871", "466", "2864", "1802", "1796"], []),
+        (["2.5", "2.871", "2.4", "2.6", "1.8", "1.7"], []),
+    ],
+)
+def test_a_number_that_both_conventions_accept_is_held_against_its_column(
+    folder: Path, case, cells: list[str], suspected: list[str]
+) -> None:
+    rows = iter(cells * 2)
+    changed_column(folder, "P", lambda value: next(rows))
+    said = [one for one in load_measurement(folder, case).findings if one.id == "thousands"]
+    assert all(one.weight == "suspect" and "a factor of 1000" in one.text for one in said)
+    assert [point for one in said for point in one.points][: len(suspected)] == suspected
+    assert bool(said) == bool(suspected)
+    assert all(f'P = "{cells[0]}"' in one.text or f'P = "{cells[1]}"' in one.text for one in said[:1])
+
+
 @pytest.mark.parametrize(
     ("content", "named"),
     [(b"PK\x03\x04\x14\0 xl/workbook.xml", "an Excel workbook (.xlsx)"), (b"TDSm\x0e\0", "a TDMS recording")],
@@ -268,6 +339,12 @@ def test_an_outlier_among_three_repeats_is_left_out(tmp_path: Path, case) -> Non
     assert data.repeats[i] == 2 and data.values[i] == pytest.approx(
         truth("TC1", 4000.0, 90.0) + ZERO, abs=0.03
     )
+
+
+def test_scatter_is_that_of_the_readings_that_are_kept(folder: Path, case) -> None:
+    replaced(folder, "data.csv", f"{truth('TC1', 4000.0, 180.0) + 0.02:.4f}", "99.0")
+    _, data = loaded(folder, case)
+    assert "repeat_outlier" in identities(data, "dropped") and "scatter" not in identities(data)
 
 
 def test_nothing_left_is_an_error(tmp_path: Path, case) -> None:

@@ -141,6 +141,19 @@ def test_kilowatts_called_watts_are_suspected(folder: Path, tmp_path: Path, case
     assert suspect.channels == ("P",) and "would fit kW" in suspect.text
 
 
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_single_readings_a_thousand_times_off_are_suspected(
+    folder: Path, tmp_path: Path, case, factor: float
+) -> None:
+    healthy = write_set(tmp_path / "healthy")
+    readings = iter(range(12))
+    changed_column(folder, "P", lambda value: value * (factor if next(readings) in (2, 3) else 1.0))
+    comparison = held_against(folder, case, simulated=healthy)
+    (suspect,) = (finding for finding in comparison.findings if finding.id == "thousands")
+    assert suspect.points == ("P02",) and "a factor of 1000" in suspect.text
+    assert not any(finding.id == "unit" for finding in comparison.findings)
+
+
 def test_a_prediction_of_something_else_is_refused(folder: Path, case) -> None:
     measurement = load_measurement(folder, case)
     data = features(measurement)
