@@ -285,6 +285,14 @@ class GearUnit:
     def _shafts_by_id(self) -> Mapping[int, UnitShaft]:
         return {shaft.id: shaft for shaft in self.shafts}
 
+    @cached_property
+    def _turning(self) -> frozenset[int | None]:
+        return frozenset((*self._shafts_by_id, *self._gears_by_id))
+
+    def in_casing(self, bearing: UnitBearing) -> bool:
+        """Whether a bearing does not sit between two parts that turn."""
+        return not {bearing.place.inner, bearing.place.outer} <= self._turning
+
     def gear(self, number: int) -> UnitGear:
         """Gear of this id; KeyError for none."""
         return self._gears_by_id[number]

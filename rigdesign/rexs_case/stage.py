@@ -120,13 +120,15 @@ def chosen_stage(unit: GearUnit, number: int | None, source: str) -> GearStage:
 def gear_stages(unit: GearUnit) -> tuple[tuple[UnitMesh, ...], ...]:
     """Meshes of the unit, the two halves of a double-helical stage together."""
     stages: list[tuple[UnitMesh, ...]] = []
+    alone: dict[tuple[int | None, int | None], list[int]] = {}
     for mesh in unit.meshes:
-        half = next(
-            (index for index, one in enumerate(stages) if len(one) == 1 and _halves(unit, one[0], mesh)), None
-        )
+        waiting = alone.setdefault((unit.gear(mesh.pinion).shaft, unit.gear(mesh.wheel).shaft), [])
+        half = next((number for number in waiting if _halves(unit, stages[number][0], mesh)), None)
         if half is None:
+            waiting.append(len(stages))
             stages.append((mesh,))
         else:
+            waiting.remove(half)
             stages[half] = (*stages[half], mesh)
     return tuple(stages)
 
@@ -160,7 +162,7 @@ def left_out(unit: GearUnit, stage: GearStage) -> Iterator[str]:
             )
     for bearing in unit.bearings:
         joined = [part for part in (bearing.place.inner, bearing.place.outer) if part in seats]
-        if joined and not _in_casing(unit, bearing):
+        if joined and not unit.in_casing(bearing):
             yield (
                 f"bearing {bearing.id} {bearing.name}: sits between the shaft of the {seats[joined[0]]} and another "
                 "turning part; a case holds shafts in the housing only"
@@ -208,16 +210,10 @@ def _seated(unit: GearUnit, name: str, meshes: tuple[UnitMesh, ...], first: Unit
         return seated
     own = [item for item in unit.bearings if gear.shaft in (item.place.inner, item.place.outer)]
     own = sorted(
-        (item for item in own if _in_casing(unit, item)), key=lambda item: seated.bearing_at(item) or 0.0
+        (item for item in own if unit.in_casing(item)), key=lambda item: seated.bearing_at(item) or 0.0
     )
     ends = (own[0], own[-1]) if len(own) > 2 else tuple(own)
     return replace(seated, bearings=ends, more=tuple(own[1:-1]) if len(own) > 2 else ())
-
-
-def _in_casing(unit: GearUnit, bearing: UnitBearing) -> bool:
-    """Whether a bearing does not sit between two parts that turn."""
-    turning = {*(shaft.id for shaft in unit.shafts), *(gear.id for gear in unit.gears)}
-    return not {bearing.place.inner, bearing.place.outer} <= turning
 
 
 def turned(shaft: UnitShaft) -> UnitShaft:
