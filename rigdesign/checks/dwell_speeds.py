@@ -1,6 +1,11 @@
-"""Check of the speeds at which the rig dwells against resonances of shafts and joints, as against those of meshes."""
+"""Speeds at which the rig dwells against resonances of shafts and joints, by the rule of those of meshes.
+
+At a held speed those of meshes are a check of their own; a stage that is not held passes them, which is good practice
+to avoid and no limit missed.
+"""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
@@ -10,13 +15,15 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER, RPM
 
+OF_SHAFTS = ("shaft torque", "shaft order")
 DWELL = RuleFamily(
     key="dynamics.dwell_speed",
-    title="distance of dwell speeds from resonances of shafts and joints",
+    title="distance of dwell speeds from resonances of shafts and joints, of those not held also of meshes",
     procedure=(
         "Periodic response around every speed at which the rig dwells: a peak counts where half the peak-to-peak "
         f"torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the mean torque of the loop; so "
-        "does a shaft or coupling order that meets a lightly damped mode. The value is the distance of the nearest one "
+        "does a shaft or coupling order that meets a lightly damped mode, and at speeds that are not held a dangerous "
+        "resonance of a mesh. The value is the distance of the nearest one "
         "from a dwell, as a share of its speed, 0 where the dwell itself is above such a share; where there is none, "
         "the range searched."
     ),
@@ -34,33 +41,36 @@ DWELL = RuleFamily(
 
 
 def checks(solved: SolvedRig) -> list[Check]:
-    """The one check of the rig."""
+    """The one check of the rig: of the held speeds, or where these hold, of the others as advice."""
     rule = DWELL.rule(solved.case.limits.dynamics.resonance_distance_minimum)
-    return [DWELL.worst(solved, rule, _distances(solved))]
+    held = DWELL.worst(solved, rule, _distances(solved, held=True))
+    if held.verdict == "fail":
+        return [held]
+    return [DWELL.worst(solved, replace(rule, warn_only=True), _distances(solved))]
 
 
-def _distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
-    """Of every stage that dwells within the computed speeds."""
+def _distances(solved: SolvedRig, *, held: bool = False) -> Iterator[tuple[float, str]]:
+    """Of every stage that dwells within the computed speeds, or of the held ones alone."""
     rig = solved.rig
     if solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
+    held_stages = {stage.name for stage in rig.case.schedule.held()}
     dwells = sorted(dwell_stages(rig), key=lambda stage: stage.kind != "dwell")
     for stage in dwells:  # of stages at one speed the first is named
-        speed = rig.pinion_speed(stage.speed_end)
-        if speed not in solved.near_dwells:
+        speed, is_held = rig.pinion_speed(stage.speed_end), stage.name in held_stages
+        if speed not in solved.near_dwells or (held and not is_held):
             continue
         dwell = solved.near_dwells[speed]
-        near = dwell.nearest_of(
-            one for one in dwell.resonances if one.kind in ("shaft torque", "shaft order")
-        )
+        near = dwell.nearest_of(one for one in dwell.resonances if not is_held or one.kind in OF_SHAFTS)
         if near.resonance is None:
             yield near.distance, f"stage {stage.name}: none within {100.0 * near.distance:.0f} % of its speed"
         else:
             one = near.resonance
+            inside = "" if near.distance else "; the response at the dwell itself is above the share"
             yield (
                 near.distance,
                 f"stage {stage.name} at {speed * RPM:.0f} rpm: {one.kind} of {one.where} peaks at "
-                f"{one.speed * RPM:.0f} rpm",
+                f"{one.speed * RPM:.0f} rpm{inside}",
             )
 
 

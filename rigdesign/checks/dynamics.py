@@ -14,7 +14,6 @@ from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.records.curves import resolved, speed_ranges
-from rigdesign.records.loop_states import dwell_speeds
 from rigdesign.records.near_dwell import at_torque, bounds_of, mesh_resonances, root_shares
 from rigdesign.records.resonances import NEAR
 from rigdesign.records.solved_rig import SolvedRig, worst
@@ -82,8 +81,7 @@ def _resonance_distance(solved: SolvedRig, mesh: int) -> Values:
 
 
 def _distances(solved: SolvedRig, mesh: int) -> Values:
-    """Distance of every dangerous resonance of the mesh from every speed at which the rig dwells, and of the end of the
-    search round the held ones. A held speed counts the curve of its torque, another one those of all torques."""
+    """Distance of every held speed from every dangerous resonance under its torque, and from the end of the search."""
     assert solved.run is not None and solved.loads is not None
     rig, label = solved.rig, solved.label(mesh)
     bounds = bounds_of(rig)
@@ -92,32 +90,27 @@ def _distances(solved: SolvedRig, mesh: int) -> Values:
         *bounds.resonances(root_shares(rig, solved.loads)),
     ]
     named = {round(torque, 6): name for name, (torque, _) in solved.run.curves.named.items()}
-    shaft, ranges = rig.mesh_gear(mesh, 0).shaft, speed_ranges(rig)
-    held = [(point.point.speed, round(signed_torque(rig, point.point), 6)) for point in solved.points]
-    for speed, torque in held:
-        low, high = ranges[torque]
+    shaft = rig.mesh_gear(mesh, 0).shaft
+    for point in solved.points:
+        torque, held = round(signed_torque(rig, point.point), 6), point.point.speed
+        low, high = speed_ranges(rig)[torque]
         searched = f"{low * RPM:.0f} to {high * RPM:.0f} rpm"
-        text = f"none dangerous nearer in {searched}, held {speed * RPM:.0f} rpm: at least this far"
-        yield min(speed - low, high - speed) / speed, text
-    others = set(dwell_speeds(rig)) - {speed for speed, _ in held}
-    for speed, curves in [(speed, {torque}) for speed, torque in held] + [
-        (one, set(named)) for one in sorted(others)
-    ]:
-        own, first = rig.shaft_speed(shaft, speed), rig.pinion_speed(speed)
-        places = {
-            at_torque(label, named[torque])
-            for torque in curves
-            if ranges[torque][0] <= speed <= ranges[torque][1]
-        }
-        places |= {f"{label} {gear}" for gear in ("pinion", "wheel")}
+        yield (
+            min(held - low, high - held) / held,
+            f"none dangerous nearer in {searched}, held {held * RPM:.0f} rpm: at least this far",
+        )
+        own, first = rig.shaft_speed(shaft, held) * RPM, rig.pinion_speed(held)
+        places = {at_torque(label, named[torque]), *(f"{label} {gear}" for gear in ("pinion", "wheel"))}
+        here = [peak for peak in peaks if peak.where in places]
         for peak in sorted(
-            peaks, key=lambda one, first=first: abs(one.speed - first)
-        ):  # of equals the first is named
-            if peak.where in places:
-                distance, mode = peak.distance(first, bounds.margin), peak.mode or peak.kind
-                inside = "" if distance else ", where the response itself is above the share"
-                rpm = peak.speed * own / first * RPM
-                yield distance, f"{rpm:.0f} rpm ({mode}), held {own * RPM:.0f} rpm{inside}"
+            here, key=lambda one, first=first: abs(one.speed - first)
+        ):  # of equals the first counts
+            distance = peak.distance(first, bounds.margin)
+            inside = "" if distance else ", where the response itself is above the share"
+            yield (
+                distance,
+                f"{peak.speed * own / first:.0f} rpm ({peak.mode or peak.kind}), held {own:.0f} rpm{inside}",
+            )
 
 
 def near_crossings(solved: SolvedRig, mesh: int, within: float) -> list[tuple[float, ModeCrossing]]:
@@ -226,13 +219,13 @@ RULES = (
     ),
     MeshRule(
         key="dynamics.resonance_distance",
-        title="distance of dwell speeds from dangerous resonances, {place} gearbox",
+        title="distance of held speeds from dangerous resonances, {place} gearbox",
         procedure=(
             "Response over speed under every held torque. A peak is a dangerous resonance where it "
             "amplifies the mesh force by more than dangerous_amplification, or where its dynamic part, half "
             "peak-to-peak, or that of the root stress is above dangerous_force_share of the mean. The value is the "
-            "distance of the nearest one from a speed at which the rig dwells, as a share of that speed, 0 where the "
-            "response there is above the share itself; or that of the end of the speeds looked at."
+            "distance of the nearest one from a held speed, as a share of that speed, 0 where the response there is "
+            "above the share itself; or that of the end of the speeds looked at."
         ),
         unit=NUMBER,
         group=GROUP,

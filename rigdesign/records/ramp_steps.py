@@ -124,7 +124,7 @@ def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
     wanted = first_speed(rig)
     why = "the bearings float from here on" if floating else "first speed of the schedule"
     if wanted >= test:
-        return wanted, why
+        return test, why
     raised = False
     if found.start is not None and not found.start.holds_at(wanted):
         contact = found.start.next_held(wanted)
@@ -218,10 +218,8 @@ def _dwell(found: RampLimits, test: float) -> str:
     why = f"{beyond}the test speed, {_rpm(test)}, lies in the avoided band {_span(band)}"
     if near.resonance is not None:
         one = near.resonance
-        why += (
-            f": {one.kind} of {one.where.replace('_', ' ')} peaks at {_rpm(one.speed)}, {100.0 * near.distance:.1f} % "
-            "away"
-        )
+        away = f"{100.0 * abs(one.speed - test) / test:.1f} % away"
+        why += f": {one.kind} of {one.where.replace('_', ' ')} peaks at {_rpm(one.speed)}, {away}"
     return f"{why}; {_instead(found, test)}"
 
 
