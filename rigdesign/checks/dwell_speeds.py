@@ -23,9 +23,8 @@ DWELL = RuleFamily(
         "Periodic response around every speed at which the rig dwells: a peak counts where half the peak-to-peak "
         f"torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the mean torque of the loop; so "
         "does a shaft or coupling order that meets a lightly damped mode, and at speeds that are not held a dangerous "
-        "resonance of a mesh. The value is the distance of the nearest one "
-        "from a dwell, as a share of its speed, 0 where the dwell itself is above such a share; where there is none, "
-        "the range searched."
+        "resonance of a mesh. The value is the distance of the nearest one from a dwell, as a share of its speed, 0 where "
+        "the dwell itself is above such a share; where there is none, the range searched."
     ),
     unit=NUMBER,
     group="dynamics",
@@ -54,10 +53,10 @@ def _distances(solved: SolvedRig, *, held: bool = False) -> Iterator[tuple[float
     rig = solved.rig
     if solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
-    held_stages = {stage.name for stage in rig.case.schedule.held()}
+    held_speeds = {stage.speed_end for stage in rig.case.schedule.held()}
     dwells = sorted(dwell_stages(rig), key=lambda stage: stage.kind != "dwell")
     for stage in dwells:  # of stages at one speed the first is named
-        speed, is_held = rig.pinion_speed(stage.speed_end), stage.name in held_stages
+        speed, is_held = rig.pinion_speed(stage.speed_end), stage.speed_end in held_speeds
         if speed not in solved.near_dwells or (held and not is_held):
             continue
         dwell = solved.near_dwells[speed]

@@ -10,11 +10,13 @@ import pytest
 
 from dynamics.bearing.journal import JournalBearing, transition_speed
 from rigdesign.case import load_case
-from rigdesign.checks import clearances, dynamics, films, oil, ramp, strength, temperatures
+from rigdesign.checks import clearances, dwell_speeds, dynamics, films, oil, ramp, strength, temperatures
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import with_omissions
+from rigdesign.records.near_dwell import NearDwell, mesh_resonances
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
+from rigdesign.results.dwell import AvoidedResonance, nearer
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.loads import ContactLoss, DynamicLoads, MeshResonance, StageLoad, UnsolvedSpeed
 from rigdesign.results.rig_heat import HeatSource, RigHeat
@@ -284,3 +286,54 @@ def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
 
 def test_the_rules_of_the_ramp_hold_the_case_against_itself() -> None:
     assert all(check.by_definition for check in ramp.ramp(solved()))
+
+
+def avoided(rpm: float, kind: Any, where: str, margin: float = 0.1) -> AvoidedResonance:
+    low, high = nearer(rpm * RPM, margin)
+    return AvoidedResonance(kind=kind, where=where, speed=rpm * RPM, share=0.7, low=low, high=high)
+
+
+SHAFT, MESH = ("shaft torque", "test_pinion"), ("dynamic factor", "test at 90 Nm")
+
+
+@pytest.mark.parametrize(
+    ("held", "passed", "verdict", "value", "words"),
+    [
+        ((11073.0, *SHAFT), (2000.0, *MESH), "fail", 0.0773, "stage test at 12000 rpm"),
+        ((12100.0, *MESH), (2000.0, *MESH), "pass", 0.15, "none within 15 %"),
+        ((10000.0, *SHAFT), (760.0, *MESH), "warn", 0.0133, "at 750 rpm: dynamic factor of test at 90 Nm"),
+    ],
+)
+def test_held_speeds_bind_and_those_of_other_stages_are_advice(
+    monkeypatch: pytest.MonkeyPatch, held: Any, passed: Any, verdict: str, value: float, words: str
+) -> None:
+    """Resonances of meshes at a held speed are those of the other check."""
+    near = {
+        rpm * RPM: NearDwell(rpm * RPM, 0.1, (avoided(*one),))
+        for rpm, one in ((12000.0, held), (750.0, passed))
+    }
+    monkeypatch.setattr(SolvedRig, "near_dwells", near)
+    (check,) = dwell_speeds.checks(solved())
+    assert (check.verdict, check.value) == (verdict, pytest.approx(value, abs=1e-3))
+    assert words in check.reason
+
+
+def test_checks_and_bands_have_the_same_dangerous_peaks() -> None:
+    """One by its amplification at 11,000 rpm, one inside of what is above the share from 5000 to 6000 rpm, and what is
+    above it without a peak at 12,900 rpm and on."""
+    rpm = np.array([4000.0, 5000.0, 5500.0, 6000.0, 11000.0, 12900.0, 13500.0])
+    share = np.array([0.1, 0.2, 0.6, 0.2, 0.1, 0.2, 0.4])
+    points = [
+        SimpleNamespace(maximum=np.full(2, 1.0 + one), minimum=np.full(2, 1.0 - one), mean=np.ones(2))
+        for one in share
+    ]
+    own = (resonance(11000.0), resonance(5400.0), resonance(8000.0, dangerous=False))
+    curve = SimpleNamespace(points=points, speeds=rpm * RPM)
+    base = solved(resonances=own)
+    run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, curve)}))
+    assert base.loads is not None
+    found = [one for one in mesh_resonances(rig(), run, base.loads) if one.where == "test at 180 Nm"]
+    spans = {round(one.speed / RPM): (round(one.low / RPM), round(one.high / RPM)) for one in found}
+    assert spans == {11000: (10000, 12222), 5400: (4909, 6111), 13500: (12273, 15000)}
+    check = named(dynamics.checks(replace(base, run=run)), "dynamics.resonance_distance.test")
+    assert check.value == pytest.approx(1.0 / 12.0)
