@@ -23,8 +23,8 @@ DWELL = RuleFamily(
         "Periodic response around every speed at which the rig dwells: a peak counts where half the peak-to-peak "
         f"torque of a shaft section, coupling or gear seat exceeds {SHAFT_SHARE:g} of the mean torque of the loop; so "
         "does a shaft or coupling order that meets a lightly damped mode, and at speeds that are not held a dangerous "
-        "resonance of a mesh. The value is the distance of the nearest one from a dwell, as a share of its speed, 0 where "
-        "the dwell itself is above such a share; where there is none, the range searched."
+        "resonance of a mesh. The value is the distance of the nearest one from a dwell, as a share of its speed, 0 "
+        "where the dwell itself is above such a share; where there is none, the range searched."
     ),
     unit=NUMBER,
     group="dynamics",
