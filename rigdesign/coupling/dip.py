@@ -27,6 +27,9 @@ from thermal.films.law import FilmLaw
 
 AXES = 0.0
 """Height of the shaft axes, from which the level of a sump is counted [m]."""
+CUT_IN = 0.9
+"""Radius of the shaft over that of the root circle of a pinion cut into a shaft that is thicker: its sides have no
+face."""
 CARRIED_BY_MESH = 0.5
 """Of the oil that a gear lifts out of the sump, the part that its mesh leaves on the partner (assumed)."""
 
@@ -57,7 +60,10 @@ def _hydraulic_length(box: Gearbox, sump: DipOil) -> float | None:
 
 def dipped_gear(box: Gearbox, gear: str, pair: GearPair, index: int) -> DippedGear:
     """Pinion (0) or wheel (1) of a pair as the bath sees it, with both halves of a double-helical gear."""
-    own = DippedGear.of_pair(pair, index, AXES, 0.5 * box.seat_diameter(gear))
+    shaft = 0.5 * box.seat_diameter(gear)
+    if not box.gears[gear].bore_diameter:  # of a pinion thinner than its shaft the teeth are left
+        shaft = min(shaft, CUT_IN * pair.gears[index].root_radius)
+    own = DippedGear.of_pair(pair, index, AXES, shaft)
     return replace(own, face_width=box.body_width(gear))
 
 

@@ -39,6 +39,7 @@ COMPLETE = (
     "dynamics.lift_off.*",
     "dynamics.contact_margin.*",
     "lateral.*",  # linear about the load of the stage, as they say
+    "geometry.*",  # of the drawing
     "specimen.load_cycles",  # commanded
     "ramp.*",
     "bearing.speed",  # commanded

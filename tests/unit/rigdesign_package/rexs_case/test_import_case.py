@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from dynamics.gear.pair import GearPair
 from rigdesign.base.errors import CaseError, OutputError, RexsError, UsageError
 from rigdesign.case import load_case
+from rigdesign.coupling.dip import dipped_gear
 from rigdesign.rexs.gear_unit_import import import_gear_unit
 from rigdesign.rexs.reader import parse_rexs
 from rigdesign.rexs_case.pinion_load import pinion_loads
@@ -405,3 +407,20 @@ def test_a_pinion_cut_into_its_shaft_is_solid(tmp_path: Path) -> None:
     ring = math.pi * 7850.0 * 0.05 * (0.093**4 - 0.08**4) / 32.0
     assert disc.inertia == pytest.approx(ring, rel=5e-3)
     assert disc.mass == pytest.approx(7850.0 * 0.05 * math.pi / 4.0 * (0.093**2 - 0.08**2), rel=5e-3)
+
+
+def test_a_pinion_that_is_thinner_than_its_shaft_dips_with_its_teeth(tmp_path: Path) -> None:
+    """17 teeth of 3 mm have a root circle of 43.5 mm, the shaft 60 mm in its bearings."""
+    of_unit(tmp_path, UnitText().pair(sections=((0, 40, 60), (40, 220, 80), (260, 40, 60))))
+    box = load_case(tmp_path / "case").gearboxes["test"]
+    pair = GearPair.from_centre_distance(
+        normal_module=3e-3,
+        teeth=(17, 62),
+        centre_distance=118.5e-3,
+        face_widths=(50e-3, 50e-3),
+        profile_shift_1=0.0,
+    )
+    dipped = [
+        dipped_gear(box, gear, pair, index).shaft_radius for index, gear in enumerate(("pinion", "wheel"))
+    ]
+    assert dipped == pytest.approx([0.9 * 21.75e-3, 30e-3])
