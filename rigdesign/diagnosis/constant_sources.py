@@ -48,7 +48,7 @@ SOURCES: Mapping[str, Source] = {
     "decision.defaults.DRIFT.sensors": Source(
         "-",
         "choice",
-        f"{_PRACTICE}: 0.15 K of a thermocouple good to 0.4 K, 0.3 % of a power good to 1 %",
+        f"{_PRACTICE}: 0.15 K of a thermocouple of 0.4 K, 0.35 % of a power of 1 %",
         replaced=True,
     ),
     "decision.defaults.DRIFT.inflation": Source(

@@ -13,12 +13,14 @@ from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement import load_measurement
 from tests.builders.paths import ROOT
 from tests.virtual_rig import fzg_drawing, generate, generate_plans, sump_constants
+from tests.virtual_rig import chain as chains
 from tests.virtual_rig.chain import draw_chain
 from tests.virtual_rig.generate import KINDS, Detectors, make_set
 from tests.virtual_rig.generate_effects import candidates, kind_of
 from tests.virtual_rig.generate_plans import plan_points, sensors
 from tests.virtual_rig.generate_truth import (
     RigTruth,
+    another_day,
     case_of,
     draw_rig,
     nominal_constants,
@@ -311,6 +313,32 @@ def test_a_thermometer_that_is_added_leaves_the_others_as_they_were(blunt, tmp_p
         assert float(second[name]) == pytest.approx(float(first[name]), abs=6.0 * 0.1)
 
 
+def test_a_later_set_is_read_on_another_day(blunt, tmp_path):
+    """Sensors and settings shift, friction and films change; the healthy set before stays what it is."""
+    spec = {"kind": "none", "sensors": "sparse", "plan": 9, "baseline": True}
+    for name, drift in (("changes", {}), ("stays", {"drift": 0.0})):
+        make_set("fzg", {**spec, **drift}, 11, tmp_path / name)
+    table = {
+        (name, part): (tmp_path / name / part / "data.csv").read_text()
+        for name in ("changes", "stays")
+        for part in ("set_0", "set_1")
+    }
+    assert table["changes", "set_0"] == table["stays", "set_0"]
+    assert table["changes", "set_1"] != table["stays", "set_1"]
+
+
+def test_a_day_moves_sensors_friction_and_films_by_what_is_stated():
+    own, rng = sensors("uhcf_prototype", "usual"), np.random.default_rng(3)
+    chain, built = draw_chain(own, rng), nominal_constants("uhcf_prototype")
+    days = [(chains.another_day(chain, own, rng), another_day(built, rng)) for _ in range(400)]
+    shift = np.std([day.offset["TC01"] - chain.offset["TC01"] for day, _ in days])
+    assert shift == pytest.approx(np.hypot(0.3 * 0.4, 0.15), rel=0.15)
+    assert np.std([day.scale["P_motor"] for day, _ in days]) == pytest.approx(0.003, rel=0.15)
+    assert {day.scale["TC01"] for day, _ in days} == {chain.scale["TC01"]}
+    for name, spread in {"friction": 0.02, "seal_drag": 0.03, "film_chamber": 0.02, "k_field": 0.0}.items():
+        assert np.std(np.log([rig.heat[name] for _, rig in days])) == pytest.approx(spread, rel=0.15)
+
+
 DRAWN = {
     "uhcf_prototype": "b9ef77f6b14eb5af",
     "loop_1to1": "1507af575b5a58b8",
@@ -340,9 +368,8 @@ def test_other_rigs_are_drawn_as_before(rig):
 @pytest.mark.slow
 @pytest.mark.parametrize("rig", WRITTEN)
 def test_sets_of_the_other_rigs_are_as_before(rig, blunt, tmp_path):
-    make_set(
-        rig, {"kind": "none", "sensors": "usual", "plan": 9, "baseline": rig == "loop_1to1"}, 4, tmp_path
-    )
+    spec = {"kind": "none", "sensors": "usual", "plan": 9, "baseline": rig == "loop_1to1", "drift": 0.0}
+    make_set(rig, spec, 4, tmp_path)
     digest = hashlib.sha256()
     for file in sorted(path for path in tmp_path.rglob("*") if path.is_file()):
         digest.update(file.read_bytes())

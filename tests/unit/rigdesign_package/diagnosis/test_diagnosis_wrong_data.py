@@ -1,15 +1,17 @@
 """Data that are wrong as they stand: exchanged channels and points, readings in another unit or with another sign."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rigdesign.diagnosis import run
+from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.prediction.model import Channel, Feature
-from tests.builders.diagnosis import Rig, result_of, the_case, write_set
+from tests.builders.diagnosis import DESIGN, Rig, result_of, story, the_case, write_set
 
 CHANNELS = {
     "T_front": Channel(name="T_front", quantity="temperature", place="test.outer_cold_front"),
@@ -153,3 +155,24 @@ def test_what_a_comparison_finds_is_told_by_the_diagnosis(
     assert set(swap.channels) == {"T_gear", "T_bearing"} and swap.weight == "suspect"
     [left_out] = [one for one in found if one.id == "repeat_outlier"]
     assert left_out.points == ("P02",)
+
+
+@pytest.mark.parametrize(
+    ("heat", "floor", "verdict"),
+    [(False, 30.0, True), (False, 1e6, False), (True, 1e6, True)],
+)
+def test_an_exchange_needs_as_much_evidence_as_a_name(heat, floor, verdict):
+    """As points P02 and P09 of one torque, exchanged by orders that no model knows well, in a healthy rig."""
+    problem = story("healthy").problem
+    kept = [row for row, one in enumerate(problem.residuals.features) if heat or one.order]
+    residuals = problem.residuals.rows(kept)
+    place = {feature: row for row, feature in enumerate(residuals.features)}
+    other = {"P01": "P06", "P06": "P01"}
+    values = [
+        residuals.values[place[replace(one, setting=other.get(one.setting, one.setting))]]
+        for one in residuals.features
+    ]
+    thresholds = replace(DESIGN.plain, evidence=30.0, evidence_loop=floor)
+    exchanged = replace(problem, residuals=replace(residuals, values=np.array(values)))
+    found = diagnose(exchanged, replace(DESIGN, plain=thresholds, least_alone={}))
+    assert (found.decision.named == ("swapped_points:P01,P06",)) is verdict, found.decision
