@@ -51,6 +51,12 @@ SOURCES: Mapping[str, Source] = {
         f"{_PRACTICE}: 0.15 K of a thermocouple of 0.4 K, 0.35 % of a power of 1 %",
         replaced=True,
     ),
+    "decision.defaults.DRIFT.constants": Source(
+        "-",
+        "choice",
+        f"{_PRACTICE}: friction of flanks, bearings and seals 1 to 3 %, films 2 %",
+        replaced=True,
+    ),
     "decision.defaults.DRIFT.inflation": Source(
         "coordinate", "fit", "108 pairs of healthy sets of the virtual rig, three rigs"
     ),

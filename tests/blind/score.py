@@ -134,7 +134,7 @@ def calibrate(out: Path, without: str | None, target: Path) -> None:
     print(json.dumps(content, indent=1))
 
 
-FIRST_DRIFT = Drift(shared=0.01, slope=0.5, shaft=0.5, mesh=0.5, amplitude=0.03, sensors=0.35)
+FIRST_DRIFT = Drift(shared=0.01, slope=0.5, shaft=0.5, mesh=0.5, amplitude=0.03, sensors=0.35, constants=0.02)
 """Where the fit of the drifts starts, and the centre of its prior."""
 
 

@@ -12,8 +12,8 @@ from rigdesign.case import load_case
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement import load_measurement
 from tests.builders.paths import ROOT
-from tests.virtual_rig import fzg_drawing, generate, generate_plans, sump_constants
 from tests.virtual_rig import chain as chains
+from tests.virtual_rig import fzg_drawing, generate, generate_plans, sump_constants
 from tests.virtual_rig.chain import draw_chain
 from tests.virtual_rig.generate import KINDS, Detectors, make_set
 from tests.virtual_rig.generate_effects import candidates, kind_of

@@ -46,6 +46,8 @@ class Drift:
     """Share of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
     sensors: float
     """Share of its stated uncertainty that every sensor and setting has anew, as one shift of all its numbers."""
+    constants: float
+    """Logarithm by which every loss and film changes."""
     inflation: Mapping[str, float] = field(default_factory=dict)
     channels: Mapping[str, float] = field(default_factory=dict)
     """Channel -> standard deviation of a shift of all its numbers together from set to set, over their level
@@ -64,8 +66,8 @@ class Drift:
         return replace(self, **shares, channels={**self.channels, **channels})
 
 
-SHARES = ("shared", "slope", "shaft", "mesh", "amplitude", "sensors")
-"""Numbers of a drift that scale what two sets share, what their orders do or what sensors state."""
+SHARES = ("shared", "slope", "shaft", "mesh", "amplitude", "sensors", "constants")
+"""Numbers of a drift that scale what two sets share, what their orders do, what sensors state, losses and films."""
 
 CHANNEL = "channel "
 """Before the name of a channel that has a shift of its own."""
@@ -124,7 +126,11 @@ class Change:
 
     def parts(self, drift: Drift) -> dict[str, Array]:
         """Name of a scale of the drift -> (n, n) covariance of what it scales, at one."""
-        mesh, moved = self.residuals.of_mesh, self.residuals.sensor_shifts
+        mesh, moved, daily = (
+            self.residuals.of_mesh,
+            self.residuals.sensor_shifts,
+            self.residuals.daily_changes,
+        )
         shares = {
             "shared": self.shared,
             "slope": np.diag(self.slope**2),
@@ -132,6 +138,7 @@ class Change:
             "mesh": np.diag(np.where(mesh, self.steep, 0.0) ** 2),
             "amplitude": np.diag(np.where(mesh, self.amplitude, 0.0) ** 2),
             "sensors": moved @ moved.T,
+            "constants": daily @ daily.T,
         }
         shifts = {name: self.shift(name) for name in drift.channels}
         return shares | {CHANNEL + name: np.outer(shift, shift) for name, shift in shifts.items()}

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 
 from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.catalogue.families import FILM, LOSS
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.directions import Direction, directions
 from rigdesign.diagnosis.residual.healthy import answer_error, healthy_columns, own_spread
@@ -169,6 +170,20 @@ class ResidualProblem:
             if own.any():
                 shifts.append(own * np.sqrt(np.mean(self.noise[own > 0.0] ** 2)))
         return np.array(shifts).reshape(-1, len(self.features)).T
+
+    @cached_property
+    def daily_changes(self) -> Array:
+        """(n, k) by the logarithm of every loss and film, which a rig does not repeat from day to day."""
+        known = self.library.responses
+        moving = [
+            known[one.name].sensitivity()[:, :1]
+            for one in self.effects
+            if one.family in (LOSS, FILM)
+            and one.healthy > 0.0
+            and one.parameters[0].factor
+            and one.name in known
+        ]
+        return np.hstack(moving) if moving else np.zeros((len(self.features), 0))
 
     @cached_property
     def answer_error(self) -> Array:

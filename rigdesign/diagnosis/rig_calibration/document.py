@@ -10,7 +10,7 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.rig_calibration.estimate import Estimate
 from rigdesign.diagnosis.rig_calibration.healthy_sets import RigCalibration
 
-SCHEMA = 1
+SCHEMA = 2
 """Of calibration.json; raise it where a value changes its meaning: a file of another one is refused."""
 
 UNLIKE = "this set does not look like the others: leave it out or find out why"

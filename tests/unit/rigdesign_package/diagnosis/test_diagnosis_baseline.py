@@ -17,7 +17,7 @@ from tests.builders.diagnosis import story
 STEP = 0.01
 """By how much the residuals ran faster than its baseline, as a logarithm."""
 
-STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0, sensors=0.0)
+STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0, sensors=0.0, constants=0.0)
 
 
 def moved(library: Library, settings: tuple[OperatingCondition, ...]) -> Library:
@@ -161,7 +161,7 @@ def test_a_point_that_the_baseline_lacks_is_known_less_well(pair):
 
 
 def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
-    drift = Drift(shared=0.02, slope=1.0, shaft=0.5, mesh=0.5, amplitude=0.03, sensors=0.3)
+    drift = Drift(shared=0.02, slope=1.0, shaft=0.5, mesh=0.5, amplitude=0.03, sensors=0.3, constants=0.02)
     whole = differenced(*pair, Amplitudes(), drift)
     keep = list(range(0, len(whole.raw), 2))
     part = whole.rows(keep)
@@ -173,7 +173,7 @@ def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
 def test_drifts_of_healthy_pairs_are_found_again(pair):
     rng = np.random.default_rng(4)
     residuals, baseline = pair
-    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3)
+    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3, constants=0.02)
     drawn = []
     for _ in range(6):
         covariance = baseline.covariance(Amplitudes())
@@ -183,7 +183,9 @@ def test_drifts_of_healthy_pairs_are_found_again(pair):
         spread = np.linalg.cholesky(change.covariance(true)) @ rng.normal(size=len(residuals.features))
         drawn.append((replace(residuals, values=residuals.library.base + change.expected + spread), healthy))
     found = calibrate_drift(
-        drawn, Amplitudes(), Drift(shared=0.05, slope=0.5, shaft=2.0, mesh=2.0, amplitude=0.02, sensors=0.6)
+        drawn,
+        Amplitudes(),
+        Drift(shared=0.05, slope=0.5, shaft=2.0, mesh=2.0, amplitude=0.02, sensors=0.6, constants=0.04),
     )
     assert found.shaft == pytest.approx(true.shaft, rel=0.2)
     assert found.amplitude == pytest.approx(true.amplitude, rel=0.4)
@@ -193,7 +195,7 @@ def test_drifts_of_healthy_pairs_are_found_again(pair):
 
 def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
     residuals, baseline = pair
-    drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01, sensors=0.01)
+    drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01, sensors=0.01, constants=0.001)
     found = inflate_drift([(residuals, baseline)] * 3, Amplitudes(), drift)
     assert replace(found, inflation={}) == drift
     before = differenced(residuals, baseline, Amplitudes(), drift).chi_square
@@ -212,17 +214,23 @@ def test_what_both_sets_share_is_all_that_is_no_noise(pair):
     assert own.max() > 1e-3 * np.sqrt(np.diag(shared)).max()
 
 
-@pytest.mark.parametrize(("channel", "shift", "usual"), [("T_gear", 0.035, True), ("T_gear", 0.35, False)])
-def test_a_channel_may_shift_by_a_share_of_what_its_measurement_states(pair, channel, shift, usual):
+def test_a_channel_may_shift_by_a_share_of_what_its_measurement_states(pair):
     """As thermocouples good to 0.4 K of which each read 0.1 K more: an alarm in 7 of 8 healthy sets."""
-    residuals, baseline = pair
-    still = Drift(**dict.fromkeys(SHARES, 0.001))
-    own = np.array([one.channel == channel for one in residuals.features])
-    moved = replace(residuals, values=residuals.values + np.where(own, shift, 0.0))
-    squares = [
-        differenced(moved, baseline, Amplitudes(), replace(still, sensors=share)).chi_square
-        - differenced(residuals, baseline, Amplitudes(), replace(still, sensors=share)).chi_square
-        for share in (0.001, 0.35)
-    ]
-    assert squares[1] < 0.3 * squares[0]
-    assert (squares[1] < 4.0) is usual
+    change = Change.of(*pair, Amplitudes())
+    own = np.array([one.channel == "T_gear" for one in change.residuals.features], dtype=np.float64)
+    still = Drift(**dict.fromkeys(SHARES, 1e-3))
+    square = {
+        share: float(own @ np.linalg.solve(change.covariance(replace(still, sensors=share)), own))
+        for share in (1e-3, 0.35)
+    }
+    stated = next(one.spread for one in change.residuals.errors if one.name == "sensor_offset:T_gear")
+    assert (0.35 * stated) ** 2 * square[0.35] < 1.0  # a shift that is no more than usual
+    assert (0.35 * stated) ** 2 * square[1e-3] > 5.0
+    assert (10.0 * stated) ** 2 * square[0.35] > 30.0  # and one that still is an alarm
+
+
+def test_losses_and_films_change_from_set_to_set(pair):
+    more = more_by(pair, replace(STILL, constants=0.02))
+    answers = pair[0].library.responses
+    moved = [answers[name].sensitivity() for name in ("mesh_loss:test", "bearing_loss:test")]
+    assert more == pytest.approx(0.02**2 * sum(one @ one.T for one in moved), rel=1e-9, abs=1e-12)

@@ -25,7 +25,7 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Group, fit
 from tests.builders.diagnosis import Rig, result_of, story, the_case, write_set
 
-STILL = Drift(shared=0.0, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0, sensors=0.0)
+STILL = Drift(shared=0.0, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0, sensors=0.0, constants=0.0)
 
 
 def healthy(name: str, rig: Rig, offset: float = 0.0) -> HealthySet:
@@ -93,8 +93,8 @@ def test_what_the_data_do_not_see_stays_with_the_spread_of_the_prior() -> None:
 
 def test_a_known_drift_is_found_again_within_its_spread() -> None:
     """Eight rigs of one pair each: log ratios over their spread scatter as a normal distribution does."""
-    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3)
-    start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02, sensors=0.3)
+    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3, constants=0.02)
+    start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02, sensors=0.3, constants=0.02)
     off = []
     for residuals, before in healthy_pairs(true, 8, seed=5):
         change = Change.of(residuals, before, Amplitudes())
@@ -110,9 +110,11 @@ def test_a_known_drift_is_found_again_within_its_spread() -> None:
 
 def test_changes_that_are_not_independent_count_less() -> None:
     pair = healthy_pairs(
-        Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3), 1, seed=2
+        Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05, sensors=0.3, constants=0.02),
+        1,
+        seed=2,
     )[0]
-    start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02, sensors=0.3)
+    start = Drift(shared=0.02, slope=0.5, shaft=1.5, mesh=4.0, amplitude=0.02, sensors=0.3, constants=0.02)
     change = Change.of(*pair, Amplitudes())
     once, twice = fit_drift([change], start), fit_drift([change, change], start, weight=0.5)
     for name in once.values:
@@ -136,7 +138,7 @@ def test_a_value_is_lowered_by_no_more_than_is_proven_and_raised_as_found() -> N
         assert one.used == pytest.approx(lowered if one.kind == "drift" else one.shipped)
     assert found["drift.amplitude"].used < 0.6 * DEFAULT.drift.amplitude
     loud = values([*quiet()[:1], healthy("loud", Rig({"mesh_loss:test": (log(1.2),)}, seed=3))])
-    assert loud["drift.shared"].used == loud["drift.shared"].fitted > 10.0 * DEFAULT.drift.shared
+    assert loud["drift.constants"].used == loud["drift.constants"].fitted > 2.0 * DEFAULT.drift.constants
     assert quiet()[0].residuals.covariance(DEFAULT.amplitudes).amplitudes["sensor"] == 1.0
     assert "amplitudes.sensor" not in found and "amplitudes.input" not in found
 

@@ -115,7 +115,7 @@ def row(document: dict, name: str) -> dict:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda d: d.update(schema_version=99), r"schema_version = 99, must be 1; run `rigdesign calibrate` again"),
+        (lambda d: d.update(schema_version=99), r"schema_version = 99, must be 2; run `rigdesign calibrate` again"),
         (lambda d: d.pop("schema_version"), "no calibration of a rig"),
         (lambda d: d.pop("values"), "no calibration of a rig"),
         (lambda d: d.pop("sets"), "damaged, 'sets' is missing"),
