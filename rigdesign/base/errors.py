@@ -32,8 +32,10 @@ WIDEST_SENTENCE = 2000
 
 WIDEST_PLACE = 400
 """Characters of the path of a file."""
-CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
-"""What a terminal obeys and XML cannot hold; tabs and new lines are text."""
+CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
+"""What a terminal obeys, direction marks among it, and XML cannot hold; tabs and new lines are text."""
+MOST_FAULTS = 50
+"""Faults that a message lists."""
 
 
 LAYOUT = re.compile("[\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
@@ -111,7 +113,9 @@ class FaultyInputError(RigdesignError):
             return head + shortened(self._sentence, WIDEST_SENTENCE)
         if len(self.faults) == 1:
             return head + str(self.faults[0])
-        return "\n".join([f"{head}{len(self.faults)} faults", *(f"  {fault}" for fault in self.faults)])
+        more = [f"  and {len(self.faults) - MOST_FAULTS} more"] if len(self.faults) > MOST_FAULTS else []
+        listed = (f"  {fault}" for fault in self.faults[:MOST_FAULTS])
+        return "\n".join([f"{head}{len(self.faults)} faults", *listed, *more])
 
 
 class CaseError(FaultyInputError):

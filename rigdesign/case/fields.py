@@ -175,7 +175,9 @@ Density = Annotated[
     Usual("1000 kg/m3", "9000 kg/m3"),
 ]
 KinematicViscosity = Annotated[
-    float, Quantity("kinematic_viscosity", above="0 mm2/s"), Usual("1.5 mm2/s", "2000 mm2/s")
+    float,
+    Quantity("kinematic_viscosity", at_least="0.3 mm2/s", at_most="1e6 mm2/s"),
+    Usual("1.5 mm2/s", "2000 mm2/s"),
 ]
 PressureViscosity = Annotated[float, Quantity("pressure_viscosity", at_least="5 1/GPa", at_most="60 1/GPa")]
 HeatCapacity = Annotated[
@@ -237,4 +239,12 @@ def _shown(text: str) -> str:
     return text
 
 
+def _one_line(text: str) -> str:
+    if "\n" in text:
+        raise fault("has more than one line", "write one line")
+    return text
+
+
 Text = Annotated[str, Field(min_length=1), AfterValidator(_shown)]
+Title = Annotated[Text, AfterValidator(_one_line)]
+"""A name in the report, on one line."""

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Clearance, Name, Part, Text, Torque, Usual
+from rigdesign.case.fields import Clearance, Name, Part, Title, Torque, Usual
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.heat_split import HeatSplit
 from rigdesign.case.housing import Housing
@@ -46,7 +46,7 @@ class Seals(Part):
 class Gearbox(Part):
     """One gearbox of the rig."""
 
-    title: Text
+    title: Title
     """Name of the gearbox in the report."""
     role: Literal["specimen", "rig"]
     """specimen: its gears are what is tested, held against a target window; rig: against a safety."""

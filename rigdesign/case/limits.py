@@ -24,6 +24,7 @@ from rigdesign.case.fields import (
     TemperatureDifference,
     Text,
     Tilt,
+    Title,
     Torque,
     Usual,
     fault,
@@ -255,7 +256,7 @@ PASSED = ("drivetrain.couplings.", "drivetrain.shafts.")
 class BoughtPart(Part):
     """Limit of a bought part: a result or a given value held below what its maker allows."""
 
-    title: Text
+    title: Title
     """Name of the limit in the report."""
     part: Text
     """Case path of the part it belongs to, e.g. ``drivetrain.couplings.pinion_side``."""

@@ -16,7 +16,7 @@ from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.equal_parts import EqualParts
 from rigdesign.case.events import Event
-from rigdesign.case.fields import Name, Part, Text
+from rigdesign.case.fields import Name, Part, Title
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
@@ -76,7 +76,7 @@ class Case(Part):
     """Version of the case file format."""
     name: Name
     """Short name of the case, for files and tables."""
-    title: Text
+    title: Title
     """Title of the report."""
     ambient: Ambient
     """Room in which the rig stands."""

@@ -14,6 +14,9 @@ CASE_FILE = "case.toml"
 LARGEST_CASE = 5_000_000
 """Bytes of a case file; one with a row of numbers for each of 2000 teeth has a tenth."""
 
+DEEPEST = 30
+"""Tables within tables; a case has ten."""
+
 
 def case_file(path: Path) -> Path:
     """The case file of a folder, or the file itself; a plain name that is neither may be that of a shipped case.
@@ -124,10 +127,20 @@ def _read(file: Path) -> dict[str, Any]:
     if (what := foreign(content)) is not None:
         raise CaseError(f"is {what}; a case is a TOML text, write it as one", str(file))
     try:
-        return tomllib.loads(content.decode("utf-8"))
+        tree = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise CaseError(f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)) from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"is not valid TOML or was cut off: {error}; correct it there", str(file)) from None
+    except ValueError:
+        raise CaseError("holds a whole number of too many digits to be read; correct it", str(file)) from None
     except RecursionError:
-        raise CaseError("is nested too deeply to be read; flatten its tables", str(file)) from None
+        tree, level = {}, [None]
+    else:
+        level: list[Any] = [tree]
+        for _ in range(DEEPEST):
+            tables = (node.values() if isinstance(node, dict) else node for node in level)
+            level = [node for table in tables for node in table if isinstance(node, dict | list)]
+    if level:
+        raise CaseError(f"is nested more than {DEEPEST} tables deep; flatten its tables", str(file))
+    return tree

@@ -18,8 +18,8 @@ from rigdesign.case.fields import (
     RoomTemperature,
     Stress,
     Temperature,
-    Text,
     Time,
+    Title,
     Usual,
     fault,
 )
@@ -43,7 +43,7 @@ class Ambient(Part):
 class CustomOil(Part):
     """Oil described by two viscosities, its density and its heat data."""
 
-    title: Text
+    title: Title
     """Name of the oil in the report."""
     kinematic_viscosity_40: Annotated[KinematicViscosity, Usual(2.5, 30.0, "viscosity at 100 degC")]
     """Kinematic viscosity at 40 degC."""
@@ -91,7 +91,7 @@ class CustomOil(Part):
 class CustomMaterial(Part):
     """Solid material."""
 
-    title: Text
+    title: Title
     """Name of the material in the report."""
     conductivity: Annotated[Conductivity, Usual("8 W/(m K)", "420 W/(m K)")]
     """Thermal conductivity."""

@@ -38,6 +38,11 @@ def causes_first(faults: Sequence[Fault], marks: Sequence[Mark], missing: str) -
             unknown.append(fault)
         else:
             stated.append(fault)
-    first = "correct the faults above first, or " if stated else ""
-    unknown = [replace(fault, problem=NOT_WORKED_OUT, remedy=f"{first}{fault.remedy}") for fault in unknown]
+    if stated and unknown:
+        named = ", ".join(fault.path for fault in unknown)
+        unknown = [
+            Fault("", "", f"{NOT_WORKED_OUT}: {named}", "correct the faults above first, or add these keys")
+        ]
+    else:
+        unknown = [replace(fault, problem=NOT_WORKED_OUT) for fault in unknown]
     return [*stated, *unknown] or wrong_defaults

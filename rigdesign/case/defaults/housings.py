@@ -178,7 +178,9 @@ def _overhang(tree: RawTree, box: str, shaft: str, side: str) -> Filling:
         name for name in bearings_on(tree, box, shaft)
         if tree.text(f"gearboxes.{box}.bearings.{name}.side") == side
     ]  # fmt: skip
-    if not found or wall is None:
+    if not found:
+        return follows("0 mm", "no bearing at this end")
+    if wall is None:
         return None
     middle = tree.length(f"gearboxes.{box}.bearings.{found[0]}.position")
     width = bearing_width(tree, box, found[0])

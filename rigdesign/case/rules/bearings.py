@@ -31,6 +31,20 @@ def bearing_faults(case: "Case") -> Iterator[Fault]:
         yield from _induced(at, box)
 
 
+def missing_ends(case: "Case") -> Iterator[Fault]:
+    """Shafts of a housing without a bearing at either end; places and loads of the others follow from it."""
+    for name, box in case.gearboxes.items():
+        for shaft in () if box.housing is None else box.housing.shafts:
+            own = {part: bearing.side for part, bearing in box.bearings.items() if bearing.shaft == shaft}
+            if sorted(own.values()) != ["front", "rear"]:
+                found = ", ".join(f"{part} at the {side}" for part, side in own.items()) or "none"
+                yield Fault(
+                    f"gearboxes.{name}.bearings", "",
+                    f"shaft {shaft} needs a bearing at the front and one at the rear, has {found}",
+                    "add or remove bearings, or correct side",
+                )  # fmt: skip
+
+
 def _heat(at: str, here: str, box: "Gearbox", bearing: "BearingInput") -> Iterator[Fault]:
     """Grease carries no heat away: shaft or housing has to."""
     if box.bearing_oil.lubrication != "grease":

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from rigdesign.case.gears import Gear
     from rigdesign.case.model import Case
 
+MOST_TWIST = 1.0
+"""Of a joint under the test torque [rad]."""
+
 
 def drivetrain_faults(case: "Case") -> Iterator[Fault]:
     """Everything wrong with the power circuit; nothing for a case without one."""
@@ -61,6 +64,7 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
     if train.torque_at not in gears:
         yield unknown("drivetrain.torque_at", train.torque_at, list(gears), "gear (gearbox.gear)")
     yield from _bracing(case, gears)
+    yield from _soft(case)
     for name, box in case.gearboxes.items():
         for kind, parts in (("gears", box.gears), ("bearings", box.bearings)):
             for part_name, part in parts.items():
@@ -79,6 +83,25 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
                 yield from _seat_on_shaft(
                     f"gearboxes.{name}.gears.{gear_name}.seat_offset", gear, lengths[gear.shaft]
                 )
+
+
+def _soft(case: "Case") -> Iterator[Fault]:
+    """Joints that the test torque would wind up."""
+    assert case.drivetrain is not None
+    joints = {f"drivetrain.couplings.{name}": part for name, part in case.drivetrain.couplings.items()} | {
+        f"gearboxes.{name}.gears.{gear}.spline": part.spline
+        for name, box in case.gearboxes.items()
+        for gear, part in box.gears.items()
+        if part.spline is not None
+    }
+    for path, joint in joints.items():
+        twist = case.schedule.test_torque / joint.torsional_stiffness
+        if twist > MOST_TWIST:
+            yield Fault(
+                f"{path}.torsional_stiffness", show(joint.torsional_stiffness, "torsional_stiffness"),
+                f"twists by {twist:.3g} rad under schedule.test_torque, limit {MOST_TWIST:g} rad",
+                "write the torque per angle of twist in radians; a soft elastic coupling reaches 0.3 rad",
+            )  # fmt: skip
 
 
 def _seat_on_shaft(path: str, gear: "Gear", length: float) -> Iterator[Fault]:

@@ -10,7 +10,7 @@ from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import ROOM
 from rigdesign.case.housing import Housing
 from rigdesign.case.paths import known_paths, nearest_paths, slot_at
-from rigdesign.case.rules.bearings import bearing_faults
+from rigdesign.case.rules.bearings import bearing_faults, missing_ends
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
 from rigdesign.case.rules.events import event_faults
@@ -25,7 +25,7 @@ from rigdesign.case.rules.surfaces import housing_faults
 from rigdesign.case.rules.transient import transient_faults
 from rigdesign.properties.fluid import ATMOSPHERE, FluidError, volumetric_heat
 from rigdesign.properties.materials import MATERIALS
-from rigdesign.properties.oil import OILS
+from rigdesign.properties.oil import OILS, OilError
 
 if TYPE_CHECKING:
     from rigdesign.case.drivetrain import ShaftInput
@@ -55,7 +55,7 @@ def broken_rules(case: "Case") -> list[Fault]:
         _limits,
         _numerics,
     )
-    faults = [fault for rule in rules for fault in rule(case)]
+    faults = list(missing_ends(case)) or [fault for rule in rules for fault in rule(case)]
     if faults:
         return faults
     faults = [fault for name, box in case.gearboxes.items() for fault in housing_faults(name, box)]
@@ -64,6 +64,12 @@ def broken_rules(case: "Case") -> list[Fault]:
 
 
 def _substances(case: "Case") -> Iterator[Fault]:
+    for name, oil in case.oils.items():
+        try:
+            oil.properties(name)
+        except OilError as error:
+            problem, _, remedy = str(error).rpartition("; ")
+            yield Fault(f"oils.{name}", "", problem, remedy)
     oils = [*case.oils, *OILS]
     materials = [*case.materials, *MATERIALS]
     for name, box in case.gearboxes.items():
