@@ -30,7 +30,6 @@ DWELL = RuleFamily(
     group="dynamics",
     source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
     comparison=">=",
-    advisory=True,
     resonant=True,
     needs=LOADS,
     leaves_out=(long_periods,),
@@ -45,7 +44,7 @@ def checks(solved: SolvedRig) -> list[Check]:
     held = DWELL.worst(solved, rule, _distances(solved, held=True))
     if held.verdict == "fail":
         return [held]
-    return [DWELL.worst(solved, replace(rule, warn_only=True), _distances(solved))]
+    return [DWELL.worst(solved, replace(rule, advisory=True), _distances(solved))]
 
 
 def _distances(solved: SolvedRig, *, held: bool = False) -> Iterator[tuple[float, str]]:

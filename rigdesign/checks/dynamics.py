@@ -102,9 +102,8 @@ def _distances(solved: SolvedRig, mesh: int) -> Values:
         own, first = rig.shaft_speed(shaft, held) * RPM, rig.pinion_speed(held)
         places = {at_torque(label, named[torque]), *(f"{label} {gear}" for gear in ("pinion", "wheel"))}
         here = [peak for peak in peaks if peak.where in places]
-        for peak in sorted(
-            here, key=lambda one, first=first: abs(one.speed - first)
-        ):  # of equals the first counts
+        nearest_first = np.argsort([abs(peak.speed - first) for peak in here], kind="stable")
+        for peak in (here[number] for number in nearest_first):  # of equals the first counts
             distance = peak.distance(first, bounds.margin)
             inside = "" if distance else ", where the response itself is above the share"
             yield (

@@ -75,9 +75,9 @@ def _substances(case: "Case") -> Iterator[Fault]:
     for name, box in case.gearboxes.items():
         at = f"gearboxes.{name}"
         used = {f"{at}.oil.oil": box.oil.oil, f"{at}.bearing_oil.oil": box.bearing_oil_name}
-        for path, oil in used.items():
-            if oil not in oils:
-                yield unknown(path, oil, oils, "oil")
+        for path, used_oil in used.items():
+            if used_oil not in oils:
+                yield unknown(path, used_oil, oils, "oil")
         used = {f"{at}.gears.{gear}.material": part.material for gear, part in box.gears.items()}
         if box.housing is not None:
             used |= {f"{at}.housing.material": box.housing.material}

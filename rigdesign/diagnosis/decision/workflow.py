@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.diagnosis.decision.claims import Refusal
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
@@ -188,7 +189,7 @@ def _wrong_data(
         return None
     wrong = [one for one in evidence if one.hypothesis.family == "input"]
     best = max(wrong, key=lambda one: weights.masses[one.hypothesis.name])
-    heat = np.flatnonzero(residuals.of_heat)
+    heat = residuals.of_heat
     of_heat = 0.5 * (
         _square(whole, whole.residual, heat) - _square(whole, whole.residual - best.answer, heat)
     )
@@ -209,7 +210,7 @@ def _wrong_data(
     )
 
 
-def _square(space: Whitened, white: Array, rows: Array) -> float:
+def _square(space: Whitened, white: Array, rows: NDArray[np.bool_]) -> float:
     """Square of some numbers of a residual, whitened by themselves."""
     own = space.covariance.matrix[np.ix_(rows, rows)]
     values = (space.covariance.lower @ white)[rows]

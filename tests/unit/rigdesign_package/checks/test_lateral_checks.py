@@ -83,7 +83,9 @@ def test_rigid_bodies_that_sway_in_unloaded_bearings_are_no_decrement_and_no_cri
     assert (check.value, check.verdict) == (0.2, "pass")
     assert "1 rigid-body modes from 1.2 Hz do not grow" in check.reason
     assert calm["lateral.separation"].verdict == "pass"
-    assert found(held=(replace(swaying, logarithmic_decrement=-0.001),))["lateral.stability"].verdict == "fail"
+    assert (
+        found(held=(replace(swaying, logarithmic_decrement=-0.001),))["lateral.stability"].verdict == "fail"
+    )
 
 
 def test_a_critical_speed_keeps_the_distance_that_its_amplification_asks_for() -> None:
