@@ -24,7 +24,7 @@ from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.results.rows.campbell import campbell_row
 from rigdesign.results.rows.contact_in_loop import contact_in_loop_row
-from rigdesign.results.rows.contact_in_motion import contact_loss_row, pair_share_row
+from rigdesign.results.rows.contact_in_motion import pair_share_row
 from rigdesign.results.rows.dwell import dwell_row
 from rigdesign.results.rows.dynamic_root import dynamic_root_rows
 from rigdesign.results.rows.flank_rating import flank_rating_row
@@ -80,7 +80,6 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         contact_in_loop=[contact_in_loop_row(found) for found in solved.contact_in_loop.meshes],
         press_fits=[press_fit_row(found) for found in solved.press_fits],
         splines=[spline_stress_row(found) for found in solved.splines],
-        contact_loss_maps=[contact_loss_row(found) for found in vibration.maps],
         pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],
         waterfalls=[waterfall_row(found) for found in waterfalls(rig, run)],
         spectra=[spectrum_row(found) for found in held_spectra(rig, run)],

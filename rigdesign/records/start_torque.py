@@ -4,6 +4,7 @@ At a tenth of the test torque or less the tooth deviations are not closed; slow 
 load cause contact loss.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -11,8 +12,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.records.contact_loss_maps import response_under
-from rigdesign.records.curves import own_ratio, resolved
+from dynamics.response.response_curve import ResponseCurve
+from rigdesign.coupling.braced_loop import signed_torque
+from rigdesign.records.curves import own_ratio, resolved, response_solver
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig
@@ -106,8 +108,19 @@ class StartResponse:
         return float(self.speed[:-1][free][0]) if free.any() else None
 
 
+def response_under(rig: Rig, run: DynamicRun, torque: float, speeds: Sequence[float]) -> ResponseCurve:
+    """Stable states that repeat in every mesh, by harmonic balance; none at speeds where there are none.
+
+    torque : stated [N m]; speeds : of the first pinion, rising [rad/s]
+    """
+    warm = run.test.last
+    held = signed_torque(rig, warm.point)
+    signed = math.copysign(torque * abs(held / warm.point.torque), held)
+    return response_solver(rig, warm, signed, (min(speeds), max(speeds)), stable_only=True)(speeds)
+
+
 def start_response(rig: Rig, run: DynamicRun) -> StartResponse | None:
-    """Around the speed at which the torque is first raised; None where maps of contact loss are not computed."""
+    """Around the speed at which the torque is first raised; None where narrow resonances are not resolved."""
     if not resolved(rig):
         return None
     speeds = np.linspace(BELOW, ABOVE, SPEEDS) * first_speed(rig)

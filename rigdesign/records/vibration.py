@@ -6,18 +6,14 @@ from functools import partial
 
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.records.campbell import campbell
-from rigdesign.records.contact_loss_maps import contact_loss_maps
 from rigdesign.records.dwell_speeds import DwellSources, dwell_record
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.start_torque import StartResponse, start_response
 from rigdesign.results.campbell import CampbellRecord
-from rigdesign.results.contact_in_motion import ContactLossMap
 from rigdesign.results.dwell import DwellRecord
 from rigdesign.results.section_torques import SectionTorqueRecord
-
-Maps = tuple[ContactLossMap, ...]
 
 
 @dataclass(frozen=True)
@@ -27,7 +23,6 @@ class LoopVibration:
     campbell: CampbellRecord
     torques: SectionTorqueRecord
     dwell: DwellRecord
-    maps: Maps
 
 
 def loop_vibration(solved: SolvedRig) -> LoopVibration:
@@ -36,15 +31,14 @@ def loop_vibration(solved: SolvedRig) -> LoopVibration:
     assert run is not None and loads is not None
     top = max(run.curves.response.speeds) / rig.pinion_speed(1.0)
     states = loop_states(rig, run.test, float(top))
-    works: list[Callable[[], CampbellRecord | Maps | StartResponse | None]] = [
+    works: list[Callable[[], CampbellRecord | StartResponse | None]] = [
         partial(campbell, rig, run.test, states, loads.modes),
-        partial(contact_loss_maps, rig, run, loads),
         partial(start_response, rig, run),
     ]
     with BackgroundTasks(works) as tasks:
         torques = section_torque_record(solved, states)
-        diagram, maps, start = tasks.results()
-    assert isinstance(diagram, CampbellRecord) and isinstance(maps, tuple)
+        diagram, start = tasks.results()
+    assert isinstance(diagram, CampbellRecord)
     assert start is None or isinstance(start, StartResponse)
     sources = DwellSources(
         loads=loads, torques=torques, diagram=diagram, start=start, near=solved.near_dwells
@@ -53,5 +47,4 @@ def loop_vibration(solved: SolvedRig) -> LoopVibration:
         campbell=diagram,
         torques=torques,
         dwell=dwell_record(rig, run, sources),
-        maps=maps,
     )

@@ -1,4 +1,4 @@
-"""Contact of the teeth in motion: shares of the pairs and where contact is lost, SI records."""
+"""Contact of the teeth in motion: shares of the pairs, SI records."""
 
 from dataclasses import dataclass
 
@@ -27,21 +27,3 @@ class PairShare:
     """(m,) force in the transverse line of action per face width there, in motion [N/m]."""
     static_line_load: Row
     """(m,) at rest, at the same place on the path [N/m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ContactLossMap:
-    """Least torque of a mesh over its mean on a grid of speed and torque; None where no stable response
-    that repeats in every mesh was found."""
-
-    mesh: str
-    speed: Row
-    """(s,) of the pinion of the mesh [rad/s]"""
-    torque: Row
-    """(t,) stated [N m]"""
-    least_share: tuple[tuple[float | None, ...], ...]
-    """(t, s) [-]; 0 or less where contact is lost."""
-    lift_off: tuple[tuple[float | None, ...], ...]
-    """(t, s) share of the time without contact [-]."""
-    unstable: tuple[tuple[bool, ...], ...]
-    """(t, s) True where the response that repeats in every mesh loses contact and does not last."""

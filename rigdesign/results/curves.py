@@ -106,8 +106,6 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
                     "line load quasi-static [N/mm]": shared["line_load_quasi_static_N_mm"],
                 },
             )
-    for loss in dynamics.contact_loss_maps:
-        yield file_stem("contact_loss", loss["gearbox"]), _contact_loss(loss)
     for waterfall in dynamics.waterfalls:
         yield file_stem("waterfall", waterfall["gearbox"], waterfall["stage"]), _waterfall(waterfall)
     if dynamics.dynamic_root is not None and dynamics.dynamic_root["curves"]:
@@ -165,25 +163,6 @@ def _campbell(campbell: Mapping[str, Any]) -> Columns:
         if any(whirl is not None for whirl in mode["whirl"]):
             columns[f"mode {mode['mode']} whirl [1]"] = list(mode["whirl"])
     return columns
-
-
-def _contact_loss(loss: Mapping[str, Any]) -> Columns:
-    """All points of the grid below each other."""
-    return _columns(
-        (
-            "torque [Nm]",
-            "pinion speed [rpm]",
-            "least torque over mean [1]",
-            "share of time without contact [1]",
-        ),
-        (
-            (torque, speed, least, lifted)
-            for torque, row, lift in zip(
-                loss["torque_Nm"], loss["least_share"], loss["lift_off_share"], strict=True
-            )
-            for speed, least, lifted in zip(loss["pinion_speed_rpm"], row, lift, strict=True)
-        ),
-    )
 
 
 def _waterfall(waterfall: Mapping[str, Any]) -> Columns:

@@ -186,10 +186,6 @@ class DynamicsResult:
     pair_shares: list[dict[str, Any]] = field(default_factory=list)
     """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
     force at that moment, in motion), share_quasi_static, force_over_mean}."""
-    contact_loss_maps: list[dict[str, Any]] = field(default_factory=list)
-    """Least torque of a mesh over its mean, and share of the time without contact: {gearbox, pinion_speed_rpm,
-    torque_Nm, least_share, lift_off_share: rows over torque of columns over speed, None without a response}; empty at
-    fidelity quick and where the response repeats after a revolution."""
     contact_in_loop: list[dict[str, Any]] = field(default_factory=list)
     """At fidelity reference, K_V with the contact solved in the loop against that of the contact tables, at the held
     stages and (peak) where the mesh has its highest K_V over speed: {gearbox, stage (empty: no stage holds the speed),

@@ -1,13 +1,11 @@
-"""Load on the tooth pairs in motion, and where contact is lost over speed and torque."""
+"""Load on the tooth pairs in motion."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, words
 from rigdesign.report.numbers import unit_text
-from rigdesign.report.palette import INK, LINES, MUTED, TEMPERATURE_COLOURS, VERDICT_COLOURS, CurveStyle
+from rigdesign.report.palette import INK, LINES, CurveStyle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,48 +57,3 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
     )
     if first:
         axes.legend(loc="lower center", fontsize=7)
-
-
-def contact_loss_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
-    """A panel for each gearbox: least torque over the mean by speed and torque; crosses at contact loss."""
-    figure = new_figure(3.3)
-    panels = figure.subplots(1, len(rows), squeeze=False, sharey=True)[0]
-    for axes, row in zip(panels, rows, strict=True):
-        values = np.array([[np.nan if v is None else v for v in line] for line in row["least_share"]])
-        places = np.arange(len(row["torque_Nm"]))
-        image = axes.pcolormesh(
-            row["pinion_speed_rpm"], places, values, cmap=TEMPERATURE_COLOURS, vmin=0.0, vmax=1.0, shading="nearest",
-            rasterized=True,
-        )  # fmt: skip
-        lost = np.array([[v is not None and v > 0.0 for v in line] for line in row["lift_off_share"]])
-        unstable = np.array(row["unstable"])
-        for marks, marker, colour, label in (
-            (lost, "x", VERDICT_COLOURS["fail"], "contact is lost"),
-            (
-                unstable,
-                "+",
-                VERDICT_COLOURS["fail"],
-                "contact is lost, motion not periodic with the mesh",
-            ),
-            (np.isnan(values) & ~unstable, ".", MUTED, "no response found"),
-        ):
-            torque, speed = np.nonzero(marks)
-            if speed.size:
-                axes.plot(
-                    np.array(row["pinion_speed_rpm"])[speed], places[torque], marker, color=colour, markersize=4,
-                    label=label,
-                )  # fmt: skip
-        axes.grid(visible=False)
-        axes.set_yticks(places, [f"{torque:.3g}" for torque in row["torque_Nm"]])
-        finish(axes, "pinion speed n [rpm]", f"torque [{unit_text('Nm')}]" if axes is panels[0] else "")
-        gearbox_title(axes, f"Gearbox {words(row['gearbox'])}", styles[row["gearbox"]])
-    handles: dict[str, Any] = {}
-    for axes in panels:
-        handles |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    if handles:
-        figure.legend(handles.values(), handles.keys(), loc="lower left", bbox_to_anchor=(0.07, 0.0), ncols=3)
-    bar = figure.colorbar(image, ax=list(panels), pad=0.015, fraction=0.05)
-    bar.set_label("minimum torque over mean [–]")
-    figure.subplots_adjust(left=0.075, right=0.87, top=0.89, bottom=0.28, wspace=0.08)
-    bar.ax.set_position((0.895, 0.28, 0.014, 0.61))
-    return figure

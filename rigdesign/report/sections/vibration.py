@@ -77,7 +77,7 @@ def _span(values: list[float | None]) -> tuple[float, float]:
 
 def _in_motion(result: RunResult, draw: Draw) -> Values:
     """Figures of spectra and contact."""
-    from rigdesign.report.figures.contact_in_motion import contact_loss_figure, pair_share_figure
+    from rigdesign.report.figures.contact_in_motion import pair_share_figure
     from rigdesign.report.figures.spectra import spectrum_figure, waterfall_figure
 
     dynamics = result.dynamics
@@ -94,11 +94,6 @@ def _in_motion(result: RunResult, draw: Draw) -> Values:
             pair_share_figure,
             dynamics.pair_shares,
             "Share of a tooth pair over the rolling angle",
-        ),
-        "loss_figure": (
-            contact_loss_figure,
-            dynamics.contact_loss_maps,
-            "Least torque over the mean by speed and torque",
         ),
     }
     shown: Values = {

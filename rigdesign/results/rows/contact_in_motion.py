@@ -3,8 +3,7 @@
 import math
 from typing import Any
 
-from rigdesign.results.contact_in_motion import ContactLossMap, PairShare
-from rigdesign.results.units import RPM
+from rigdesign.results.contact_in_motion import PairShare
 
 
 def pair_share_row(found: PairShare) -> dict[str, Any]:
@@ -20,16 +19,4 @@ def pair_share_row(found: PairShare) -> dict[str, Any]:
         "face_mm": [1e3 * place for place in found.face],
         "line_load_N_mm": [1e-3 * load for load in found.line_load],
         "line_load_quasi_static_N_mm": [1e-3 * load for load in found.static_line_load],
-    }
-
-
-def contact_loss_row(found: ContactLossMap) -> dict[str, Any]:
-    """Rows over torque of columns over speed."""
-    return {
-        "gearbox": found.mesh,
-        "pinion_speed_rpm": [speed * RPM for speed in found.speed],
-        "torque_Nm": list(found.torque),
-        "least_share": [list(row) for row in found.least_share],
-        "lift_off_share": [list(row) for row in found.lift_off],
-        "unstable": [list(row) for row in found.unstable],
     }

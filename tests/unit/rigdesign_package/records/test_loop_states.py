@@ -16,9 +16,9 @@ from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records import curves
-from rigdesign.records.contact_loss_maps import response_under
 from rigdesign.records.loop_modes import held_modes, modes_at
 from rigdesign.records.loop_states import dwell_speeds, dwell_stages, state_at
+from rigdesign.records.start_torque import response_under
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 
@@ -51,7 +51,7 @@ def test_bearings_of_a_state_carry_the_torque_of_the_curve_it_serves() -> None:
         assert np.trace(film.stiffness) > np.trace(part.bearings[name].stiffness), name
 
 
-def test_a_map_of_contact_loss_has_bearings_under_its_own_torque(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_response_under_another_torque_has_its_own_bearings(monkeypatch: pytest.MonkeyPatch) -> None:
     """A twentieth of the test torque: the loop at the highest speed is that of bearings under a twentieth."""
     rig, point = held()
     asked: list[Any] = []
