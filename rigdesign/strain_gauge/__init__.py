@@ -1,1 +1,1 @@
-"""Strain gauges in the tooth root, both ways: from stress to what the logger records, and back."""
+"""Strain gauges in the tooth root: from stress to bridge output, and back from what a logger records."""

@@ -18,6 +18,18 @@ from rigdesign.strain_gauge.surface_stress import SurfaceStress
 Array = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class StrainRecord:
+    """Recorded bridge output of one measuring point.
+
+    time : (n,) increasing [s]; ratio : (n,) U_B / U_E [V/V], NaN where missing; overloaded : samples at the input range
+    """
+
+    time: Array
+    ratio: Array
+    overloaded: int = 0
+
+
 @dataclass(frozen=True, kw_only=True)
 class MeasuringPoint:
     """One strain gauge with its bridge, on the surface of the tooth root.

@@ -13,8 +13,8 @@ from rigdesign.prediction.model import GAUGES_AGAINST
 from rigdesign.prediction.predictor import Predictor
 from rigdesign.prediction.root_strain import StrainCurve, strain_curve
 from rigdesign.rig.model import Rig
-from rigdesign.strain_gauge.logger import Amplifier
 from tests.builders.paths import CASES
+from tests.builders.strain_logger import Amplifier
 
 CASE = CASES / "strain_gauge_rig"
 GAUGES = ("i", "ii", "iv", "v")

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.strain_gauge.logger import StrainRecord
 from rigdesign.strain_gauge.low_pass import LowPass
-from rigdesign.strain_gauge.measuring_point import MeasuringPoint
+from rigdesign.strain_gauge.measuring_point import MeasuringPoint, StrainRecord
 from rigdesign.strain_gauge.rolling_angle import RollingAngle
 from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve, turn_average
 from tests.builders.strain_zero import UnloadedAngles, ZeroReadings

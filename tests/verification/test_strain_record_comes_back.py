@@ -17,12 +17,12 @@ from rigdesign.measurement.processing.strain_record import (
     read_strain_records,
 )
 from rigdesign.measurement.reading.document import Tach
-from rigdesign.strain_gauge.logger import Amplifier, RootStressHistory, logged
 from rigdesign.strain_gauge.low_pass import LowPass
 from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve
 from tests.builders.recording import write_recording
 from tests.builders.strain_evaluation import Evaluation, lost_in_low_pass, stress_over_angle
 from tests.builders.strain_gauge import SPEED, bridge, measuring_point, root_stress, wandering_angle
+from tests.builders.strain_logger import Amplifier, RootStressHistory, logged
 from tests.builders.strain_zero import UnloadedAngles
 
 RATE, SECONDS = 5000.0, 30.0

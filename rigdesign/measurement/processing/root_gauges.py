@@ -23,7 +23,7 @@ from rigdesign.prediction.model import Feature
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.curve_windows import curve_windows
-from rigdesign.strain_gauge.logger import StrainRecord
+from rigdesign.strain_gauge.measuring_point import StrainRecord
 from rigdesign.strain_gauge.rolling_angle import RollingAngle, turns_until_same_teeth
 from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve, turn_average
 

@@ -14,7 +14,7 @@ from rigdesign.measurement.reading.document import DataSection, Tach
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, turn_angle
 from rigdesign.strain_gauge.bridge import Bridge
-from rigdesign.strain_gauge.logger import StrainRecord
+from rigdesign.strain_gauge.measuring_point import StrainRecord
 from rigdesign.strain_gauge.rolling_angle import RollingAngle, at_constant_speed, from_speed
 
 OUTPUT_KINDS = ("voltage", "voltage_ratio")

@@ -7,9 +7,9 @@ import pytest
 from scipy import signal
 
 from rigdesign.base.errors import CaseError
-from rigdesign.strain_gauge.logger import Amplifier
 from rigdesign.strain_gauge.low_pass import LowPass
 from tests.builders.strain_evaluation import passed_harmonics
+from tests.builders.strain_logger import Amplifier
 
 KINDS = [(kind, order) for kind in ("butterworth", "bessel") for order in (1, 2, 4, 8)]
 

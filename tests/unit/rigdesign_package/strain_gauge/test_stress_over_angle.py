@@ -7,8 +7,8 @@ import pytest
 
 from rigdesign.base.errors import CaseError, MeasurementError
 from rigdesign.strain_gauge.gauge import ThermalOutput
-from rigdesign.strain_gauge.logger import Amplifier, RootStressHistory, StrainRecord, logged
 from rigdesign.strain_gauge.low_pass import LowPass
+from rigdesign.strain_gauge.measuring_point import StrainRecord
 from rigdesign.strain_gauge.rolling_angle import at_constant_speed, from_speed, turns_until_same_teeth
 from rigdesign.strain_gauge.turn_average import AngleGrid, turn_average
 from tests.builders.strain_evaluation import Evaluation, lost_in_low_pass, stress_over_angle
@@ -21,6 +21,7 @@ from tests.builders.strain_gauge import (
     wandering_angle,
     wandering_speed,
 )
+from tests.builders.strain_logger import Amplifier, RootStressHistory, logged
 from tests.builders.strain_zero import UnloadedAngles, ZeroReadings
 
 FAR_SIDE = UnloadedAngles(1.5, 5.5)

@@ -8,22 +8,10 @@ from numpy.typing import NDArray
 
 from rigdesign.base.number_faults import refuse, require_above, require_at_least
 from rigdesign.strain_gauge.low_pass import LowPass
-from rigdesign.strain_gauge.measuring_point import MeasuringPoint
+from rigdesign.strain_gauge.measuring_point import MeasuringPoint, StrainRecord
 from rigdesign.strain_gauge.rolling_angle import RollingAngle
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class StrainRecord:
-    """Recorded bridge output of one measuring point.
-
-    time : (n,) increasing [s]; ratio : (n,) U_B / U_E [V/V], NaN where missing; overloaded : samples at the input range
-    """
-
-    time: Array
-    ratio: Array
-    overloaded: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)
