@@ -32,6 +32,10 @@ class LossError(DynamicsInputError):
     """Impossible input of a loss; the message names value, limit and remedy."""
 
 
+RIVAL_LAW, RIVAL_POWER = "rival_law", "rival_power"
+"""Among the details of a loss: the published law that differs most from the one taken, and what it gives [W]."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Loss:
     """Power lost at one place of the rig."""

@@ -10,10 +10,10 @@ from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import LOADS, REGISTRY, load_topics
 from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
 from rigdesign.records.hand import disagreeing
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 
-__all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks"]
+__all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_other_law"]
 
 load_topics(__name__, __path__)
 
@@ -31,7 +31,9 @@ def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> lis
 def estimated_checks(solved: SolvedRig) -> list[Check]:
     """Every check in the order of the report with the error of its value, without its assumed inputs."""
     errors = solved.mesh_errors
-    checks = (with_error(check, errors.get(check.id)) for check in held_checks(solved))
+    checks = [with_error(check, errors.get(check.id)) for check in held_checks(solved)]
+    for spread in solved.law_spreads:
+        checks = [of_other_law(check, spread) for check in checks]
     return [_of_reduced_model(solved, check) if solved.rig.reduced else check for check in checks]
 
 
@@ -51,6 +53,12 @@ REDUCED = "fidelity quick (shafts that only twist, analytic teeth with K_Hbeta a
 REDUCED_ERROR = 0.5
 """Share of the value of a check on tooth loads by which fidelity quick may be off: up to 0.42 between quick and
 standard on the shipped rigs and two rigs of others (K_V 1.53 against 1.08, root safety 3.18 against 1.85)."""
+
+
+def of_other_law(check: Check, spread: LawSpread) -> Check:
+    """A check with what another law of a loss moves in it added to its error."""
+    change = spread.changes.get(check.id, 0.0)
+    return with_error(check, (check.error or 0.0) + change, spread.cause) if change else check
 
 
 def _of_reduced_model(solved: SolvedRig, check: Check) -> Check:

@@ -14,7 +14,7 @@ from dynamics.losses.immersion import (
     splash_flow,
     tooth_space_flow,
 )
-from dynamics.losses.mesh_loss import Loss
+from dynamics.losses.mesh_loss import RIVAL_LAW, RIVAL_POWER, Loss
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.state import OperatingPoint
@@ -122,10 +122,14 @@ def _by_law(stage: tuple[RunningGear, RunningGear], bath: OilBath, sump: DipOil)
     else:
         losses = compared.losses.get(sump.churning) or stage_churning(stage, bath, sump.churning)
         reason = f"{sump.churning}: choice of the case"
+    taken = losses[0].power + losses[1].power
+    rival = max(compared.powers, key=lambda law: abs(compared.powers[law] - taken))
     first, second = (
         replace(
             loss,
-            details=loss.details | {"powers_of_all_laws": _range(compared.losses, index), "reason": reason},
+            details=loss.details
+            | {"powers_of_all_laws": _range(compared.losses, index), "reason": reason}
+            | {RIVAL_LAW: rival, RIVAL_POWER: compared.losses[rival][index].power},
         )
         for index, loss in enumerate(losses)
     )

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
-from dynamics.losses.mesh_loss import Loss, ToothPath, mesh_loss, squeeze_loss
+from dynamics.losses.mesh_loss import RIVAL_LAW, RIVAL_POWER, Loss, ToothPath, mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
@@ -34,8 +34,6 @@ DAMPER_SHARE = 0.1
 """Work of a mesh damper, as a share of the tooth friction, above which it warns."""
 LEAST_DAMPER_WORK = 1.0
 """Work of a mesh damper [W] that warns at least: nothing of it matters below."""
-ANDERSON_LOEWENTHAL = "anderson_loewenthal_power"
-"""Among the details of a windage loss: what their correlation gives for the gear [W]."""
 
 
 def rotating_losses(
@@ -243,7 +241,8 @@ def _windage(
         omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
         loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
         other = anderson_loewenthal(rotor.pitch_radius, rotor.face_width, omega, oil_viscosity)
-        loss = replace(loss, details=loss.details | {ANDERSON_LOEWENTHAL: other})
+        rival = {RIVAL_LAW: "Anderson and Loewenthal", RIVAL_POWER: other}
+        loss = replace(loss, details=loss.details | rival)
         yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 

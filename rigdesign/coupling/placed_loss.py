@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from dynamics.losses.mesh_loss import Loss
+from dynamics.losses.mesh_loss import RIVAL_LAW, RIVAL_POWER, Loss
 from rigdesign.coupling.flank_heat import MeshSplit
 
 
@@ -27,6 +27,15 @@ class PlacedLoss:
     given: bool = False
     end_share: float = 0.0
     """Of a seal loss, the share that arises where the shaft leaves the housing: next to the bearings, in their oil."""
+
+    @property
+    def rival(self) -> tuple[str, float] | None:
+        """Law that differs most from the one taken and its power [W], with the loss factor of the case; None where
+        there is one law, or the case gives the loss."""
+        details = self.loss.details
+        if self.given or RIVAL_LAW not in details:
+            return None
+        return str(details[RIVAL_LAW]), float(details[RIVAL_POWER]) * float(details.get("loss_factor", 1.0))
 
     @property
     def name(self) -> str:

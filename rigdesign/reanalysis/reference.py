@@ -19,7 +19,7 @@ from rigdesign.reanalysis.modified_rig import modified_rig, with_records
 from rigdesign.reanalysis.motor_torque import Array, losses_on_motor, peaks_only
 from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventRecord
 from rigdesign.results.loads import DynamicLoads
@@ -44,6 +44,7 @@ class Reference:
     loads: DynamicLoads | None
     events: tuple[EventRecord, ...]
     discretisation: tuple[DiscretisationRow, ...]
+    law_spreads: tuple[LawSpread, ...]
     key: str
 
 
@@ -79,6 +80,7 @@ def solve_reference(
         loads=solved.loads,
         events=tuple(solved.events),
         discretisation=tuple(solved.discretisation),
+        law_spreads=tuple(solved.law_spreads),
         key=f"{case.hash} {fidelity}",
     )
     return reference, solved
@@ -96,7 +98,7 @@ def reanalysed(
     """
     with solver_errors(again.case), threadpool_limits(limits=1):
         solved, parts = modified_rig(restored(reference), again, reference.motor_losses)
-        return result_of(replace(solved, discretisation=reference.discretisation), evaluate, parts)
+        return result_of(_with_errors(solved, reference), evaluate, parts)
 
 
 def result_of(
@@ -129,7 +131,12 @@ def _restored(reference: Reference) -> SolvedRig:
     if reference.curves is not None and reference.ramp is not None:
         run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
     solved = with_records(rig, points, run, reference.loads)
-    return replace(solved, events=reference.events, discretisation=reference.discretisation)
+    return replace(_with_errors(solved, reference), events=reference.events)
+
+
+def _with_errors(solved: SolvedRig, reference: Reference) -> SolvedRig:
+    """A rig whose checks are as far off as those of the reference."""
+    return replace(solved, discretisation=reference.discretisation, law_spreads=reference.law_spreads)
 
 
 def _point(rig: Rig, point: OperatingPoint, converged: CouplingState) -> PointResult:

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.losses.mesh_loss import RIVAL_POWER
 from rigdesign.coupling.expansion import centrifugal_expansion
-from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.units import MM, UM
@@ -125,7 +125,7 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
         if placed.loss.kind == "windage" and not placed.given:
             rows.append(
                 _row(
-                    f"windage, {placed.name}", placed.loss.power, float(details[ANDERSON_LOEWENTHAL]), "W",
+                    f"windage, {placed.name}", placed.loss.power, float(details[RIVAL_POWER]), "W",
                     f"{WINDAGE}; at losses.chamber_density = {float(details['mist_density']):.3g} kg/m3 here",
                 )
             )  # fmt: skip

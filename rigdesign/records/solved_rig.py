@@ -33,6 +33,17 @@ from rigdesign.rig.model import Rig
 
 
 @dataclass(frozen=True, kw_only=True)
+class LawSpread:
+    """What another published law of a loss would change.
+
+    cause : both laws with what they give; changes : of the value of a check in its unit, by its id
+    """
+
+    cause: str
+    changes: Mapping[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
 class SolvedRig:
     """A solved rig in SI units; sequences of records run over the held stages, and over the gearboxes in each."""
 
@@ -55,6 +66,7 @@ class SolvedRig:
     contact_in_loop: ContactInLoop = field(default_factory=ContactInLoop)
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
+    law_spreads: Sequence[LawSpread] = ()
 
     @cached_property
     def lateral(self) -> LateralVibration | None:

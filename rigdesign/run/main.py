@@ -48,6 +48,7 @@ from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
 from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
+from rigdesign.run.rival_laws import law_spreads
 from rigdesign.run.solver_errors import solver_errors
 from rigdesign.run.warnings import not_modelled, warnings_of
 from thermal.fe.kernels import one_thread
@@ -122,6 +123,7 @@ def solve_case(
             meshes = discretisation(rigs, rig, converged, points)
             lap("discretisation")
             temperatures = [compared_temperatures(wanted, *found) for found in housing_fields(points)]
+            spreads = tuple(law_spreads(wanted, points))
             lap("alternatives")
         run = dynamics.result()
         lap("dynamics")
@@ -130,6 +132,7 @@ def solve_case(
         solved_rig(wanted, points, temperatures, run=run, loads=loads),
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
+        law_spreads=spreads,
     )
     if run is not None and wanted.case.events:
         say("events: " + ", ".join(wanted.case.events))

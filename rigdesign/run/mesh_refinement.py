@@ -92,7 +92,7 @@ def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxM
         return None
 
 
-def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
+def on_mesh(rig: Rig, converged: PointResult, source: Rig, *, oil_follows: bool = False) -> PointResult:
     """One more iteration of a converged point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
     bearings.
 
@@ -100,6 +100,7 @@ def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
     change of this iteration: the shift from mesh to mesh.
 
     source : the rig on which the point converged
+    oil_follows : the oil ends at the temperatures of this iteration, not at those it started with
 
     Raises
     ------
@@ -116,6 +117,9 @@ def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
     done = replace(last, **vars(housings), streams=tuple(streams))
     after = next_state(rig, done)
     change = replace(Residual.between(done.coupling_state, after), torque=0.0)
+    if oil_follows:
+        oil = {"oil_outlet": after.oil_outlet, "oil_supply": after.oil_supply}
+        done = replace(done, coupling_state=replace(done.coupling_state, **oil))
     return replace(converged, last=_warmed(rig, done, after), residuals=(*converged.residuals, change))
 
 

@@ -45,6 +45,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="time_run", text=text) for text in fast_ramps(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
+        *(Finding(id="rival_law", text=text) for text in _rival_laws(solved)),
         *(Finding(id="oil", text=text) for text in _oils(solved)),
         *(Finding(id="oil_circuit", text=text) for text in _circuits(solved)),
         *(Finding(id="rig_heat", text=text) for text in _rig_heat(solved)),
@@ -265,6 +266,17 @@ def _left_out_of_the_shafts(solved: SolvedRig) -> Iterator[str]:
     )
 
 
+def _rival_laws(solved: SolvedRig) -> Iterator[str]:
+    """Losses whose laws differ, with the check of temperature that moves most."""
+    for spread in solved.law_spreads:
+        kelvin = {id_: change for id_, change in spread.changes.items() if id_.startswith("temperature.")}
+        most = max(kelvin, key=lambda id_: kelvin[id_], default=None)
+        moved = "no temperature: the oil is held"
+        if most is not None and kelvin[most] >= 0.05:
+            moved = f"{most} by {kelvin[most]:.2g} K, in the error of that check and of others"
+        yield f"{spread.cause} moves {moved}; measure the no-load torque"
+
+
 def without_effect(solved: SolvedRig) -> Iterator[str]:
     """Keys of the case that shafts which only twist do not read."""
     keys = sideways_keys(solved.case) if solved.rig.shaft_model == "torsional" else []
@@ -308,7 +320,7 @@ def not_modelled(solved: SolvedRig) -> list[str]:
         if solved.rig.mesh_stiffness == "influence_numbers"
         else "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
         "temperature over time: steady states at the held stages only",
-        "oil flow distribution, aeration and sump level: films are given by surface",
+        "oil flow distribution and aeration: films are given by surface, those of a bath by its level at rest",
         "roughness of the tooth roots: Y_RrelT is 1, as for the test gears behind sigma_FE",
     ]
     without = [name for name, box in solved.case.gearboxes.items() if box.housing is None]

@@ -1,18 +1,23 @@
 """Gears that dip: a sump that is held or finds its own temperature, what it takes up, what it churns."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from dynamics.losses.mesh_loss import RIVAL_POWER
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
+from rigdesign.checks import mesh_checks, of_other_law
 from rigdesign.coupling.dip import churning
 from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
+from rigdesign.records.solved_rig import solved_rig
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.rival_laws import law_spreads
 from tests.builders.fzg_case import HELD, fzg_case
 
 FREE = {"test": "", "slave": HELD}
@@ -75,6 +80,35 @@ def test_the_law_of_the_case_decides(rig: Rig) -> None:
         power[law] = sum(loss.power for _, loss in churning(changed, "test", point, 363.15, changed.pairs))
     assert power["iso_tr_14179_2"] > 3.0 * power["changenet_2007"]
     assert 0.5 < power["recommended"] / power["changenet_2007"] < 2.0
+
+
+def test_what_another_law_of_churning_moves_is_an_error_of_the_checks(rig: Rig, free: PointResult) -> None:
+    """The free sump with the losses of ISO/TR 14179-2 against the whole loop by that law."""
+    (spread,) = law_spreads(rig, [free])
+    assert re.search(r"churning at stage test \(test 41.* W by changenet_2011, 2.* W by iso_tr_14179_2; slave", spread.cause)
+    other = rig.case.with_value("gearboxes.test.oil.churning", "iso_tr_14179_2")
+    whole = solve_point(build_rig(other, "quick").with_models(rig.models), free.point)
+    rise = sump_of(whole) - sump_of(free)
+    assert rise > 5.0
+    assert spread.changes["temperature.oil_outlet"] == pytest.approx(rise, rel=0.15)
+    assert spread.changes["temperature.gear_bulk"] > 0.5 * rise
+    solved = replace(solved_rig(rig, [free], []), law_spreads=(spread,))
+    (check,) = [one for one in mesh_checks(solved) if one.id == "temperature.oil_outlet"]
+    near = replace(check, margin=0.5 * spread.changes[check.id])
+    undecided = of_other_law(near, spread)
+    assert (undecided.verdict, undecided.error) == ("open", spread.changes[check.id])
+    assert spread.cause in undecided.reason
+    far = of_other_law(replace(check, margin=100.0, verdict="pass"), spread)
+    assert (far.verdict, far.error) == ("pass", spread.changes[check.id])
+
+
+def test_laws_that_agree_and_losses_that_are_given_have_no_rival(free: PointResult) -> None:
+    wheel = next(p for p in free.last.losses if p.name == "test.wheel" and p.loss.kind == "churning")
+    assert wheel.rival is not None
+    assert replace(wheel, given=True).rival is None
+    details = wheel.loss.details | {RIVAL_POWER: 1.2 * wheel.loss.power}
+    close = replace(free.last, losses=[replace(wheel, loss=replace(wheel.loss, details=details))])
+    assert not list(law_spreads(None, [replace(free, last=close)]))  # type: ignore[arg-type]
 
 
 def test_gears_above_the_oil_have_windage(rig: Rig) -> None:
