@@ -133,7 +133,7 @@ def default_speed_control(
     frequency, mobility = _drive_modes(system, laws)
     # what is left of the rig where all springs are soft: the rotor alone
     rotor = 1.0 / float(np.linalg.inv(system.inertia)[drive, drive])
-    rate = min(2.0 * pi * bandwidth, rotor / (16.0 * inertia * delay))
+    rate = min(2.0 * pi * bandwidth, rotor / (8.0 * inertia * delay))
     for _ in range(20):
         control = SpeedControl(
             proportional=2.0 * inertia * rate,
@@ -143,7 +143,7 @@ def default_speed_control(
         )
         fast = frequency > 1.0 / np.sqrt(control.time_constant * delay)
         gain = control.proportional / np.hypot(1.0, control.time_constant * frequency) * mobility
-        if not fast.any() or float(gain[fast].max()) <= 0.5:
+        if not fast.any() or float(gain[fast].max()) <= 1.0:
             break
         rate /= np.sqrt(2.0)
     return control

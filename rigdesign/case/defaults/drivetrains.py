@@ -28,7 +28,7 @@ STUB = 2.5
 FLANGE = (3.25, 0.35)
 """Diameter and width of half a coupling, in diameters of the shaft: a steel flange."""
 FOUR_POLE = 1500.0 * math.tau / 60.0
-"""Speed of a four-pole motor at the mains [rad/s]; a faster motor of the same torque has no larger rotor."""
+"""Synchronous speed of a four-pole motor [rad/s]: the size of a rotor goes with torque, at whatever speed it turns."""
 STEEPEST = 1.875
 """Largest slope of a stage over its mean, see `dynamics.response.schedule.s_derivative`."""
 DAMPING_TIME = 2e-5
@@ -221,12 +221,11 @@ def _motor_torque(tree: RawTree) -> Filling:
 
 @book.default("drivetrain.motor.inertia")
 def _motor_inertia(tree: RawTree) -> Filling:
-    limit, speed = tree.si("drivetrain.motor.torque_limit", "torque"), _speed_at_motor(tree)
-    if limit is None or speed is None:
+    limit = tree.si("drivetrain.motor.torque_limit", "torque")
+    if not limit:
         return None
-    kilowatt = 1e-3 * limit * min(speed, FOUR_POLE)
-    reason = "rotor of a four-pole motor of this torque, 0.0019 kg m2 (P/kW)^1.4, P at 1500 rpm at most"
-    return around(0.0019 * kilowatt**1.4, "kg m2", reason) if kilowatt > 0.0 else None
+    reason = "rotor of a four-pole motor of this torque, 0.0019 kg m2 (P/kW)^1.4 with P at 1500 rpm"
+    return around(0.0019 * (1e-3 * limit * FOUR_POLE) ** 1.4, "kg m2", reason)
 
 
 def _ratio_to_motor(tree: RawTree) -> float | None:

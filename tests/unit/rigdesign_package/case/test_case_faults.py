@@ -64,6 +64,12 @@ BAD = [
         "above 0 mm",
     ),
     ('ambient.temperature = "2000 degC"', "ambient.temperature", "is above 600 degC", "at most 600 degC"),
+    (
+        'drivetrain.couplings.wheel_side.shafts = ["reference_pinion", "test_pinion"]',
+        "drivetrain.couplings.wheel_side.shafts",
+        "one line already",
+        "line that is left",
+    ),
     ("losses.squeeze_share = 0.3", "losses.squeeze_share", "less than or equal to 0.1", "at most 0.1"),
     (
         "gearboxes.test.gears.pinion.teeth = 99.5",

@@ -5,8 +5,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from dynamics.drivetrain.graph import assemble
 from rigdesign.base.errors import CaseError
 from rigdesign.base.units import parse
 from rigdesign.case import Case, load_case
@@ -16,6 +18,7 @@ from rigdesign.case.defaults.rule import BY_THE_TOOL, Given
 from rigdesign.case.defaults.runs import _response_period
 from rigdesign.case.loader import changed_together
 from rigdesign.case.shipped import shipped_cases
+from rigdesign.rig.model import build_rig
 from tests.builders.minimal_case import MINIMAL, MOST_LINES, minimal_case
 from tests.builders.paths import ROOT
 
@@ -331,3 +334,43 @@ def test_changing_a_default_coupling_leaves_the_halves_on_the_shafts() -> None:
     assert {name: shaft.discs for name, shaft in changed.drivetrain.shafts.items()} == {
         name: shaft.discs for name, shaft in case.drivetrain.shafts.items()
     }
+
+
+OF_A_SIZE = """\
+schema_version = 1
+name = "size"
+[gearboxes.test]
+oil = {{ oil = "FVA 3", inlet_temperature = "60 degC" }}
+all_bearings = {{ diameter = "{shaft:.4g} mm" }}
+gears.pinion = {{ teeth = {teeth[0]}, face_width = "{width} mm", bore_diameter = "{shaft:.4g} mm" }}
+gears.wheel = {{ teeth = {teeth[1]}, face_width = "{width} mm" }}
+meshes.main = {{ normal_module = "{module} mm", centre_distance = "{distance} mm" }}
+[gearboxes.slave]
+like = "test"
+[schedule]
+test_speed = "{speed} rpm"
+test_torque = "{torque:.4g} N m"
+"""
+
+
+@pytest.mark.parametrize("teeth", [(20, 30), (25, 100)])
+@pytest.mark.parametrize("speed", [500, 15000])
+@pytest.mark.parametrize("module", [1, 4, 25])
+def test_defaults_of_every_size_load_and_fit_each_other(
+    tmp_path: Path, module: int, speed: int, teeth: tuple[int, int]
+) -> None:
+    """Places stay within their bounds, and half of the motor's torque carries the steepest part of the run-up."""
+    text = OF_A_SIZE.format(
+        module=module, speed=speed, teeth=teeth, width=10 * module, shaft=0.5 * module * teeth[0],
+        distance=0.5 * module * sum(teeth), torque=5.0 * module**3,
+    )  # fmt: skip
+    (tmp_path / "case.toml").write_text(text)
+    rig = build_rig(load_case(tmp_path), "quick")
+    assert rig.drivetrain is not None and rig.case.drivetrain is not None
+    system = assemble(rig.drivetrain)
+    shafts = [name.partition("/")[0] for name in system.dofs]
+    ratios = np.array([rig.shaft_speed(shaft, 1.0) for shaft in shafts]) / rig.drive_speed(1.0)
+    run_up = next(stage for stage in rig.case.schedule.resolved() if stage.kind == "run_up")
+    steepest = 1.875 * rig.drive_speed(run_up.speed_end) / run_up.duration
+    torque = float(ratios @ system.inertia @ ratios) * steepest
+    assert torque < 0.75 * rig.case.drivetrain.motor.torque_limit
