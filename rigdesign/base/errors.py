@@ -9,7 +9,7 @@
     │   └── OutputError         2   an output folder that cannot be written
     ├── NotConvergedError       3   an iteration did not converge, a speed was not reached
     │   └── NonFiniteResultError 3  a result is NaN or infinite
-    └── MissingLibraryError     4   a system library is missing
+    └── MissingLibraryError     4   a system library is missing, or the memory to load it
 
 A message states name, value, limit and remedy. The solvers have roots of their own, `thermal.errors` and
 `dynamics.errors`; `rigdesign.run.solver_errors` turns them into this tree. Anything else is a defect: exit status 70.
@@ -155,7 +155,7 @@ class NonFiniteResultError(NotConvergedError):
 
 
 class MissingLibraryError(RigdesignError):
-    """A system library that is not installed; the message carries the command that installs it."""
+    """What the machine lacks: a system library, with the command that installs it, or memory to load the libraries."""
 
     exit_code = 4
 

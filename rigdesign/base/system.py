@@ -1,9 +1,11 @@
-"""What the tool needs from the machine: system libraries, compiled kernels, a place for the cache."""
+"""What the tool needs from the machine: system libraries, memory, compiled kernels, a place for the cache."""
 
 import ctypes
 import importlib
+import os
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 GMSH_LIBRARIES = {
     "libGL.so.1": "libgl1",
@@ -47,6 +49,46 @@ def gmsh_remedy(missing: list[str]) -> str:
     """The sentence that tells a user how to get gmsh to load."""
     what = ", ".join(missing) if missing else "a shared library"
     return f"gmsh cannot be loaded: {what} is missing; on Debian or Ubuntu run: {APT_LINE}"
+
+
+LOADED, ROOM = 0.6e9, 0.2e9
+"""Address space that the libraries take when they are loaded, and that some library or matrix takes [bytes]."""
+
+
+def memory_shortage(error: Exception | None = None) -> str:
+    """That the process may use too little memory to load the libraries, or to go on after an error; else empty."""
+    limit = _address_space()
+    allowed = f"of {limit / 1e9:.2g} GB (ulimit -v) " if limit else ""
+    if error is None:
+        return (
+            f"an address space {allowed}is too small: the libraries take {LOADED / 1e9:g} GB, a check 1.2 GB or more; "
+            "raise the limit"
+            if limit is not None and limit < LOADED
+            else ""
+        )
+    if not isinstance(error, MemoryError) and (limit is None or limit - _used() > ROOM):
+        return ""
+    why = f"{type(error).__name__}: {error}"
+    return f"the memory {allowed}is used up ({why}); give the process more, or a lower --fidelity"
+
+
+def _address_space() -> int | None:
+    """Limit of this process [bytes]; None where there is none."""
+    if sys.platform == "win32":
+        return None
+    import resource
+
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return None if limit == resource.RLIM_INFINITY else limit
+
+
+def _used() -> int:
+    """Address space in use [bytes], where the system says it."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    except OSError:
+        return 0
+    return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 def diagnose() -> list[MachineFinding]:

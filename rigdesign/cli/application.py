@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Group, Parameter, Token
 
-from rigdesign.base.errors import UsageError
+from rigdesign.base.errors import MissingLibraryError, UsageError
+from rigdesign.base.system import memory_shortage
 from rigdesign.base.version import __version__
 from rigdesign.cli.terminal.console import verbosity
 
@@ -65,6 +66,8 @@ def _launch(
         from rigdesign.cli.terminal.verbose import cache_use
 
         asked = tokens[:1] and not tokens[0].startswith("-")
+        if asked and (shortage := memory_shortage()):
+            raise MissingLibraryError(shortage)
         with cache_use() if asked else nullcontext():
             return app(tokens, result_action="return_value")
     finally:

@@ -20,6 +20,8 @@ SIMULATIONS_KEPT = (
     "no report was written; finished simulations are stored, the same command goes on from there"
 )
 
+PIPE = 13
+"""Number of SIGPIPE, which Windows does not name."""
 CLEAN_UP = 10.0
 """Time after an interrupt in which others are ignored [s]."""
 
@@ -80,31 +82,36 @@ def failure_kept(out: Path | None) -> Iterator[None]:
 def exit_status(command: Callable[[], object]) -> int:
     """Run a command and turn the tool's errors into messages and exit status."""
     from rigdesign.base.errors import WIDEST_PLACE, RigdesignError, shortened
+    from rigdesign.base.system import memory_shortage
 
     try:
         status = command()
         sys.stdout.flush()
     except CycloptsError as error:
-        print(f"rigdesign: {shortened(str(error), WIDEST_PLACE)}", file=sys.stderr)
-        return 2
+        return _told(shortened(str(error), WIDEST_PLACE), 2)
     except RigdesignError as error:
-        print(f"rigdesign: {error}", file=sys.stderr)
-        return error.exit_code
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        return _told(str(error), error.exit_code)
+    except BrokenPipeError:  # as a tool that does not ignore SIGPIPE: the reader has had enough
+        for stream in (sys.stdout, sys.stderr):
+            try:
+                stream.flush()
+            except OSError:
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        return 128 + PIPE
     except KeyboardInterrupt as stop:
         number = getattr(stop, "number", signal.SIGINT)
         by = "" if number == signal.SIGINT else f" by {signal.Signals(number).name}"
-        with suppress(OSError):  # of a terminal that is gone
-            print(
-                "; ".join([f"rigdesign: interrupted{by}", *getattr(stop, "__notes__", [])]), file=sys.stderr
-            )
-        return 128 + number
+        return _told("; ".join([f"interrupted{by}", *getattr(stop, "__notes__", [])]), 128 + number)
     except Exception as error:
-        print(_defect(error), file=sys.stderr)
-        return 70
+        shortage = memory_shortage(error)
+        return _told(shortage, 4) if shortage else _told(_defect(error), 70)
     return status if isinstance(status, int) else 0
+
+
+def _told(message: str, status: int) -> int:
+    with suppress(OSError):  # of a terminal that is gone
+        print(f"rigdesign: {message}", file=sys.stderr)
+    return status
 
 
 def _defect(error: Exception) -> str:
@@ -126,8 +133,8 @@ def _defect(error: Exception) -> str:
         ) as file:
             file.write(text)
     except OSError:
-        return f"{text}\nrigdesign: internal error, a defect of rigdesign and not of your files: {what}"
+        return f"internal error, a defect of rigdesign and not of your files: {what}\n{text}"
     return (
-        f"rigdesign: internal error, a defect of rigdesign and not of your files: {what}; "
+        f"internal error, a defect of rigdesign and not of your files: {what}; "
         f"please report it with the traceback in {file.name}"
     )

@@ -5,11 +5,13 @@ Commands: check, report, study, compare, diagnose, calibrate, diff, validate, ex
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
 report: the result can be read; validate: no gate missed), 1 a check fails or is open, or a gate is missed, 2 usage or
-case error, 3 no convergence, 4 a system library is missing, 5 measured data cannot be used, 70 a defect of the tool,
-128 + n stopped by signal n (130: Ctrl-C). Heavy imports happen inside the commands, so that `--help` answers at once.
+case error, 3 no convergence, 4 a system library or memory is missing, 5 measured data cannot be used, 70 a defect of the
+tool, 128 + n stopped by signal n (130: Ctrl-C) or by a reader that has closed the output (141).
+Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
 import os
+import signal
 import sys
 
 from rigdesign.base.parallel import leave_interrupts, one_blas_thread
@@ -61,6 +63,10 @@ def main() -> None:
     os.environ.update(one_blas_thread())
     plain_streams()
     first_stop_counts()
+    if hasattr(signal, "SIGCHLD"):
+        signal.signal(
+            signal.SIGCHLD, signal.SIG_DFL
+        )  # ignored by some parents: nobody could wait for a process then
     status = exit_status(lambda: run(sys.argv[1:]))
     leave_interrupts()  # the status stands; worker processes are waited for
     sys.exit(status)

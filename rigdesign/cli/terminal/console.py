@@ -21,6 +21,12 @@ verbosity: ContextVar[Verbosity] = ContextVar("verbosity", default="normal")
 """Of the command that runs, from ``--quiet`` and ``--verbose``."""
 
 
+class _Console(Console):
+    def on_broken_pipe(self) -> None:
+        """Leave it to the command, whose status rich would make that of a failing check."""
+        raise
+
+
 def new_console(*, stderr: bool = False, wrap: bool = False, width: int | None = None) -> Console:
     """A console that prints every text as it is: brackets and colons of a title are no markup.
 

@@ -11,6 +11,7 @@ import ctypes
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -24,6 +25,7 @@ from threadpoolctl import threadpool_info
 from rigdesign.base.parallel import BLAS_THREADS
 from rigdesign.base.system import APT_LINE
 from rigdesign.cli import main as cli
+from rigdesign.cli.ending import exit_status
 from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write
 from tests.builders.schema import complaints
 
@@ -100,6 +102,9 @@ def test_help_lists_the_commands_that_exist() -> None:
     assert all(f" {name}" in cli.__doc__ for name in COMMANDS)
 
 
+needs_posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and limits of POSIX")
+
+
 def test_help_of_check_lists_its_options() -> None:
     text = help_text("check")
     options = ("--out", "--fidelity", "--transient", "--ranges", "--all", "--json", "--fail-on")
@@ -156,6 +161,65 @@ def test_a_command_sets_the_threads_of_linear_algebra_itself(stated: dict[str, s
         [sys.executable, "-c", THREADS], env=others | stated, capture_output=True, text=True
     )
     assert done.stdout.strip() == threads, done.stderr
+
+
+MUCH = (
+    "from rigdesign.cli import main as cli\nfrom rigdesign.cli.application import print_json\n"
+    "from rigdesign.cli.terminal.console import new_console\n"
+    "def much(_):\n    {}\n    return 1\n"
+    "cli.run = much\ncli.main()\n"
+)
+
+
+@pytest.mark.parametrize(
+    "statement", ["print_json([0] * 100_000)", "[new_console().print('x' * 1000) for _ in range(1000)]"]
+)
+def test_a_reader_that_closes_the_output_is_no_pass(statement: str) -> None:
+    """Before, a failing check was 0 as JSON and, by rich, a passing one 1 as a table."""
+    code = [sys.executable, "-c", MUCH.format(statement)]
+    with subprocess.Popen(code, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stderr is not None
+        process.stdout.read(1)
+        process.stdout.close()
+        assert process.stderr.read() == ""
+    assert process.returncode == 141
+
+
+@needs_posix
+def test_a_command_waits_for_its_processes_where_its_parent_does_not() -> None:
+    code = (
+        "import signal\nfrom rigdesign.cli import main as cli\n"
+        "cli.run = lambda _: print(signal.getsignal(signal.SIGCHLD) == signal.SIG_DFL)\ncli.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN),
+    )  # fmt: skip
+    assert done.stdout.strip() == "True"
+
+
+@needs_posix
+def test_too_little_memory_is_said_before_a_library_ends_the_process() -> None:
+    """As `ulimit -v`: scipy, OpenBLAS and numba end in ways of their own, one of them with status 1."""
+    import resource
+
+    done = subprocess.run(
+        [sys.executable, "-m", "rigdesign", "explain", "loop_1to1"], capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (280_000_000, 280_000_000)),
+    )  # fmt: skip
+    assert done.returncode == 4 and done.stderr.count("\n") == 1
+    assert "address space of 0.28 GB (ulimit -v) is too small: the libraries take 0.6 GB" in done.stderr
+
+
+def test_memory_that_is_used_up_is_no_defect_of_the_tool(capsys: pytest.CaptureFixture[str]) -> None:
+    def large() -> None:
+        raise MemoryError("Unable to allocate 16.1 MiB")
+
+    assert exit_status(large) == 4
+    assert (
+        "is used up (MemoryError: Unable to allocate 16.1 MiB); give the process more"
+        in capsys.readouterr().err
+    )
 
 
 def test_tests_run_with_the_threads_of_a_command() -> None:
