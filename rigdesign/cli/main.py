@@ -69,4 +69,8 @@ def main() -> None:
         )  # ignored by some parents: nobody could wait for a process then
     status = exit_status(lambda: run(sys.argv[1:]))
     leave_interrupts()  # the status stands; worker processes are waited for
+    if (
+        status > 128
+    ):  # told to end: what is to be closed is closed, the rest of the memory takes seconds to take apart
+        os._exit(status)
     sys.exit(status)

@@ -43,7 +43,7 @@ from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, sh
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
-from rigdesign.rig.tooth_influence import ToothInfluence
+from rigdesign.rig.tooth_influence import Count, ToothInfluence
 from rigdesign.rig.twisting_loop import TwistingLoop
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
@@ -350,9 +350,9 @@ class Rig:
         assert power is not None
         return self.shaft_speed(power.motor.shaft, speed)
 
-    def prepare_teeth(self, say: Progress) -> None:
-        """Read or compute the influence numbers of all gears."""
-        self.tooth_influence.prepare(self.pairs.values(), say)
+    def prepare_teeth(self, say: Progress, count: Count | None = None) -> None:
+        """Read or compute the influence numbers of all gears; ``count`` as of `ToothInfluence.prepare`."""
+        self.tooth_influence.prepare(self.pairs.values(), say, count)
 
     def driven_speed(self, speed: float) -> float:
         """Speed of the shaft that is driven [rad/s] at the stated speed; without a drivetrain of the first pinion."""

@@ -1,7 +1,8 @@
 """Influence numbers of the gears of a rig, of the cold teeth as drawn."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
 from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache, partial
 
@@ -12,7 +13,7 @@ from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_body import GearBody
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
-from rigdesign.base.parallel import BackgroundTasks
+from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.rig.influence_store import InfluenceStore, Progress, silent
 
 INTEGRAL = 0.5
@@ -21,6 +22,7 @@ INTEGRAL = 0.5
 NEEDED = 2.5e9
 """Memory in which the numbers of a gear are computed [bytes]."""
 
+Count = Callable[[int, int, str], None]
 Numbers = tuple[InfluenceNumbers, InfluenceNumbers]
 Compliances = tuple[InterpolatedCompliance, InterpolatedCompliance]
 
@@ -36,11 +38,13 @@ class ToothInfluence:
     near: tuple[GearModel, ...] = ()
     _found: dict[GearModel, InfluenceNumbers] = field(default_factory=dict, compare=False, repr=False)
 
-    def prepare(self, pairs: Iterable[GearPair], say: Progress = silent) -> None:
+    def prepare(self, pairs: Iterable[GearPair], say: Progress = silent, count: Count | None = None) -> None:
         """Read the numbers of the gears of some pairs and compute what is missing, as many at a time as there is room.
 
         In copies of this process: where a compiled library with threads of its own has run in it, GNU OpenMP ends the
         copies, and their gears are computed here, one after the other.
+
+        count : called with gears done, gears in all and the last one, from none on; ``say`` where it is left out
         """
         models = dict.fromkeys(self.known(gear_model(pair, index)) for pair in pairs for index in (0, 1))
         for model in models:
@@ -48,15 +52,25 @@ class ToothInfluence:
             if found is not None:
                 self._found[model] = found
         missing = [model for model in models if model not in self._found]
-        if missing:
-            say(f"influence numbers of gears not yet known: {len(missing)}, half a minute each; then kept")
-        at_once = _at_once()
-        while missing:
-            # what another process computes comes last: it is read then
-            missing.sort(key=self.store.in_progress)
-            batch, missing = missing[:at_once], missing[at_once:]
-            with BackgroundTasks([partial(self.store.compute, model) for model in batch]) as tasks:
-                self._found.update(zip(batch, tasks.results(), strict=True))
+        if not missing:
+            return
+        # what another process computes comes last: it is read then
+        missing.sort(key=self.store.in_progress)
+        whole, at_once = len(missing), min(_at_once(), cores())
+        say(f"influence numbers of gears not yet known: {whole}, half a minute each; then kept")
+        count = count or (
+            lambda done, whole, last: say(f"{done} of {whole} gears, last {last}") if done else None
+        )
+        count(0, whole, "")
+        with ExitStack() as copies:
+            begun: list[BackgroundTasks[InfluenceNumbers]] = []
+            for done, model in enumerate(missing):
+                begun.extend(
+                    copies.enter_context(BackgroundTasks([partial(self.store.compute, new)]))
+                    for new in missing[len(begun) : done + at_once]
+                )
+                (self._found[model],) = begun[done].results()
+                count(done + 1, whole, _words(model))
 
     def of_pair(self, pair: GearPair) -> Numbers:
         """Numbers of pinion and wheel on the face positions of the contact: positive z comes into mesh last."""
@@ -85,6 +99,11 @@ class ToothInfluence:
             return model
         alike = (one for one in self.near if replace(model, face_width=one.face_width) == one)
         return next(alike, model)
+
+
+def _words(model: GearModel) -> str:
+    gear = model.form.gear
+    return f"the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm"
 
 
 def _at_once() -> int:

@@ -44,6 +44,7 @@ from rigdesign.results.rows.rig_heat import rig_heat_row
 from rigdesign.results.rows.rolling_bearings import rolling_bearing_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.tooth_influence import Count
 from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
@@ -65,15 +66,17 @@ def run_case(
     *,
     transient: bool = False,
     follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
+    count: Count | None = None,
 ) -> RunResult:
     """Compute a case and hold it against its limits; parameters and errors are those of `rigdesign.api.run_case`.
 
+    count : called with gears done, gears in all and the last one where influence numbers are computed
     follow_ups : called with the solved rig and the result so far, by the name of their time in the timings
     """
     say = progress or (lambda message: None)
     clock = _Clock()
     with solver_errors(case), threadpool_limits(limits=1):
-        solved = solve_case(case, fidelity, say, clock.lap)
+        solved = solve_case(case, fidelity, say, clock.lap, count)
         result = _assemble(solved, clock)
         if transient:
             from rigdesign.run.transient import with_transient
@@ -88,14 +91,18 @@ def run_case(
 
 
 def solve_case(
-    case: Case, fidelity: Fidelity, say: Progress = lambda message: None, lap: Progress = lambda name: None
+    case: Case,
+    fidelity: Fidelity,
+    say: Progress = lambda message: None,
+    lap: Progress = lambda name: None,
+    count: Count | None = None,
 ) -> SolvedRig:
     """The solved rig before its checks; ``lap`` is called with the name of every part that is done."""
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
     if wanted.mesh_stiffness == "influence_numbers":
-        wanted.prepare_teeth(say)
+        wanted.prepare_teeth(say, count)
         lap("influence_numbers")
     rig = looping_rig(wanted)
     for name in rig.models:

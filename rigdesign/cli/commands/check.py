@@ -90,6 +90,7 @@ def check(
             progress=progress,
             transient=transient,
             follow_ups={"checks": selection.applied, "flips": with_flips},
+            count=progress.count,
         )
         if ranges:
             from rigdesign.uncertainty.run import with_ranges

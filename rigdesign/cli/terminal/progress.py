@@ -76,7 +76,7 @@ class Progress:
         )
         self._counted = _Counted(done, whole, last, begun, since, now)
         if self._verbose or done == whole or 10 * done // whole > 10 * (done - 1) // whole:
-            self._say(f"{done} of {whole}, last {last}", self._remaining_text())
+            self._say(f"{done} of {whole}{last and f', last {last}'}", self._remaining_text())
 
     def note(self, message: str) -> None:
         """Show ``message`` so that it stays."""

@@ -253,9 +253,20 @@ def test_gears_are_prepared_once_and_kept_without_a_folder(tmp_path: Path, built
     influence, said = ToothInfluence(store=InfluenceStore(tmp_path / "file" / "influence")), []
     influence.prepare([spur_pair()], said.append)
     assert "not yet known: 2" in said[0] and len(built) == 2
+    assert [line.split(",")[0] for line in said[1:]] == ["1 of 2 gears", "2 of 2 gears"]
     influence.prepare([spur_pair()], said.append)
     influence.of_pair(spur_pair())
-    assert len(said) == 1 and len(built) == 2
+    assert len(said) == 3 and len(built) == 2
+
+
+def test_every_gear_that_is_done_is_counted(tmp_path: Path, built):
+    """Minutes in which a bar moves; before, one line stood there until all gears were done."""
+    counts = []
+    ToothInfluence(store=InfluenceStore(tmp_path)).prepare(
+        [helical_pair()], count=lambda *told: counts.append(told)
+    )
+    assert [count[:2] for count in counts] == [(0, 2), (1, 2), (2, 2)]
+    assert counts[2][2].startswith(f"the gear with {gear_model(helical_pair(), 1).form.gear.teeth} teeth")
 
 
 def test_a_damaged_file_is_told_and_prepared_again(tmp_path: Path, built, monkeypatch):
