@@ -14,6 +14,7 @@ from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.path_filter import TAIL, PathFilter
 from dynamics.mesh.slice_springs import slice_springs
+from thermal.fe.kept_results import kept_as
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -22,9 +23,6 @@ PADDING = 8
 """Cells beyond the ends of the path of a pair, which keep its splines free of them."""
 FINER = 4
 """Samples of a cell before a filter."""
-MOST_KEPT = 8
-"""Sums that are kept; the oldest are forgotten when one more comes."""
-_kept: dict[object, "_Sums"] = {}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,18 +74,11 @@ def flank_samples(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankSamp
     pitch = law.base_pitch
     beyond = ceil(4.0 * TAIL * abs(grid.path_filter.step) / pitch) * grid.per_pitch // 4 if grid.pairs else 0
     key = (
-        tuple(value.tobytes() if isinstance(value, np.ndarray) else value for value in law), grid.sign, grid.pairs,
-        grid.per_pitch, grid.depths.tobytes(), grid.tilts.tobytes(), beyond, node_law.path_speed,
+        _sums, tuple(value.tobytes() if isinstance(value, np.ndarray) else value for value in law),
+        grid.sign, grid.pairs, grid.per_pitch, grid.depths.tobytes(), grid.tilts.tobytes(), beyond, node_law.path_speed,
         node_law.sharpness.tobytes(),
     )  # fmt: skip
-    if key not in _kept:
-        if len(_kept) >= MOST_KEPT:
-            del _kept[next(iter(_kept))]
-        found = _sample(law, node_law, grid, FINER, beyond)
-        spectrum = np.fft.rfft(found.sums, axis=1)
-        places = found.sums.shape[1]
-        _kept[key] = _Sums(found._replace(sums=np.zeros(0)), spectrum, places)
-    unfiltered, spectrum, places = _kept[key]
+    unfiltered, spectrum, places = kept_as(key, lambda: _sums(law, node_law, grid, beyond))
     cycles = np.fft.rfftfreq(places, pitch / grid.per_pitch / FINER)
     response = grid.path_filter.response(cycles)
     known = np.flatnonzero(response)[-1] + 1
@@ -96,6 +87,11 @@ def flank_samples(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankSamp
     sums = np.zeros((len(spectrum), len(range(0, places, FINER)), *spectrum.shape[2:]))
     sums[..., used] = np.fft.irfft(spectrum[:, :known][..., used] * response, places, axis=1)[:, ::FINER]
     return unfiltered._replace(sums=sums)
+
+
+def _sums(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid, beyond: int) -> _Sums:
+    found = _sample(law, node_law, grid, FINER, beyond)
+    return _Sums(found._replace(sums=np.zeros(0)), np.fft.rfft(found.sums, axis=1), found.sums.shape[1])
 
 
 def _used(grid: FlankGrid, node_law: NodeLaw, count: int) -> NDArray[np.int64]:

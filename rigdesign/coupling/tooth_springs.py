@@ -1,7 +1,6 @@
 """Mesh law of a warm mesh: tooth pairs as the analytic model or as influence numbers have them."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import ToothInfluence
+from thermal.fe.kept_results import kept
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +96,7 @@ def _from_influence(rig: Rig, mesh: WarmMesh, factor: float) -> tuple[PairStiffn
     return shape, law
 
 
-@lru_cache(maxsize=8)
+@kept
 def _lines(
     influence: ToothInfluence,
     pair: GearPair,

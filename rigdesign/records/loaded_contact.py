@@ -7,7 +7,7 @@ axes, and so not in K_Hbeta.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from math import radians
 
 import numpy as np
@@ -27,6 +27,7 @@ from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
 from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import ToothInfluence
+from thermal.fe.kept_results import kept
 
 Array = NDArray[np.float64]
 ROOT = radians(15.0)
@@ -37,8 +38,6 @@ POSITIONS = 64
 """Positions of a mesh cycle."""
 FINE = 256
 """Positions of a mesh cycle for the contact ratio without load."""
-KEPT = 64
-"""Contacts that are kept: those of the meshes of a rig at its held points."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,13 +132,13 @@ def held_contact(rig: Rig, point: PointResult, mesh: int) -> HeldContact | None:
     )
 
 
-@lru_cache(maxsize=KEPT)
+@kept
 def kept_contact(contact: HeldContact) -> HeldContact:
     """The first contact that was equal: what is computed of it serves ratings, checks and report alike."""
     return contact
 
 
-@lru_cache(maxsize=KEPT)
+@kept
 def _transverse_load_factor(contact: HeldContact, deviation: float) -> float:
     return transverse_load_factor(contact.mesh, contact.cycle, deviation)
 

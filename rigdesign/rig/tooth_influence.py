@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass, field, fields, replace
-from functools import lru_cache, partial
+from functools import partial
 
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.pair import GearPair
@@ -15,6 +15,7 @@ from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
 from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.rig.influence_store import InfluenceStore, Progress, silent
+from thermal.fe.kept_results import kept
 
 INTEGRAL = 0.5
 """Radius at which a gear that is one with its shaft is held, as a share of its root radius: the shaft has the rest."""
@@ -112,13 +113,13 @@ def _at_once() -> int:
     return max(1, int(0.5 * memory / NEEDED))
 
 
-@lru_cache(maxsize=16)
+@kept
 def _of_pair(influence: ToothInfluence, pair: GearPair) -> Numbers:
     pinion, wheel = (influence.numbers(gear_model(pair, index)) for index in (0, 1))
     return pinion.reversed_face(), wheel
 
 
-@lru_cache(maxsize=16)
+@kept
 def _compliances(influence: ToothInfluence, pair: GearPair) -> Compliances:
     pinion, wheel = (
         InterpolatedCompliance.of(numbers, pair.base_helix_angle) for numbers in _of_pair(influence, pair)

@@ -7,7 +7,6 @@ box, and so is the field under a foot with a ``foot_contact``.
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import combinations
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.housing import Housing
 from rigdesign.case.rules.surfaces import boundary_faults
+from thermal.fe.kept_results import kept
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.face_rules import FaceRule
 from thermal.housing.fitted import ROUND, fit_cylinder, fitted_model
@@ -293,7 +293,7 @@ class _Part:
     step: bool
 
 
-@lru_cache(maxsize=8)
+@kept
 def _read(part: _Part) -> NamedMesh:
     """What the file holds."""
     if part.step:
@@ -310,7 +310,7 @@ class _Drawn:
     """Of the foot on the field [m]; None without a field to draw."""
 
 
-@lru_cache(maxsize=8)
+@kept
 def _whole(part: _Part, geometry: HousingGeometry, drawn: _Drawn, sizes: MeshSizes) -> GearboxModel:
     """The model with the parts that are drawn from the tables."""
     mesh = _read(part)

@@ -34,11 +34,12 @@ not meshed, nor is the air in the chambers.
 
 import math
 from collections.abc import Iterator, Mapping
-from functools import lru_cache, partial
+from functools import partial
 from types import MappingProxyType
 from typing import Literal
 
 from thermal.fe.gmsh_session import gmsh_session
+from thermal.fe.kept_results import kept
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.geometry import ClampingField, HousingGeometry
 from thermal.housing.housing_surfaces import FOOT, field_faces, housing_faces
@@ -171,7 +172,7 @@ def _shaft_component(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: Mes
     )
 
 
-@lru_cache(maxsize=32)
+@kept
 def build_shaft(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> NamedMesh:
     """Mesh one shaft of a gearbox with its gear, for a housing that is not the box.
 
@@ -181,7 +182,7 @@ def build_shaft(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSize
         return mesh_component(gmsh, _shaft_component(geometry, shaft, sizes), sizes.circle)
 
 
-@lru_cache(maxsize=32)
+@kept
 def build_field(geometry: HousingGeometry, sizes: MeshSizes) -> NamedMesh:
     """Mesh the field of a gearbox with the seat of its foot, for a housing that is not the box.
 
@@ -191,7 +192,7 @@ def build_field(geometry: HousingGeometry, sizes: MeshSizes) -> NamedMesh:
         return mesh_component(gmsh, _field_component(geometry, sizes), sizes.circle)
 
 
-@lru_cache(maxsize=32)
+@kept
 def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
     with gmsh_session() as gmsh:
         components = [
