@@ -360,7 +360,13 @@ FAMILIES = (
             "highest surface speed in a seal",
             "Diameter of the seal times the largest speed of its shaft; the largest of all seals of the part.",
         ),
-        only_inputs=(*SPEEDS, "gearboxes.*.housing.shafts", "gearboxes.*.bearings", "drivetrain.shafts"),
+        only_inputs=(
+            *SPEEDS,
+            "gearboxes.*.housing.shafts",
+            "gearboxes.*.bearings",
+            "gearboxes.*.seals",
+            "drivetrain.shafts",
+        ),
     ),
     replace(
         _family(

@@ -65,5 +65,9 @@ counts where no machine heats an oil circuit, which feeds gearboxes, one with ``
 twist."""
 OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
 """Influences of an input that stay in its gearbox: the place of a check begins with it."""
-SPEEDS = ("schedule", "gearboxes.*.gears", "gearboxes.*.meshes")
-"""Inputs behind the speeds and torques of all shafts."""
+SPEEDS = (
+    "schedule", "gearboxes.*.gears.*.teeth", "gearboxes.*.gears.*.shaft", "gearboxes.*.gears.*.role",
+    "gearboxes.*.meshes.*.pinion", "gearboxes.*.meshes.*.wheel", "drivetrain.couplings.*.shafts",
+    "drivetrain.torque_at",
+)  # fmt: skip
+"""Inputs behind the stated speeds and torques of all shafts: the schedule and the ratios."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from dynamics.bearing.rolling_state import STABILISED_TEMPERATURE, RollingState, rolling_state
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
+from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import HEAT, of_gearboxes
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
@@ -141,6 +142,10 @@ RULES = (
         "Speed of the shaft at the held stages over the mechanical limiting speed of the catalogue.",
         source="catalogue: limiting speed", limit=_one("catalogue: limiting speed"),
         values=_of_states(lambda state: state.speed_utilisation), warm=False,
+        only_inputs=(
+            *SPEEDS, *(f"gearboxes.*.bearings.*.{key}" for key in ("type", "shaft", "designation")),
+            "gearboxes.*.bearings.*.catalogue.limiting_speed",
+        ),
     ),
     _rule(
         "minimum_load", "radial load of a rolling bearing over its least load", NUMBER,

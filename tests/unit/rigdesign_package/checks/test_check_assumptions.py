@@ -1,12 +1,13 @@
 """Which assumed inputs a check of the shipped case depends on, by the table of the checks."""
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 
 from rigdesign.case import Case, load_case
-from rigdesign.checks.assumptions import is_under, with_assumptions
+from rigdesign.checks.assumptions import depends, is_under, with_assumptions
 from tests.builders.checks import EXPECTED, check, limit_of
 from tests.builders.paths import CASES
 
@@ -105,3 +106,33 @@ def test_the_feet_of_the_shipped_housings_state_their_joint_with_a_range(name: s
     assert "gearboxes.test.housing.foot_contact" not in shipped
     joint = shipped["gearboxes.test.housing.foot_contact.conductance"]
     assert joint.range == ("75 W/(m2 K)", "7000 W/(m2 K)")
+
+
+SPEED_RULES = ("bearing.speed", "specimen.load_cycles", "ramp.test_torque")
+"""Arithmetic of schedule and ratios."""
+
+
+@pytest.mark.parametrize("rule", SPEED_RULES)
+@pytest.mark.parametrize(
+    ("path", "moves"),
+    [
+        ("schedule.test_speed", True),
+        ("gearboxes.test.gears.pinion.teeth", True),
+        ("gearboxes.test.gears.pinion.flank.roughness", False),
+        ("gearboxes.test.gears.wheel.face_width", False),
+        ("gearboxes.test.meshes.main.centre_distance", False),
+        ("gearboxes.test.oil.sump_temperature", False),
+        ("gearboxes.test.bearings.pinion_front.radial_clearance", False),
+    ],
+)
+def test_a_rule_of_speeds_depends_on_what_it_reads(rule: str, path: str, moves: bool) -> None:
+    assert depends(load_case(PROTOTYPE.parent / "fzg"), check(rule), path) is moves
+
+
+@pytest.mark.parametrize(("key", "reads"), [("designation", True), ("axial_play", False)])
+def test_the_speed_limit_of_a_bearing_is_that_of_its_catalogue(key: str, reads: bool) -> None:
+    """NU 406 at 2250 rpm over 11 000 rpm: nothing but these two stands behind the value of the shipped rig."""
+    path = f"gearboxes.test.bearings.pinion_front.{key}"
+    assert depends(load_case(PROTOTYPE.parent / "fzg"), check("bearing.speed"), path) is reads
+    shipped = json.loads((PROTOTYPE.parent / "fzg/expected.json").read_text(encoding="utf-8"))
+    assert shipped["checks"]["bearing.speed"]["utilisation"] == pytest.approx(2250 / 11_000, abs=5e-5)
