@@ -2,7 +2,7 @@
 
 import logging
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -130,6 +130,7 @@ def read_signals(
     try:
         with np.errstate(all="ignore"):
             names, columns = reader(path, name, data, wanted)
+            signals = _placed(name, columns, wanted, timed, data)
     except MeasurementError:
         raise
     except Exception as error:  # readers of binary files raise whatever a damaged byte leads them to
@@ -137,21 +138,32 @@ def read_signals(
         raise refused(name, f"cannot be read or was cut off ({said})", AGAIN) from None
     if not names:
         raise refused(name, "holds no signal", "export it again with its channels")
+    signals.names = names
+    return signals
+
+
+def _placed(
+    file: str,
+    columns: Sequence[_Column],
+    wanted: Iterable[str],
+    timed: Collection[str] | None,
+    data: DataSection,
+) -> Signals:
+    """The wanted signals, those of ``timed`` in the time of the first of them."""
     faults: list[Fault] = []
     chosen: dict[str, tuple[_Column, _Axis]] = {}
     for one in wanted:
         try:
-            column = _meant(name, one, columns)
+            column = _meant(file, one, columns)
             if column is not None:
-                chosen[one] = column, _axis(f"{name}, {one}", column, data)
+                chosen[one] = column, _axis(f"{file}, {one}", column, data)
         except MeasurementError as error:
             faults += error.faults
     related = {one: axis for one, (_, axis) in chosen.items() if timed is None or one in timed}
-    faults += _apart(name, related)
+    faults += _apart(file, related)
     if faults:
         raise MeasurementError(faults)
     signals = Signals()
-    signals.names = names
     first = min((axis.start for axis in related.values() if axis.start is not None), default=None)
     for one, (column, axis) in chosen.items():
         time = axis.time
@@ -177,15 +189,14 @@ def _meant(file: str, wanted: str, columns: Iterable[_Column]) -> _Column | None
 def _axis(at: str, column: _Column, data: DataSection) -> _Axis:
     """Time of a signal, by its group's signal of times or by its sampling rate."""
     count = len(column.samples)
-    if column.samples.dtype.kind not in "fiub":
-        raise refused(at, f"holds {column.samples.dtype}, no numbers", "export it as numbers")
+    if column.samples.dtype.kind not in "fiub" or column.samples.ndim != 1:
+        raise refused(at, f"holds {column.samples.dtype}, no numbers over time", "export it as numbers")
     if count < 2:
         raise refused(at, f"holds {count} samples", "name a signal over time")
-    known = dict(column.attributes)
+    known, start = column.attributes, None
     marks = {key: value for key, value in known.items() if PLACES_IN_TIME.search(key)}
-    step, time, start = _step(at, known, data), column.time, None
-    if time is not None and len(time) != count:
-        time = None
+    step = _step(at, known, data)
+    time = column.time if column.time is not None and len(column.time) == count else None
     if time is not None and time.dtype.kind == "M":
         start, time = time[0], (time - time[0]) / np.timedelta64(1, "s")
     elif time is not None:
@@ -196,9 +207,8 @@ def _axis(at: str, column: _Column, data: DataSection) -> _Axis:
             "correct the wrong one or its unit",
         )  # fmt: skip
     if time is None and step is not None:
-        unit = next((str(known[key]) for key in STEP_UNITS if key in known), "")
-        offset = float(marks.pop("wf_start_offset", 0.0)) * _unit_of_time(at, unit, data)
-        time = offset + step * np.arange(count)
+        offset = _number(at, "wf_start_offset", marks.pop("wf_start_offset", 0.0))
+        time = offset * _unit_of_time(at, _step_unit(known), data) + step * np.arange(count)
         for key in STARTS:
             if (stamp := _stamp(marks.get(key))) is not None:
                 del marks[key]
@@ -219,8 +229,7 @@ def _step(at: str, known: Mapping[str, Any], data: DataSection) -> float | None:
     """Time from sample to sample [s] by the attributes of a signal; None where they do not say."""
     for key in ("wf_increment", "dt"):
         if key in known and (step := _number(at, key, known[key])) > 0.0:
-            unit = next((str(known[key]) for key in STEP_UNITS if key in known), "")
-            step *= _unit_of_time(at, unit, data)
+            step *= _unit_of_time(at, _step_unit(known), data)
             if not FASTEST <= step <= SLOWEST:
                 remedy = f"write {FASTEST:g} to {SLOWEST:g} s"
                 raise refused(at, f"{step:g} s from sample to sample", remedy)
@@ -236,6 +245,10 @@ def _step(at: str, known: Mapping[str, Any], data: DataSection) -> float | None:
         limits = f"{1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz"
         raise refused(at, f"sample_rate = {rate:g}, outside {limits}", "correct the attribute")
     return 1.0 / rate
+
+
+def _step_unit(known: Mapping[str, Any]) -> str:
+    return next((str(known[key]) for key in STEP_UNITS if key in known), "")
 
 
 def _number(at: str, key: str, value: Any) -> float:
@@ -279,7 +292,7 @@ def _apart(file: str, axes: Mapping[str, _Axis]) -> Iterator[Fault]:
 
 def _stamp(said: Any) -> "np.datetime64 | None":
     """A time stamp as such, as a text, without a date on some day, or as seconds since any day; None for all else."""
-    if isinstance(said, np.datetime64):
+    if isinstance(said, np.datetime64) and not np.isnat(said):
         return np.datetime64(str(said), "us")
     if isinstance(said, int | float) and abs(said) <= LONGEST:
         return np.datetime64(round(1e6 * said), "us")

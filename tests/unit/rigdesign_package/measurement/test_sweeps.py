@@ -19,8 +19,9 @@ from rigdesign.measurement.reading.tach import turn_angle
 from rigdesign.prediction.model import Feature
 from tests.builders.measurement import replaced
 from tests.builders.order import shipped
-from tests.builders.recording import write_recording
+from tests.builders.recording import write_recorded_set, write_recording
 from tests.builders.sweep import (
+    CHANNEL,
     CROSSING,
     DAMPING,
     NATURAL,
@@ -194,6 +195,25 @@ def test_sweeps_of_another_torque_say_nothing_of_the_resonance(tmp_path: Path) -
     assert any(
         finding.id == "missing_channel" and "n_res" in finding.channels for finding in measurement.findings
     )
+
+
+@pytest.mark.parametrize("kind", ["csv", "tdms"])
+def test_time_in_another_unit_than_it_seems_is_told_of_blows(tmp_path: Path, kind: str) -> None:
+    """Milliseconds under the label of seconds: 0.24 Hz for 240."""
+    folder = write_recorded_set(tmp_path, "tdms")
+    blows = f'[[data.impacts]]\nfile = "blows.{kind}"\nforce = "Hammer"\n\n[settings.n]'
+    replaced(folder, "measurement.toml", "[settings.n]", blows)
+    frequency = "[channels.f_1]" + CHANNEL.partition("[channels.f_1]")[2]
+    replaced(folder, "measurement.toml", "[channels.T_out]", f"{frequency}\n[channels.T_out]")
+    write_recording(folder / f"blows.{kind}", struck(blows=2), UNITS, 1e-3 * RATE)
+    measurement = loaded(folder)
+    (said,) = (one for one in measurement.findings if one.id == "no_resonance")
+    assert "show frequencies up to 2 Hz, search_range begins at 200 Hz" in said.text
+    assert "f_1" not in measurement.channels
+    if kind == "csv":
+        replaced(folder, "blows.csv", "\ns,N,g", "\nms,N,g")
+        measurement = loaded(folder)
+        assert measurement.readings[Feature("f_1", "")] == pytest.approx(NATURAL, abs=0.2)
 
 
 def test_response_to_a_hammer_is_averaged_over_its_blows() -> None:
