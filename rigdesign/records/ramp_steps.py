@@ -74,7 +74,7 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
             action="raise the torque in part",
             speed=first,
             torque=share * torque,
-            reason=f"K_V reaches {passed:.2f} between here and the test speed at the torques of the curves: "
+            reason=f"K_V reaches {passed:.2f} between here and the dwell at the torques of the curves: "
             f"{share:.2f} of the test torque peaks at no more than {share * passed:.2f} of it",
         )
         yield RampStep(
@@ -124,7 +124,7 @@ def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:
     wanted = first_speed(rig)
     why = "the bearings float from here on" if floating else "first speed of the schedule"
     if wanted >= test:
-        return test, why
+        return test, why if wanted == test else "speed of the dwell"
     raised = False
     if found.start is not None and not found.start.holds_at(wanted):
         contact = found.start.next_held(wanted)
@@ -201,8 +201,8 @@ def _full(found: RampLimits, top: float | None, test: float) -> str:
             "under full torque"
         )
     return (
-        f"the highest main resonance of a mesh, {top * RPM:.0f} rpm, lies above the test speed and is not reached: the "
-        "torque is raised at the dwell speed, after all lower resonances have been passed at part load"
+        f"the highest main resonance of a mesh, {top * RPM:.0f} rpm, lies above the speed of the dwell and is not "
+        "reached: the torque is raised at the dwell speed, after all lower resonances have been passed at part load"
     )
 
 
