@@ -35,7 +35,6 @@ class UnitGear:
     face_width: float | None = None
     profile_shift: float | None = None
     tip_diameter: float | None = None
-    root_diameter: float | None = None
     bore_diameter: float | None = None
     quality_grade: int | None = None
     flank_roughness: float | None = None
@@ -47,16 +46,13 @@ class UnitMesh:
     """Two meshing cylindrical gears.
 
     pinion, wheel : gear ids; the pinion is the one with fewer teeth
-    driver : gear id, where the file says which gear drives
     """
 
     id: int
     name: str
     pinion: int
     wheel: int
-    driver: int | None = None
     centre_distance: float | None = None
-    profile_shift_sum: float | None = None
     application_factor: float | None = None
     face_load_factor: float | None = None
 
@@ -84,7 +80,6 @@ class UnitShaft:
     sections : by their start
     origin : start of the shaft in the coordinates of the gear unit [m]
     axis : unit vector along the shaft there
-    temperature : mean operating temperature [K]
     """
 
     id: int
@@ -92,8 +87,6 @@ class UnitShaft:
     sections: tuple[ShaftSection, ...] = ()
     origin: Vector | None = None
     axis: Vector | None = None
-    material: int | None = None
-    temperature: float | None = None
 
     @property
     def length(self) -> float:
@@ -118,15 +111,13 @@ class CatalogueData:
     type : as REXS has it, e.g. ``radial_roller_bearing``
     dynamic_load_rating, static_load_rating, fatigue_limit_load : radial C, C_0, C_u [N]
     contact_angle : of its first row
-    limit_e, radial_factor, axial_factor, static_axial_factor : e, X, Y for F_a/F_r above e, and Y_0
+    limit_e, axial_factor, static_axial_factor : e, Y for F_a/F_r above e, and Y_0
     contamination_factor : e_C of ISO 281
     limiting_speed, reference_speed : [rad/s]
     """
 
     designation: str | None = None
-    manufacturer: str | None = None
     type: str | None = None
-    rows: int | None = None
     contact_angle: float | None = None
     dynamic_load_rating: float | None = None
     static_load_rating: float | None = None
@@ -134,7 +125,6 @@ class CatalogueData:
     limiting_speed: float | None = None
     reference_speed: float | None = None
     limit_e: float | None = None
-    radial_factor: float | None = None
     axial_factor: float | None = None
     static_axial_factor: float | None = None
     contamination_factor: float | None = None
@@ -148,9 +138,6 @@ class UnitBearing:
     inner_diameter, outer_diameter, width : of bore, outer ring, ring; of a journal bearing its bore, shell and width
     radial_clearance : as delivered, else in operation; of a journal bearing the diametral one [m]
     axial_force : direction in which it takes axial force: both_directions, positive, negative, no_direction
-    radial_stiffness, axial_stiffness : [N/m]
-    lubrication : as REXS has it, e.g. ``oil_bath``
-    immersion_depth : of the lowest point in the oil [m]
     """
 
     id: int
@@ -164,28 +151,15 @@ class UnitBearing:
     radial_clearance: float | None = None
     clearance_class: str | None = None
     axial_force: str | None = None
-    radial_stiffness: float | None = None
-    axial_stiffness: float | None = None
-    lubrication: str | None = None
-    immersion_depth: float | None = None
 
 
 @dataclass(frozen=True)
 class UnitCoupling:
-    """A coupling of two shafts or of a shaft with its surroundings; stiffness [N m/rad, N/m], mass [kg]."""
+    """A coupling of two shafts or of a shaft with its surroundings."""
 
     id: int
     name: str
     place: BearingPlace
-    switchable: bool = False
-    torsional_stiffness: float | None = None
-    bending_stiffness: float | None = None
-    radial_stiffness: float | None = None
-    axial_stiffness: float | None = None
-    inner_diameter: float | None = None
-    outer_diameter: float | None = None
-    length: float | None = None
-    mass: float | None = None
 
 
 @dataclass(frozen=True)
@@ -199,8 +173,6 @@ class UnitLubricant:
     id: int
     name: str
     designation: str | None = None
-    kind: str | None = None
-    basis: str | None = None
     density_15: float | None = None
     viscosity_40: float | None = None
     viscosity_100: float | None = None
@@ -210,19 +182,11 @@ class UnitLubricant:
 
 @dataclass(frozen=True)
 class UnitMaterial:
-    """A material; Young's modulus and strengths [Pa], expansion above room temperature [1/K]."""
+    """A material."""
 
     id: int
     name: str
     designation: str | None = None
-    density: float | None = None
-    elastic_modulus: float | None = None
-    poisson_ratio: float | None = None
-    thermal_expansion: float | None = None
-    conductivity: float | None = None
-    heat_capacity: float | None = None
-    tensile_strength: float | None = None
-    yield_strength: float | None = None
 
 
 @dataclass(frozen=True)
@@ -272,8 +236,6 @@ class GearUnit:
     lubricant: UnitLubricant | None = None
     materials: tuple[UnitMaterial, ...] = ()
     operating_cases: tuple[OperatingCase, ...] = ()
-    reference_temperature: float | None = None
-    """At which the dimensions hold [K]."""
     operating_time: float | None = None
     """Of the whole spectrum [s]."""
 

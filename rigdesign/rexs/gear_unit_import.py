@@ -25,6 +25,13 @@ _IN_SPACE = ("support_vector", "u_axis_vector", "w_axis_vector", "reference_comp
 """Place and direction in the gear unit."""
 
 
+LEFT_OVER = {
+    **dict.fromkeys(COUPLINGS, "the couplings of a rig join two gearboxes: write drivetrain.couplings"),
+    "material": "of built-in materials only; for another one write a table under materials",
+}
+"""Type of component -> why the case does not take what is left of it."""
+
+
 @dataclass(frozen=True)
 class GearUnitImport:
     """What became of a REXS file.
@@ -70,7 +77,7 @@ def import_gear_unit(model: RexsModel) -> GearUnitImport:
         if component.type in _TAKEN:
             for attribute in _IN_SPACE:
                 log.refuse_rest(component, attribute, "the place along the shaft counts")
-            log.list_rest(component, "no counterpart in a case")
+            log.list_rest(component, LEFT_OVER.get(component.type, "no counterpart in a case"))
         else:
             log.list_rest(component, f"a {component.type} has no counterpart in a case")
     return GearUnitImport(
@@ -89,9 +96,6 @@ def _gear_unit(model: RexsModel, log: AttributeLog) -> GearUnit:
     heads = model.of_type("gear_unit")
     gears = read_gears(model, log)
     cases, operating_time = read_operation(model, log)
-    temperatures = [
-        log.number(head, "reference_temperature", "C", "reference_temperature", above=0.0) for head in heads
-    ]
     return GearUnit(
         name=heads[0].name if heads else "",
         gears=gears,
@@ -102,6 +106,5 @@ def _gear_unit(model: RexsModel, log: AttributeLog) -> GearUnit:
         lubricant=read_lubricant(model, log),
         materials=read_materials(model, log),
         operating_cases=cases,
-        reference_temperature=next((value for value in temperatures if value is not None), None),
         operating_time=operating_time,
     )

@@ -22,17 +22,12 @@ def _shaft(model: RexsModel, log: AttributeLog, component: Component) -> UnitSha
     only = len(parts) == 1
     sections = [section for part in parts if (section := _section(log, part, here, only)) is not None]
     origin, axis = place_of(component, log, here)
-    materials = model.related("reference", "origin", component.id, "referenced")
     return UnitShaft(
         id=component.id,
         name=component.name,
         sections=tuple(sorted(sections, key=lambda section: section.start)),
         origin=origin,
         axis=axis,
-        material=next((item.id for item in materials if item.type == "material"), None),
-        temperature=log.number(
-            component, "mean_operating_temperature", "C", f"{here}.temperature", above=0.0
-        ),
     )
 
 

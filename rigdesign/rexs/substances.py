@@ -35,8 +35,6 @@ def _lubricant(log: AttributeLog, component: Component) -> UnitLubricant:
         id=component.id,
         name=component.name,
         designation=log.text(component, "name", f"{here}.designation"),
-        kind=log.text(component, "kind", f"{here}.kind"),
-        basis=log.text(component, "basis", f"{here}.basis"),
         density_15=log.number(
             component, "density_at_15_degree_celsius", "kg / dm^3", f"{here}.density_15", above=0.0
         ),
@@ -56,21 +54,5 @@ def _lubricant(log: AttributeLog, component: Component) -> UnitLubricant:
 
 
 def _material(log: AttributeLog, component: Component) -> UnitMaterial:
-    here = f"materials[{component.id}]"
-
-    def number(attribute: str, unit: str, field: str) -> float | None:
-        return log.number(component, attribute, unit, f"{here}.{field}", above=0.0)
-
-    return UnitMaterial(
-        id=component.id,
-        name=component.name,
-        designation=log.text(component, "material_designation", f"{here}.designation"),
-        density=number("density", "kg / dm^3", "density"),
-        elastic_modulus=number("elastic_modulus", "MPa", "elastic_modulus"),
-        poisson_ratio=number("poisson_ratio", "none", "poisson_ratio"),
-        thermal_expansion=number("thermal_expansion_coefficient_plus", "1e-6 / C", "thermal_expansion"),
-        conductivity=number("thermal_conductivity", "W / (m K)", "conductivity"),
-        heat_capacity=number("thermal_capacity", "J / (kg K)", "heat_capacity"),
-        tensile_strength=number("tensile_strength", "MPa", "tensile_strength"),
-        yield_strength=number("yield_strength", "MPa", "yield_strength"),
-    )
+    target = f"materials[{component.id}].designation"
+    return UnitMaterial(component.id, component.name, log.text(component, "material_designation", target))

@@ -16,8 +16,6 @@ COUPLINGS = ("coupling", "switchable_coupling")
 _CLEARANCES = ("radial_bearing_clearance", "radial_clearance", "operating_radial_bearing_clearance")
 """As delivered before that in operation, which a case computes."""
 _JOURNAL_CLEARANCES = ("diameter_clearance_plain_bearing",)
-RIGID = 1e15
-"""Stiffness [N/m], or [N m/rad] times 1000, from which on exporters mean: rigid."""
 
 
 def read_bearings(model: RexsModel, log: AttributeLog) -> tuple[UnitBearing, ...]:
@@ -45,10 +43,6 @@ def _bearing(model: RexsModel, log: AttributeLog, component: Component) -> UnitB
         radial_clearance=_clearance(log, component, here),
         clearance_class=log.text(component, "radial_clearance_class", f"{here}.clearance_class"),
         axial_force=log.text(component, "axial_force_absorption", f"{here}.axial_force"),
-        radial_stiffness=_stiffness(log, component, "radial_stiffness", "N / m", here),
-        axial_stiffness=_stiffness(log, component, "axial_stiffness", "N / m", here),
-        lubrication=log.text(component, "lubrication_type", f"{here}.lubrication"),
-        immersion_depth=log.number(component, "depth_of_immersion_in_oil", "mm", f"{here}.immersion_depth"),
     )
 
 
@@ -66,9 +60,7 @@ def _catalogue(model: RexsModel, log: AttributeLog, component: Component, bearin
     ]
     return CatalogueData(
         designation=log.text(component, "catalogue_designation", f"{here}.designation"),
-        manufacturer=log.text(component, "manufacturer", f"{here}.manufacturer"),
         type=log.text(component, "bearing_type", f"{here}.type"),
-        rows=log.whole_number(component, "number_of_bearing_rows", f"{here}.rows", least=1),
         contact_angle=next((angle for angle in angles if angle is not None), None),
         dynamic_load_rating=positive("radial_dynamic_load_rating", "kN", "dynamic_load_rating"),
         static_load_rating=positive("radial_static_load_rating", "kN", "static_load_rating"),
@@ -76,7 +68,6 @@ def _catalogue(model: RexsModel, log: AttributeLog, component: Component, bearin
         limiting_speed=positive("limiting_speed", "1 / min", "limiting_speed"),
         reference_speed=positive("reference_speed", "1 / min", "reference_speed"),
         limit_e=positive("catalogue_value_e", "none", "limit_e"),
-        radial_factor=positive("radial_factor_x_2", "none", "radial_factor"),
         axial_factor=positive("axial_factor_y_2", "none", "axial_factor"),
         static_axial_factor=positive("axial_factor_y_0", "none", "static_axial_factor"),
         contamination_factor=positive("contamination_factor_iso_281_2007", "none", "contamination_factor"),
@@ -84,21 +75,8 @@ def _catalogue(model: RexsModel, log: AttributeLog, component: Component, bearin
 
 
 def _coupling(model: RexsModel, log: AttributeLog, component: Component) -> UnitCoupling:
-    here = f"couplings[{component.id}]"
-    return UnitCoupling(
-        id=component.id,
-        name=component.name,
-        place=_place(model, log, component, here),
-        switchable=component.type == "switchable_coupling",
-        torsional_stiffness=_stiffness(log, component, "rotational_stiffness", "N mm / rad", here),
-        bending_stiffness=_stiffness(log, component, "bending_stiffness", "N mm / rad", here),
-        radial_stiffness=_stiffness(log, component, "radial_stiffness", "N / m", here),
-        axial_stiffness=_stiffness(log, component, "axial_stiffness", "N / m", here),
-        inner_diameter=log.number(component, "inner_diameter", "mm", f"{here}.inner_diameter"),
-        outer_diameter=log.number(component, "outer_diameter", "mm", f"{here}.outer_diameter", above=0.0),
-        length=log.number(component, "length", "mm", f"{here}.length", above=0.0),
-        mass=log.number(component, "mass_of_component", "kg", f"{here}.mass", above=0.0),
-    )
+    place = _place(model, log, component, f"couplings[{component.id}]")
+    return UnitCoupling(component.id, component.name, place)
 
 
 def _place(model: RexsModel, log: AttributeLog, component: Component, here: str) -> BearingPlace:
@@ -123,18 +101,3 @@ def _clearance(log: AttributeLog, component: Component, here: str) -> float | No
             log.refuse(component, name, "the clearance as delivered counts")
         taken = found if taken is None else taken
     return taken
-
-
-def _stiffness(log: AttributeLog, component: Component, attribute: str, unit: str, here: str) -> float | None:
-    """A stiffness; zero and what exporters write for rigid are listed."""
-    target = "torsional_stiffness" if attribute == "rotational_stiffness" else attribute
-    value = log.number(component, attribute, unit, f"{here}.{target}")
-    if value is None:
-        return None
-    if value <= 0.0:
-        log.refuse(component, attribute, "no stiffness")
-        return None
-    if value >= (RIGID if unit == "N / m" else RIGID * 1e-3):
-        log.refuse(component, attribute, "stands for rigid")
-        return None
-    return value

@@ -48,7 +48,6 @@ def _gear(model: RexsModel, log: AttributeLog, component: Component) -> UnitGear
         helix_angle=log.number(component, "helix_angle_reference_diameter", "deg", f"{here}.helix_angle"),
         face_width=width,
         tip_diameter=log.number(component, "tip_diameter", "mm", f"{here}.tip_diameter", above=0.0),
-        root_diameter=log.number(component, "root_diameter", "mm", f"{here}.root_diameter", above=0.0),
         bore_diameter=log.number(component, "inner_diameter", "mm", f"{here}.bore_diameter"),
         quality_grade=log.whole_number(
             component, "global_tolerance_class_iso_1328_2013", f"{here}.quality_grade", least=1
@@ -126,26 +125,12 @@ def _mesh(
         name=stage.name,
         pinion=pinion.id,
         wheel=wheel.id,
-        driver=_driver(model, log, stage, here),
         centre_distance=log.number(stage, "center_distance", "mm", f"{here}.centre_distance", above=0.0),
-        profile_shift_sum=log.number(
-            stage, "sum_of_addendum_modification_coefficients", "none", f"{here}.profile_shift_sum"
-        ),
         application_factor=_first(factors),
         face_load_factor=log.number(
             stage, "face_load_factor_contact_stress", "none", f"{here}.face_load_factor", above=0.0
         ),
     )
-
-
-def _driver(model: RexsModel, log: AttributeLog, stage: Component, here: str) -> int | None:
-    """Gear whose data in this stage say that it drives."""
-    driver = None
-    for relation in model.relations_of("stage_gear_data", "stage", stage.id):
-        data, gear = relation.with_role("stage_gear_data"), relation.with_role("gear")
-        if data is not None and log.flag(model.component(data), "is_driving_gear", f"{here}.driver"):
-            driver = gear
-    return driver
 
 
 def _material_of(model: RexsModel, part: int) -> int | None:

@@ -11,7 +11,7 @@ from rigdesign.case.model import Case
 from rigdesign.case.source import CASE_FILE
 from rigdesign.rexs.attribute_log import ListedAttribute, MappedAttribute
 from rigdesign.rexs.faults import printable
-from rigdesign.rexs.gear_unit_import import GearUnitImport, import_gear_unit
+from rigdesign.rexs.gear_unit_import import LEFT_OVER, GearUnitImport, import_gear_unit
 from rigdesign.rexs.reader import read_rexs
 from rigdesign.rexs_case.case_tables import LIKE_THE_TEST, case_tables
 from rigdesign.rexs_case.entries import CaseTable, Entry, toml_text
@@ -21,8 +21,8 @@ OTHER_PART = "of another stage, or a value that the case works out itself"
 REASONS = {
     "operating_cases": "of another load case, which the case names in a comment, or not needed at the pinion",
     "bearings": "of a bearing of another stage, of one that its designation describes, or of operation",
-    "couplings": "the couplings of a rig join two gearboxes: write drivetrain.couplings",
-    "materials": "of built-in materials only; for another one write a table under materials",
+    "couplings": LEFT_OVER["coupling"],
+    "materials": LEFT_OVER["material"],
     "shafts": "the places along the shafts count",
 }
 """First part of a place of the gear unit -> why the case does not take it."""

@@ -52,7 +52,7 @@ def test_the_shaft_and_what_belongs_to_it(tmp_path: Path) -> None:
     shaft = result.unit.shaft(4)
     assert len(model.components) == 31
     assert [section.outer_end for section in shaft.sections] == [0.03, 0.036, 0.03, 0.028]
-    assert (shaft.temperature, shaft.origin) == (343.15, (0.0, 0.0, -0.0915))
+    assert shaft.origin == (0.0, 0.0, -0.0915)
     assert [material.name for material in result.unit.materials] == ["16MnCr5", "42CrMo4"]
     assert not any(item.attribute == "data_source" for item in result.listed)
     assert not any(item.reason.startswith("stated twice") for item in result.listed)
