@@ -111,10 +111,10 @@ def ramp_steps(rig: Rig, found: RampLimits) -> Iterator[RampStep]:
 
 
 def _dwell_speed(found: RampLimits, wanted: float) -> float:
-    """Where the ramp dwells: at the test speed, or outside the avoided band in which it lies, where there is such a
-    speed."""
+    """Where the ramp dwells: at the test speed, or in whole rpm outside the avoided band in which that lies, where it
+    can."""
     safe = None if found.band_at(wanted) is None else nearest_safe(found.safe, wanted)
-    return wanted if safe is None else safe
+    return wanted if safe is None else _outward(safe, wanted) / RPM
 
 
 def _first_speed(rig: Rig, found: RampLimits, test: float) -> tuple[float, str]:

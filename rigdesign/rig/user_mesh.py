@@ -188,12 +188,13 @@ def _measures(mesh: NamedMesh, geometry: HousingGeometry, housing: Housing) -> l
 
 def _bores(mesh: NamedMesh, geometry: HousingGeometry) -> Iterator[_Measure]:
     """Diameters of the bores that the mesh names and that are cylinders about an axis along x, and their distances."""
+    corners = mesh.shape.side.n_corners
     fits = {
-        one.bore_surface: fit
+        one.bore_surface: fit_cylinder(mesh.points[np.unique(mesh.surfaces[one.bore_surface][:, :corners])])
         for one in bearing_stations(geometry)
         if one.bore_surface in mesh.surfaces
-        and (fit := fit_cylinder(mesh.points[np.unique(mesh.surfaces[one.bore_surface])])).roundness <= ROUND
     }
+    fits = {name: fit for name, fit in fits.items() if fit.roundness <= ROUND}
     found = [one for one in bearing_stations(geometry) if one.bore_surface in fits]
     radii = {
         f"{shaft.name}_{side}": shaft.bearing(side).bore_radius for shaft in geometry.shafts for side in SIDES

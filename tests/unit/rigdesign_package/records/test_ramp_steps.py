@@ -123,7 +123,7 @@ def test_no_safe_speed_is_advised_beyond_the_limit_of_the_rig() -> None:
     )
     assert "7.5 % away" in inside["dwell"].reason
     assert "nearest safe speed 12334 rpm" in beyond["dwell"].reason
-    for found, rpm in ((inside, 11100.0 / 1.1), (beyond, 11100.0 / 0.9)):
+    for found, rpm in ((inside, 10090.0), (beyond, 12334.0)):
         for action in ("run up without a stop", "raise to the test torque", "dwell", "relieve"):
             assert found[action].speed == pytest.approx(rpm * RAD)
     slower = steps(limit=SpeedLimit(11000.0 * RAD, "limits.bought_parts.motor"))["dwell"].reason
