@@ -15,7 +15,7 @@ from rigdesign.records.loop_states import dwell_speeds, state_at
 from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
 from rigdesign.records.torques_over_speed import AROUND, LoopOverSpeed, is_around, torques_over_speed
 from rigdesign.results.campbell import CampbellCrossing
-from rigdesign.results.dwell import AvoidedResonance, NearResonance, nearer
+from rigdesign.results.dwell import AvoidedResonance, NearResonance
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.section_torques import TorqueOverSpeed
 from rigdesign.rig.model import Rig
@@ -104,25 +104,24 @@ def mesh_resonances(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> Iterator[
         label, ratio = rig.mesh_labels[name], own_ratio(rig, mesh)
         for torque in run.curves.named:
             where = at_torque(label, torque)
-            spans = list(bounds.resonances([shares[where]])) if where in shares else []
-            peaked: set[int] = set()
+            spans = list(resonances(shares[where], bounds.share, 0.0)) if where in shares else []
+            peaked: list[AvoidedResonance] = []
             for peak in loads.meshes[label].resonances:
-                if peak.torque != torque or not peak.dangerous:
-                    continue
-                speed = peak.speed / ratio
-                own = [number for number, span in enumerate(spans) if span.low < speed < span.high]
-                peaked.update(own)
-                low, high = nearer(speed, bounds.margin)
-                yield AvoidedResonance(
-                    kind="dynamic factor",
-                    where=where,
-                    mode=peak.mode,
-                    speed=speed,
-                    share=peak.force_share,
-                    low=min([low, *(spans[number].low for number in own)]),
-                    high=max([high, *(spans[number].high for number in own)]),
-                )
-            yield from (span for number, span in enumerate(spans) if number not in peaked)
+                if peak.torque == torque and peak.dangerous:
+                    speed = peak.speed / ratio
+                    own = [span for span in spans if span.low <= speed <= span.high]
+                    peaked += own
+                    found = AvoidedResonance(
+                        kind="dynamic factor",
+                        where=where,
+                        mode=peak.mode,
+                        speed=speed,
+                        share=peak.force_share,
+                        low=min((span.low for span in own), default=speed),
+                        high=max((span.high for span in own), default=speed),
+                    )
+                    yield found.widened(bounds.margin)
+            yield from (span.widened(bounds.margin) for span in spans if span not in peaked)
 
 
 def at_torque(label: str, torque: str) -> str:
@@ -205,13 +204,13 @@ def order_resonances(
     """Turning and coupling orders that meet a lively mode; names : of the modes by number."""
     for crossing in crossings:
         if crossing.kind != "mesh" and crossing.damping_ratio < LIVELY:
-            low, high = nearer(crossing.speed, margin)
-            yield AvoidedResonance(
+            found = AvoidedResonance(
                 kind="shaft order",
                 where=f"{crossing.kind} {', '.join(crossing.of)}, order {crossing.harmonic:g}, mode {crossing.mode} "
                 f"({names[crossing.mode]})",
                 speed=crossing.speed,
                 share=None,
-                low=low,
-                high=high,
+                low=crossing.speed,
+                high=crossing.speed,
             )
+            yield found.widened(margin)

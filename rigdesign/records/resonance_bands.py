@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, ResonanceKind, nearer
+from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, ResonanceKind
 
 Array = NDArray[np.float64]
 USUAL_MARGIN = 0.1
@@ -36,15 +36,10 @@ def resonances(quantity: DynamicShare, limit: float, margin: float) -> Iterator[
         at = float(speed[peak])
         low = _crossing(speed, share, first - 1, limit) if first else float(speed[0])
         high = _crossing(speed, share, last - 1, limit) if last < speed.size else float(speed[-1])
-        near = nearer(at, margin)
-        yield AvoidedResonance(
-            kind=quantity.kind,
-            where=quantity.where,
-            speed=at,
-            share=float(share[peak]),
-            low=min(low, near[0]),
-            high=max(high, near[1]),
+        found = AvoidedResonance(
+            kind=quantity.kind, where=quantity.where, speed=at, share=float(share[peak]), low=low, high=high
         )
+        yield found.widened(margin)
 
 
 def _crossing(speed: Array, share: Array, place: int, limit: float) -> float:

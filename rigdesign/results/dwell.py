@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 ResonanceKind = Literal["dynamic factor", "root stress", "shaft torque", "shaft order"]
@@ -33,6 +33,11 @@ class AvoidedResonance:
     """[rad/s]"""
     high: float
     """[rad/s]"""
+
+    def widened(self, margin: float) -> "AvoidedResonance":
+        """With the speeds round the peak that are nearer than a margin."""
+        low, high = nearer(self.speed, margin)
+        return replace(self, low=min(self.low, low), high=max(self.high, high))
 
     def distance(self, speed: float, margin: float) -> float:
         """Of a speed from the peak, as a share of that speed [-]; 0 in the band beyond the margin, where the response

@@ -319,21 +319,21 @@ def test_held_speeds_bind_and_those_of_other_stages_are_advice(
 
 
 def test_checks_and_bands_have_the_same_dangerous_peaks() -> None:
-    """One by its amplification at 11,000 rpm, one inside of what is above the share from 5000 to 6000 rpm, and what is
-    above it without a peak at 12,900 rpm and on."""
+    """By their amplification at 6100 and 11,000 rpm, one inside of what is above the share from 5000 to 6000 rpm, and
+    what is above it without a peak from 12,900 rpm on."""
     rpm = np.array([4000.0, 5000.0, 5500.0, 6000.0, 11000.0, 12900.0, 13500.0])
     share = np.array([0.1, 0.2, 0.6, 0.2, 0.1, 0.2, 0.4])
     points = [
         SimpleNamespace(maximum=np.full(2, 1.0 + one), minimum=np.full(2, 1.0 - one), mean=np.ones(2))
         for one in share
     ]
-    own = (resonance(11000.0), resonance(5400.0), resonance(8000.0, dangerous=False))
+    own = (resonance(11000.0), resonance(5400.0), resonance(8000.0, dangerous=False), resonance(6100.0))
     curve = SimpleNamespace(points=points, speeds=rpm * RPM)
     base = solved(resonances=own)
     run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, curve)}))
     assert base.loads is not None
     found = [one for one in mesh_resonances(rig(), run, base.loads) if one.where == "test at 180 Nm"]
     spans = {round(one.speed / RPM): (round(one.low / RPM), round(one.high / RPM)) for one in found}
-    assert spans == {11000: (10000, 12222), 5400: (4909, 6111), 13500: (12273, 15000)}
+    assert spans == {11000: (10000, 12222), 5400: (4909, 6000), 6100: (5545, 6778), 13500: (12273, 15000)}
     check = named(dynamics.checks(replace(base, run=run)), "dynamics.resonance_distance.test")
     assert check.value == pytest.approx(1.0 / 12.0)
