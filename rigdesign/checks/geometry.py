@@ -9,6 +9,7 @@ from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
+from rigdesign.rig.model import Rig
 
 Numbers = Iterator[tuple[float, str]]
 """Of the gears of a pair, or of the pair, each with what is behind it."""
@@ -131,6 +132,13 @@ RULES = (
 def checks(solved: SolvedRig) -> list[Check]:
     """All of them; each the worst of the rig."""
     return [rule.check(solved) for rule in RULES]
+
+
+def missed(rig: Rig) -> Iterator[str]:
+    """Limits of the toothing that a rig misses, in words, before it is solved."""
+    for check in checks(SolvedRig(rig=rig, points=())):
+        if check.verdict == "fail":
+            yield f"missed before anything is solved: {check.title}: {check.value:.4g}, {check.reason}"
 
 
 REGISTRY.register(Topic(order=5, families=RULES, checks=checks))

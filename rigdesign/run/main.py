@@ -19,6 +19,7 @@ from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
 from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks import all_checks
+from rigdesign.checks.geometry import missed
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
@@ -101,6 +102,8 @@ def solve_case(
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
+    for text in missed(wanted):
+        say(text)
     if wanted.mesh_stiffness == "influence_numbers":
         wanted.prepare_teeth(say, count)
         lap("influence_numbers")

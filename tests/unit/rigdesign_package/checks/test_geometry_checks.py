@@ -16,6 +16,7 @@ from rigdesign.checks import geometry
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run import main
 from tests.builders.paths import CASES
 
 TYPE_C = {
@@ -97,3 +98,19 @@ def test_undercut_of_the_path_of_contact_names_the_least_profile_shift() -> None
         GearGeometryError, match=r"below x_min = 0.301; raise its .* 0.301, .* mate then has -1.00"
     ):
         require_whole_flanks(pair)
+
+
+def test_what_is_missed_is_said_before_the_rig_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    pairs = {**fzg().pairs, "test.main": GearPair.from_centre_distance(**TYPE_A)}
+    (text,) = geometry.missed(replace(fzg(), pairs=pairs))
+    assert text.startswith("missed before anything is solved: least tooth thickness at a tip circle")
+    said: list[str] = []
+
+    def stop(rig: Rig) -> None:
+        raise RuntimeError("solving begins")
+
+    monkeypatch.setattr(main, "build_rig", lambda case, fidelity: replace(fzg(), pairs=pairs))
+    monkeypatch.setattr(main, "looping_rig", stop)
+    with pytest.raises(RuntimeError, match="solving begins"):
+        main.solve_case(fzg().case, "quick", said.append)
+    assert said == ["building the rig", text]
