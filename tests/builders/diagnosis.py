@@ -15,7 +15,7 @@ import numpy as np
 
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.decision.defaults import Calibration
+from rigdesign.diagnosis.decision.defaults import DRIFT, Calibration
 from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.verdict import Thresholds
 from rigdesign.diagnosis.decision.workflow import diagnose
@@ -246,9 +246,10 @@ def write_set(folder: Path, rig: Rig, *, title: str = "trial", baseline: str = "
 
 
 DESIGN = Calibration(
-    amplitudes=Amplitudes(), inflation={}, plain=Thresholds(named=0.9), given_baseline=Thresholds(named=0.9)
-)
-"""Numbers of the design: what is frozen for real rigs must not change these stories."""
+    amplitudes=Amplitudes(), inflation={}, plain=Thresholds(named=0.9), given_baseline=Thresholds(named=0.9),
+    drift=replace(DRIFT, sensors=0.0, constants=0.0),
+)  # fmt: skip
+"""Numbers of the design: what is frozen for real rigs must not change these stories, of a rig the same every day."""
 
 
 def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibration | None = None) -> Result:

@@ -76,6 +76,7 @@ def not_steady(case: Case) -> Iterator[Effect]:
         ),
         change=_Warming(),
         matters=1.0 / (24.0 * 3600.0),
+        stands_for="a heavy part that is cooled, such as a clamping field",
     )
 
 

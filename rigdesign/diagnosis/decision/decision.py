@@ -166,5 +166,5 @@ def _silent(
     return Decision(
         verdict="too_small",
         named=(),
-        reason="an effect may be present, too small to be distinguished from its rivals",
+        reason="an effect may be present, too small to be distinguished from competing causes",
     )

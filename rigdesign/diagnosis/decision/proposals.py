@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.decision.competing_causes import compared, leading, needed, nothing
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
-from rigdesign.diagnosis.decision.rivals import compared, leading, needed, nothing
 from rigdesign.diagnosis.decision.simulation import Simulation
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Extra, extra_points

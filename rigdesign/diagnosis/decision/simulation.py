@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rigdesign.diagnosis.decision.competing_causes import Leading
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.problem import Problem
-from rigdesign.diagnosis.decision.rivals import Leading
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array

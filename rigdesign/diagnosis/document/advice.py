@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import exp
 
 from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.competing_causes import credible_places
 from rigdesign.diagnosis.decision.naming import formatted
-from rigdesign.diagnosis.decision.rivals import credible_places
 from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, gap_in_words
@@ -82,8 +82,8 @@ def headline(outcome: Outcome) -> str:
                 "No missing effect is detectable in these data: the residual is within that of a healthy rig."
             )
         case "too_small":
-            first = _titles(outcome)
-            return f"An effect may be present, too small to be distinguished from its rivals; most probable: {first}."
+            lead = "An effect may be present, too small to be distinguished from competing causes"
+            return f"{lead}; most probable: {_titles(outcome)}."
     return f"These data cannot identify an effect: {found.decision.reason}. {_foremost(outcome)}".rstrip()
 
 

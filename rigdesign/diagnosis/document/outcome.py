@@ -322,7 +322,7 @@ def _why_not(result: Result, sensors: bool) -> str:
             return "these data cannot name anything"
         case "too_small":
             return (
-                "what may be present is too small to be distinguished from its rivals; pick one with --name, "
+                "what may be present is too small to be distinguished from competing causes; pick one with --name, "
                 "or measure more"
             )
     return "nothing is missing that these data could show"

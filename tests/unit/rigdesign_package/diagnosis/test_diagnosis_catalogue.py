@@ -80,3 +80,9 @@ def test_an_entry_survives_the_way_to_another_core():
     again = pickle.loads(pickle.dumps(effect))
     assert again.family == effect.family
     assert again.oscillates == effect.oscillates
+
+
+def test_readings_before_steady_temperatures_are_never_named_alone_where_a_cold_part_looks_the_same():
+    """A clamping field that was cooled leaves their trace: walls 13 K colder at all points."""
+    (effect,) = (one for one in effects_of(case_of("uhcf_prototype")) if one.name == "not_steady")
+    assert "clamping field" in effect.stands_for

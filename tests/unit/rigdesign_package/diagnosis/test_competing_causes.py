@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.rivals import RIVALS, compared, credible_places, leading, mass_at
+from rigdesign.diagnosis.decision.competing_causes import RIVALS, compared, credible_places, leading, mass_at
 from rigdesign.diagnosis.decision.unmodelled_words import place_of
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.document.advice import headline, steps
