@@ -72,6 +72,8 @@ class Finding:
 
     id: str
     text: str
+    checks: tuple[str, ...] = ()
+    """Ids of the checks that rest on what is outside of the range of its law; ``*`` stands for any characters."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -28,6 +28,15 @@ from rigdesign.run.load_convergence import missing_load_errors
 
 MOST_UNCONVERGED = 10
 """Steps of a march with the contact in the loop that may end before their contact is solved to its tolerance."""
+HEAT = ("temperature.*", "clearance.*", "alignment.*", "bearing.*temperature", "bearing.*clearance", "oil.*")
+"""Checks that rest on the heat of the rig."""
+OF_OIL = {
+    "gear_oil": (*HEAT, "flank.film_ratio.{0}*", "flank.scuffing_safety.{0}*", "bought_part.*"),
+    "bearing_oil": (*HEAT, "bearing.*", "lateral.*", "ramp.start_torque", "bought_part.*"),
+}
+"""Checks that rest on the viscosity of an oil of gearbox {0}."""
+MATTERS = 0.1
+"""Share of the heat from which a loss or film outside of the range of its law leaves open what rests on the heat."""
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
 
@@ -44,16 +53,19 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="tooth_deviations", text=text) for text in _deviating_teeth(solved)),
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="time_run", text=text) for text in fast_ramps(solved)),
-        *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
+        *loss_warnings(losses),
         *(Finding(id="rival_law", text=text) for text in _rival_laws(solved)),
-        *(Finding(id="oil", text=text) for text in _oils(solved)),
+        *_oils(solved),
         *(Finding(id="oil_circuit", text=text) for text in _circuits(solved)),
         *(Finding(id="rig_heat", text=text) for text in _rig_heat(solved)),
         *(Finding(id="damping", text=text) for text in _damping(solved)),
         *(Finding(id="sampling", text=text) for text in _sampling(solved)),
         *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
         *(Finding(id="load_error", text=text) for text in _contact_in_loop(solved.contact_in_loop)),
-        *(Finding(id="film", text=text) for text in film_warnings(solved)),
+        *(
+            Finding(id="film", text=text, checks=HEAT if share > MATTERS else ())
+            for text, share in film_warnings(solved)
+        ),
         *(Finding(id="not_steady", text=text) for text in _warming(solved)),
         *(Finding(id="heat_audit", text=text) for text in heat_audits(solved)),
     ]
@@ -146,20 +158,28 @@ def _time_run(solved: SolvedRig) -> Iterator[str]:
         yield from solved.run.ramp.warnings
 
 
-def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
+def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[Finding]:
     """A warning of a loss at several stages is reported once, with their names."""
-    stages: dict[tuple[str, str], list[str]] = {}
+    stages: dict[tuple[str, str], dict[str, float]] = {}
     for stage, found in losses.items():
+        whole = sum(placed.loss.power for placed in found)
         for placed in found:
             for text in placed.loss.warnings:
-                stages.setdefault((placed.name, text), []).append(stage)
-    for (place, text), where in stages.items():
+                stages.setdefault((placed.name, text), {})[stage] = (
+                    placed.loss.power / whole if whole else 0.0
+                )
+    for (place, text), shares in stages.items():
+        where = list(shares)
         named = f"stage {where[0]}" if len(where) == 1 else f"stages {', '.join(where)}"
         everywhere = len(where) == len(losses) > 1
-        yield f"{place}, {'all stages that rotate' if everywhere else named}: {text}"
+        yield Finding(
+            id="loss",
+            text=f"{place}, {'all stages that rotate' if everywhere else named}: {text}",
+            checks=HEAT if max(shares.values()) > MATTERS else (),
+        )
 
 
-def _oils(solved: SolvedRig) -> Iterator[str]:
+def _oils(solved: SolvedRig) -> Iterator[Finding]:
     """Every oil at the coldest and at the hottest place of its stream."""
     for point in solved.points:
         for stream in point.last.streams:
@@ -168,7 +188,11 @@ def _oils(solved: SolvedRig) -> Iterator[str]:
             places = stream.inlet, stream.outlet, stream.chamber
             for temperature in (min(places), max(places)):
                 for text in oil.warnings(temperature):
-                    yield f"{stream.name}, stage {point.point.stage}: {text}"
+                    yield Finding(
+                        id="oil",
+                        text=f"{stream.name}, stage {point.point.stage}: {text}",
+                        checks=tuple(check.format(name) for check in OF_OIL[kind]),
+                    )
 
 
 def _circuits(solved: SolvedRig) -> Iterator[str]:

@@ -588,3 +588,82 @@ def test_constant_drag_needs_its_value_at_every_bearing(tmp_path: Path) -> None:
 def test_a_held_stage_turns_under_load(tmp_path: Path, stage: str, words: str) -> None:
     found = faults(tmp_path, f"[schedule]\nremove = ['stages']\nstages = [{stage}]\n")
     assert any(fault.path.endswith(".held") and words in fault.problem for fault in found)
+
+
+OIL = 'title = "o"\nkinematic_viscosity_40 = "95 mm2/s"\nkinematic_viscosity_100 = "10 mm2/s"\n'
+OIL += 'density_15 = "870 kg/m3"\nheat_capacity = "2000 J/(kg K)"\nconductivity = "0.13 W/(m K)"\n'
+STEEL = 'title = "m"\nconductivity = "45 W/(m K)"\nexpansion_coefficient = "11.5e-6 1/K"\nelastic_modulus = "206 GPa"\n'
+STEEL += 'poisson_ratio = 0.3\ndensity = "7850 kg/m3"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[oils.o]\n" + OIL.replace("870", "0.87"), 'oils.o.density_15 = "0.87 kg/m3": is below 400 kg/m3'),
+        (
+            "[oils.o]\n" + OIL.replace("2000 J", "2000 kJ"),
+            'heat_capacity = "2000 kJ/(kg K)": is above 10 kJ/(kg K)',
+        ),
+        ("[oils.o]\n" + OIL.replace("2000 J", "2 J"), 'heat_capacity = "2 J/(kg K)": is below 500 J/(kg K)'),
+        (
+            "[oils.o]\n" + OIL.replace("10 mm2", "0.29 mm2"),
+            'kinematic_viscosity_100 = "0.29 mm2/s": is below 0.3',
+        ),
+        (
+            "[materials.m]\n" + STEEL.replace("206 GPa", "2100 GPa"),
+            'elastic_modulus = "2100 GPa": is above 1200 GPa',
+        ),
+        (
+            "[materials.m]\n" + STEEL.replace("206 GPa", "206 MPa"),
+            'elastic_modulus = "206 MPa": is below 0.5 GPa',
+        ),
+        ("[materials.m]\n" + STEEL.replace("7850", "7.85"), 'density = "7.85 kg/m3": is below 100 kg/m3'),
+        ('gearboxes.test.oil.flow = "1e-9 l/min"', 'test.oil.flow = "1e-9 l/min": is below 0.001 l/min'),
+        (
+            'gearboxes.test.gears.pinion.spline.torsional_stiffness = "1 N m/rad"',
+            "pinion.spline.torsional_stiffness = 1 N m/rad: twists by 180 rad under schedule.test_torque, limit 1 rad",
+        ),
+        (
+            'gearboxes.test.meshes.main.centre_distance = "110 mm"',
+            "centre_distance = 110 mm: asks for a sum of the profile shifts of 12.1, limits -2 and 2.5: without shifts",
+        ),
+        (
+            'gearboxes.test.bearings.pinion_rear.side = "front"',
+            "shaft test_pinion needs a bearing at the front and one at the rear, has pinion_front at the front",
+        ),
+        (
+            'schedule.test_speed = "6000 rpm"',
+            "test_speed = 6000 rpm: no held stage runs at it, they have 12000 rpm",
+        ),
+        ('schedule.stages = [{ name = "full_torque", torque_share = 0.9 }]', "no held stage runs at it"),
+        ('title = "two\\nlines"', 'title = "two\nlines": has more than one line'),
+        ('title = "ab\\u202ecd"', r"holds the control character '\u202e'"),
+        ("gearboxes.test.gears.pinion.teeth = " + "9" * 5000, "holds a whole number of too many digits"),
+        (".".join(["a"] * 2000) + " = 1", "is nested more than 30 tables deep"),
+    ],
+)
+def test_one_fault_where_it_is(tmp_path: Path, text: str, said: str) -> None:
+    """What ended as a defect, or under the name of what follows from it."""
+    file = tmp_path / "bad.toml"
+    file.write_text(f'extends = "{PROTOTYPE.as_posix()}"\n{text}', encoding="utf-8")
+    with pytest.raises(CaseError) as caught:
+        load_case(file)
+    assert said in str(caught.value)
+    assert len(caught.value.faults) <= 1
+
+
+def test_a_byte_order_mark_is_read_over(tmp_path: Path) -> None:
+    file = tmp_path / "marked.toml"
+    file.write_bytes(b"\xef\xbb\xbf" + f'extends = "{PROTOTYPE.as_posix()}"\n'.encode())
+    assert load_case(file).name
+
+
+def test_a_message_stays_readable_with_a_thousand_faults(tmp_path: Path) -> None:
+    file = tmp_path / "bad.toml"
+    keys = "".join(f"limits.no_such_key_{number} = 1\n" for number in range(1000))
+    file.write_text(f'extends = "{PROTOTYPE.as_posix()}"\n{keys}', encoding="utf-8")
+    with pytest.raises(CaseError) as caught:
+        load_case(file)
+    assert len(caught.value.faults) == 1000
+    assert "1000 faults" in str(caught.value) and "and 950 more" in str(caught.value)
+    assert len(str(caught.value)) < 50_000

@@ -21,7 +21,7 @@ from tests.builders.warm_prototype import base, drive_power, lost_in_all, settle
 
 def warnings_at(rig: Rig, point: OperatingPoint, result: PointResult) -> list[str]:
     found = stage_losses(rig, point, result, dynamic=True)
-    return list(loss_warnings({point.stage: found.losses}))
+    return [found.text for found in loss_warnings({point.stage: found.losses})]
 
 
 def jet_at(rpm: float) -> PlacedLoss:

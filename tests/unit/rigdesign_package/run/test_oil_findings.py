@@ -1,5 +1,6 @@
 """Oils are judged where they are coldest and where they are hottest: fed, drained, and at the start in the cold."""
 
+from fnmatch import fnmatchcase
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -8,8 +9,9 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.properties.oil import FVA_3, FVA_3A
+from rigdesign.results.result import Finding
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.warnings import _oils, oil_at_room_temperature
+from rigdesign.run.warnings import _oils, loss_warnings, oil_at_room_temperature
 
 ZERO = 273.15
 
@@ -20,7 +22,7 @@ def rig(room: str = "20 degC") -> Rig:
     return build_rig(load_case("cases/loop_1to1").with_value("ambient.temperature", room), "quick")
 
 
-def found(inlet: float, outlet: float) -> list[str]:
+def findings(inlet: float, outlet: float) -> list[Finding]:
     """Findings of the gear oil of the test gearbox between two temperatures [degC]."""
     stream = SimpleNamespace(
         name="test.gear_oil", inlet=inlet + ZERO, outlet=outlet + ZERO, chamber=outlet + ZERO
@@ -30,6 +32,11 @@ def found(inlet: float, outlet: float) -> list[str]:
     return list(_oils(subject))
 
 
+def found(inlet: float, outlet: float) -> list[str]:
+    """Their texts."""
+    return [finding.text for finding in findings(inlet, outlet)]
+
+
 def test_oil_fed_at_minus_60_degc_is_found() -> None:
     viscosity = FVA_3A.kinematic_viscosity(213.15) * 1e6
     assert viscosity > 5e5
@@ -37,6 +44,39 @@ def test_oil_fed_at_minus_60_degc_is_found() -> None:
     assert len(texts) == 2
     assert all(f"-60 degC = {viscosity:.3g} mm2/s" in text for text in texts)
     assert "viscosity line" in texts[0] and "pumps" in texts[1]
+
+
+def test_oil_outside_of_its_line_names_the_checks_that_rest_on_it() -> None:
+    """Its temperatures and its films are open, no root stress is; those of the other gearbox keep theirs."""
+    (named,) = {finding.checks for finding in findings(-60.0, 60.0)}
+    resting = (
+        "temperature.oil_outlet",
+        "oil.cooler",
+        "bought_part.motor",
+        "flank.film_ratio.test",
+        "clearance.backlash",
+    )
+    for check in resting:
+        assert any(fnmatchcase(check, pattern) for pattern in named), check
+    for check in (
+        "flank.film_ratio.reference",
+        "specimen.root_stress_iso.test.pinion",
+        "flank.pitting_safety.test.pinion",
+    ):
+        assert not any(fnmatchcase(check, pattern) for pattern in named), check
+
+
+@pytest.mark.parametrize(("power", "rests"), [(40.0, True), (1.0, False)])
+def test_a_loss_outside_of_its_law_leaves_open_what_it_heats(power: float, rests: bool) -> None:
+    """From a tenth of the heat on; a small one moves no temperature."""
+    losses = [
+        SimpleNamespace(
+            name="test.pinion", loss=SimpleNamespace(power=power, warnings=("outside of its tests",))
+        ),
+        SimpleNamespace(name="test.main", loss=SimpleNamespace(power=60.0, warnings=())),
+    ]
+    (finding,) = loss_warnings({"dwell": losses})  # type: ignore[dict-item]
+    assert any(fnmatchcase("temperature.gear_bulk", pattern) for pattern in finding.checks) is rests
 
 
 def test_usual_oil_says_nothing_and_hot_oil_is_still_found() -> None:
