@@ -1,6 +1,6 @@
 """Loads a case: file -> tree -> equal parts -> defaults -> marks off -> validated -> rules; every fault at once."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +61,7 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
                 left_out.append((keys, new))
     for keys, new in left_out:
         stated = _replaced(_with_default(stated, keys, case.origin.tree), keys, new)
-    return _build(stated, case.path, EqualParts({}, {}, {}), origin=case.origin.equal)
+    return _build(stated, case.path, EqualParts({}, {}, {}), copies_of=case.origin.copies_of)
 
 
 def _stands(tree: Any, keys: Sequence[str]) -> bool:
@@ -127,11 +127,12 @@ def _build(
     equal: EqualParts,
     tree: Mapping[str, Any] | None = None,
     *,
-    origin: EqualParts | None = None,
+    copies_of: Callable[[str], tuple[str, ...]] | None = None,
 ) -> Case:
     """The case of what a file states; faults stand where ``equal`` has them.
 
-    tree : with its defaults, as far as they are filled in already; origin : what the file says of equal parts
+    tree : with its defaults, as far as they are filled in already; copies_of : paths that follow that of
+    an equal part, those of ``equal`` when left out
     """
     tree = with_defaults(stated) if tree is None else tree
     plain, marks, wrong_marks = take_off(dict(tree))
@@ -145,11 +146,11 @@ def _build(
     if films := dict(missing_films(tree, case)):
         for path, film in films.items():
             tree = _replaced(tree, path.split("."), film)
-        return _build(stated, file, equal, tree, origin=origin)
+        return _build(stated, file, equal, tree, copies_of=copies_of)
     faults += broken_rules(case)
     if faults:
         raise CaseError(equal.as_written(faults), str(file))
-    case._origin = Origin(file, stated, tree, marks, changed_together, origin or equal)
+    case._origin = Origin(file, stated, tree, marks, changed_together, copies_of or equal.copies_of)
     return case
 
 

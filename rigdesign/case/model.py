@@ -14,7 +14,6 @@ from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
-from rigdesign.case.equal_parts import EqualParts
 from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Title
 from rigdesign.case.gearbox import Gearbox
@@ -46,8 +45,8 @@ class Origin:
     marks: tuple[Mark, ...]
     change: Callable[["Case", Mapping[str, object]], "Case"]
     """Reads the case again with values replaced by path."""
-    equal: EqualParts
-    """Parts that the file writes once for several places."""
+    copies_of: Callable[[str], tuple[str, ...]]
+    """Paths that follow the value of a path, of parts that the file writes once for several places."""
 
     @cached_property
     def mark_of(self) -> Mapping[str, Mark]:
@@ -211,7 +210,7 @@ class Case(Part):
 
     def copies_of(self, path: str) -> tuple[str, ...]:
         """Paths of gearboxes that the file makes ``like`` that of ``path``: :meth:`with_value` leaves them alone."""
-        return self._origin.equal.copies_of(path)
+        return self._origin.copies_of(path)
 
     def input_kind(self, path: str) -> InputKind | None:
         """What a path (or the first that fits one with ``*``) holds; None where there is no such path."""

@@ -5,13 +5,16 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from rigdesign.case.model import Case
-from rigdesign.checks.assumptions import with_assumptions
+from rigdesign.case.usual import unusual_inputs
+from rigdesign.checks.assumptions import depends, with_assumptions
+from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import LOADS, REGISTRY, load_topics
 from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
 from rigdesign.records.hand import disagreeing
 from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
+from rigdesign.results.result import Finding
 
 __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_other_law"]
 
@@ -25,7 +28,8 @@ def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> lis
     """
     causes, case = list(disagreeing(hand)), solved.case
     checks = (_with_doubts(case, check, causes) for check in estimated_checks(solved))
-    return [with_assumptions(case, check) for check in checks]
+    unusual = unusual_inputs(case)
+    return [with_assumptions(case, _of_unusual(case, check, list(unusual))) for check in checks]
 
 
 def estimated_checks(solved: SolvedRig) -> list[Check]:
@@ -34,6 +38,8 @@ def estimated_checks(solved: SolvedRig) -> list[Check]:
     checks = [with_error(check, errors.get(check.id)) for check in held_checks(solved)]
     for spread in solved.law_spreads:
         checks = [of_other_law(check, spread) for check in checks]
+    found = out_of_range(solved, {point.point.stage: point.last.losses for point in solved.points})
+    checks = [_out_of_range(check, found) for check in checks]
     return [_of_reduced_model(solved, check) if solved.rig.reduced else check for check in checks]
 
 
@@ -49,10 +55,29 @@ def _with_doubts(case: Case, check: Check, causes: Sequence[tuple[tuple[str, ...
     return with_doubt(check, joined(*doubts)) if any(doubts) else check
 
 
+def _of_unusual(case: Case, check: Check, paths: Sequence[str]) -> Check:
+    """A check in doubt where it depends on inputs outside of their usual range."""
+    if check.value is None:
+        return check
+    moving = [path for path in paths if depends(case, check, path)]
+    return with_doubt(check, f"unusual input: {', '.join(moving)}") if moving else check
+
+
 REDUCED = "fidelity quick (shafts that only twist, analytic teeth with K_Hbeta as stated, few speeds)"
 REDUCED_ERROR = 0.5
 """Share of the value of a check on tooth loads by which fidelity quick may be off: up to 0.42 between quick and
 standard on the shipped rigs and two rigs of others (K_V 1.53 against 1.08, root safety 3.18 against 1.85)."""
+
+
+def _out_of_range(check: Check, findings: Sequence[Finding]) -> Check:
+    """A check that depends on what is outside of the range of its law: open if it held, doubtful if not."""
+    texts = [
+        finding.text for finding in findings if any(fnmatchcase(check.id, part) for part in finding.checks)
+    ]
+    if not texts or check.value is None:
+        return check
+    cause = joined(texts[0], f"{len(texts) - 1} more like it" if len(texts) > 1 else "")
+    return with_doubt(check, cause) if check.missed else unjudged(check, cause)
 
 
 def of_other_law(check: Check, spread: LawSpread) -> Check:

@@ -5,8 +5,8 @@ Commands: check, report, study, compare, diagnose, calibrate, diff, validate, ex
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose, calibrate: any verdict; diff: both can be read;
 report: the result can be read; validate: no gate missed), 1 a check fails or is open, or a gate is missed, 2 usage or
-case error, 3 no convergence, 4 a system library or memory is missing, 5 measured data cannot be used, 70 a defect of the
-tool, 128 + n stopped by signal n (130: Ctrl-C) or by a reader that has closed the output (141).
+case error, 3 no convergence, 4 a system library or memory is missing, 5 measured data cannot be used, 70 a defect of
+the tool, 128 + n stopped by signal n (130: Ctrl-C) or by a reader that has closed the output (141).
 Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 

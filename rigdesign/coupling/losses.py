@@ -241,8 +241,8 @@ def _windage(
         omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
         loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
         other = anderson_loewenthal(rotor.pitch_radius, rotor.face_width, omega, oil_viscosity)
-        rival = {RIVAL_LAW: "Anderson and Loewenthal", RIVAL_POWER: other}
-        loss = replace(loss, details=loss.details | rival)
+        rival: dict[str, float | str] = {RIVAL_LAW: "Anderson and Loewenthal", RIVAL_POWER: other}
+        loss = replace(loss, details={**loss.details, **rival})
         yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 

@@ -15,17 +15,6 @@ FILM_FACTOR = 3.0
 """Between a given film on the rim of a gear and the one its oil makes, from which it is named."""
 
 
-def film_warnings(solved: SolvedRig) -> Iterator[tuple[str, float]]:
-    """What the films of all temperature fields say of their range, with the share of the heat that they pass."""
-    for field in _fields(solved):
-        balance = field.solution.balance
-        for text in field.solution.warnings:
-            passed = [
-                abs(row.power) for row in balance.rows if row.coefficient and text in row.coefficient.warnings
-            ]
-            yield text, sum(passed) / balance.turnover if balance.turnover else 0.0
-
-
 def heat_audits(solved: SolvedRig) -> Iterator[str]:
     """Heat that cannot be, films taken at another temperature difference, radiation counted twice."""
     for field in _fields(solved):

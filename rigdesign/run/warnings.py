@@ -9,6 +9,7 @@ from dynamics.mesh.flank import reach_beyond
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.case.rules.rotating_parts import sideways_keys
+from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
@@ -23,20 +24,11 @@ from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 from rigdesign.run.fast_ramps import fast_ramps
-from rigdesign.run.heat_audits import film_warnings, heat_audits
+from rigdesign.run.heat_audits import heat_audits
 from rigdesign.run.load_convergence import missing_load_errors
 
 MOST_UNCONVERGED = 10
 """Steps of a march with the contact in the loop that may end before their contact is solved to its tolerance."""
-HEAT = ("temperature.*", "clearance.*", "alignment.*", "bearing.*temperature", "bearing.*clearance", "oil.*")
-"""Checks that rest on the heat of the rig."""
-OF_OIL = {
-    "gear_oil": (*HEAT, "flank.film_ratio.{0}*", "flank.scuffing_safety.{0}*", "bought_part.*"),
-    "bearing_oil": (*HEAT, "bearing.*", "lateral.*", "ramp.start_torque", "bought_part.*"),
-}
-"""Checks that rest on the viscosity of an oil of gearbox {0}."""
-MATTERS = 0.1
-"""Share of the heat from which a loss or film outside of the range of its law leaves open what rests on the heat."""
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
 
@@ -53,19 +45,14 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="tooth_deviations", text=text) for text in _deviating_teeth(solved)),
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="time_run", text=text) for text in fast_ramps(solved)),
-        *loss_warnings(losses),
+        *out_of_range(solved, losses),
         *(Finding(id="rival_law", text=text) for text in _rival_laws(solved)),
-        *_oils(solved),
         *(Finding(id="oil_circuit", text=text) for text in _circuits(solved)),
         *(Finding(id="rig_heat", text=text) for text in _rig_heat(solved)),
         *(Finding(id="damping", text=text) for text in _damping(solved)),
         *(Finding(id="sampling", text=text) for text in _sampling(solved)),
         *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
         *(Finding(id="load_error", text=text) for text in _contact_in_loop(solved.contact_in_loop)),
-        *(
-            Finding(id="film", text=text, checks=HEAT if share > MATTERS else ())
-            for text, share in film_warnings(solved)
-        ),
         *(Finding(id="not_steady", text=text) for text in _warming(solved)),
         *(Finding(id="heat_audit", text=text) for text in heat_audits(solved)),
     ]
@@ -156,43 +143,6 @@ def _states(solved: SolvedRig) -> dict[str, list[CurvePoint]]:
 def _time_run(solved: SolvedRig) -> Iterator[str]:
     if solved.run is not None:
         yield from solved.run.ramp.warnings
-
-
-def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[Finding]:
-    """A warning of a loss at several stages is reported once, with their names."""
-    stages: dict[tuple[str, str], dict[str, float]] = {}
-    for stage, found in losses.items():
-        whole = sum(placed.loss.power for placed in found)
-        for placed in found:
-            for text in placed.loss.warnings:
-                stages.setdefault((placed.name, text), {})[stage] = (
-                    placed.loss.power / whole if whole else 0.0
-                )
-    for (place, text), shares in stages.items():
-        where = list(shares)
-        named = f"stage {where[0]}" if len(where) == 1 else f"stages {', '.join(where)}"
-        everywhere = len(where) == len(losses) > 1
-        yield Finding(
-            id="loss",
-            text=f"{place}, {'all stages that rotate' if everywhere else named}: {text}",
-            checks=HEAT if max(shares.values()) > MATTERS else (),
-        )
-
-
-def _oils(solved: SolvedRig) -> Iterator[Finding]:
-    """Every oil at the coldest and at the hottest place of its stream."""
-    for point in solved.points:
-        for stream in point.last.streams:
-            name, kind = stream.name.split(".")
-            oil = gear_oil(solved.rig, name) if kind == "gear_oil" else bearing_oil(solved.rig, name)
-            places = stream.inlet, stream.outlet, stream.chamber
-            for temperature in (min(places), max(places)):
-                for text in oil.warnings(temperature):
-                    yield Finding(
-                        id="oil",
-                        text=f"{stream.name}, stage {point.point.stage}: {text}",
-                        checks=tuple(check.format(name) for check in OF_OIL[kind]),
-                    )
 
 
 def _circuits(solved: SolvedRig) -> Iterator[str]:

@@ -21,12 +21,6 @@ verbosity: ContextVar[Verbosity] = ContextVar("verbosity", default="normal")
 """Of the command that runs, from ``--quiet`` and ``--verbose``."""
 
 
-class _Console(Console):
-    def on_broken_pipe(self) -> None:
-        """Leave it to the command, whose status rich would make that of a failing check."""
-        raise
-
-
 def new_console(*, stderr: bool = False, wrap: bool = False, width: int | None = None) -> Console:
     """A console that prints every text as it is: brackets and colons of a title are no markup.
 
@@ -42,6 +36,10 @@ def verdict_console() -> Console:
 
 class _Console(Console):
     """A console in whose lines no text of others turns the direction of the rest."""
+
+    def on_broken_pipe(self) -> None:
+        """Leave it to the command, whose status rich would make that of a failing check."""
+        raise
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         for segment in super().render(renderable, options):

@@ -85,7 +85,10 @@ def test_the_law_of_the_case_decides(rig: Rig) -> None:
 def test_what_another_law_of_churning_moves_is_an_error_of_the_checks(rig: Rig, free: PointResult) -> None:
     """The free sump with the losses of ISO/TR 14179-2 against the whole loop by that law."""
     (spread,) = law_spreads(rig, [free])
-    assert re.search(r"churning at stage test \(test 41.* W by changenet_2011, 2.* W by iso_tr_14179_2; slave", spread.cause)
+    assert re.search(
+        r"churning at stage test \(test 41.* W by changenet_2011, 2.* W by iso_tr_14179_2; slave",
+        spread.cause,
+    )
     other = rig.case.with_value("gearboxes.test.oil.churning", "iso_tr_14179_2")
     whole = solve_point(build_rig(other, "quick").with_models(rig.models), free.point)
     rise = sump_of(whole) - sump_of(free)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from dynamics.errors import DynamicsNotConverged
+from rigdesign.checks.law_ranges import loss_findings
 from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import oil_jets
@@ -15,13 +16,12 @@ from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.housing import cooling_balance
 from rigdesign.results.rows.housing import loss_rows
 from rigdesign.rig.model import Rig
-from rigdesign.run.warnings import loss_warnings
 from tests.builders.warm_prototype import base, drive_power, lost_in_all, settled
 
 
 def warnings_at(rig: Rig, point: OperatingPoint, result: PointResult) -> list[str]:
     found = stage_losses(rig, point, result, dynamic=True)
-    return [found.text for found in loss_warnings({point.stage: found.losses})]
+    return [found.text for found in loss_findings({point.stage: found.losses})]
 
 
 def jet_at(rpm: float) -> PlacedLoss:

@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 from rigdesign.case import load_case
+from rigdesign.checks.law_ranges import loss_findings, oil_findings
 from rigdesign.properties.oil import FVA_3, FVA_3A
 from rigdesign.results.result import Finding
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.warnings import _oils, loss_warnings, oil_at_room_temperature
+from rigdesign.run.warnings import oil_at_room_temperature
 
 ZERO = 273.15
 
@@ -29,7 +30,7 @@ def findings(inlet: float, outlet: float) -> list[Finding]:
     )
     point = SimpleNamespace(point=SimpleNamespace(stage="test"), last=SimpleNamespace(streams=[stream]))
     subject: Any = SimpleNamespace(points=[point], rig=rig(), case=rig().case)
-    return list(_oils(subject))
+    return list(oil_findings(subject))
 
 
 def found(inlet: float, outlet: float) -> list[str]:
@@ -75,7 +76,7 @@ def test_a_loss_outside_of_its_law_leaves_open_what_it_heats(power: float, rests
         ),
         SimpleNamespace(name="test.main", loss=SimpleNamespace(power=60.0, warnings=())),
     ]
-    (finding,) = loss_warnings({"dwell": losses})  # type: ignore[dict-item]
+    (finding,) = loss_findings({"dwell": losses})  # type: ignore[dict-item]
     assert any(fnmatchcase("temperature.gear_bulk", pattern) for pattern in finding.checks) is rests
 
 
