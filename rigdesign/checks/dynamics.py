@@ -101,15 +101,12 @@ def _distances(solved: SolvedRig, mesh: int) -> Values:
         )
         own, first = rig.shaft_speed(shaft, held) * RPM, rig.pinion_speed(held)
         places = {at_torque(label, named[torque]), *(f"{label} {gear}" for gear in ("pinion", "wheel"))}
-        here = [peak for peak in peaks if peak.where in places]
-        nearest_first = np.argsort([abs(peak.speed - first) for peak in here], kind="stable")
-        for peak in (here[number] for number in nearest_first):  # of equals the first counts
+        here = [(abs(peak.speed - first), peak) for peak in peaks if peak.where in places]
+        for _, peak in sorted(here, key=lambda one: one[0]):  # of equals the first counts
             distance = peak.distance(first, bounds.margin)
             inside = "" if distance else ", where the response itself is above the share"
-            yield (
-                distance,
-                f"{peak.speed * own / first:.0f} rpm ({peak.mode or peak.kind}), held {own:.0f} rpm{inside}",
-            )
+            rpm = peak.speed * own / first
+            yield distance, f"{rpm:.0f} rpm ({peak.mode or peak.kind}), held {own:.0f} rpm{inside}"
 
 
 def near_crossings(solved: SolvedRig, mesh: int, within: float) -> list[tuple[float, ModeCrossing]]:
