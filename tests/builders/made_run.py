@@ -29,14 +29,14 @@ def made_ramp(rig: Rig, sections: tuple[TorqueSection, ...] | None, torques: Tor
         out_of_contact=none, longest_gap=none,
     )  # fmt: skip
     if sections is None:
-        return SimpleNamespace(windows=windows, sections=None)
+        return SimpleNamespace(windows=windows, sections=None, cut="")
     least, greatest = np.ones((2, len(sections), count))
     stages = np.array(stage_names(schedule, time - 0.005))
     for (spring, stage), (low, high) in (torques or {}).items():
         at = np.flatnonzero(stages == stage)[1]
         least[spring, at], greatest[spring, at] = low, high
     read = SectionEnvelopes(sections=sections, least=least, mean=0.5 * (least + greatest), greatest=greatest)
-    return SimpleNamespace(windows=windows, sections=read)
+    return SimpleNamespace(windows=windows, sections=read, cut="")
 
 
 def made_run(rig: Rig, points: Any, ramp: Any, curves: Curves | None = None) -> DynamicRun:

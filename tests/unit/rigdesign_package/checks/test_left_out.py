@@ -24,7 +24,7 @@ def axial_play(*plays: tuple[float, float]) -> Check:
     )
     warm = WarmGearbox(gearbox="test", stage="test", shafts=shafts)
     solved: Any = SimpleNamespace(
-        case=load_case(PROTOTYPE), warm=[warm], points=(), unexpanded=(), seal_amplitudes={}
+        case=load_case(PROTOTYPE), warm=[warm], points=(), unexpanded=(), seal_amplitudes={}, no_clearances=""
     )
     return next(check for check in checks(solved) if check.id == "clearance.axial_play")
 
