@@ -28,18 +28,13 @@ ROUNDING = 5e-4
 DIGITS = 6
 
 Document = dict[str, Any]
-"""{verdict, checks: {id: {verdict, value, reason}}} of the checks that apply; verdict: `Check.status`."""
+"""{verdict, checks: {id: {verdict, value, reason}}}; verdict: `Check.status`."""
 
 
 def read(name: str) -> Document:
     """The expected results of a shipped case."""
     document: Document = json.loads((CASES / name / "expected.json").read_text(encoding="utf-8"))
     return document
-
-
-def applying(checks: Sequence[Check]) -> list[Check]:
-    """Those that an expected.json lists."""
-    return [check for check in checks if check.verdict != "not applicable"]
 
 
 def agrees(expected: float | None, check: Check) -> bool:
@@ -54,7 +49,7 @@ def renewed(document: Document, verdict: str, checks: Sequence[Check], *, every:
     old = document["checks"]
     return {
         "verdict": verdict,
-        "checks": {check.id: _entry(old.get(check.id), check, every) for check in applying(checks)},
+        "checks": {check.id: _entry(old.get(check.id), check, every) for check in checks},
     }
 
 

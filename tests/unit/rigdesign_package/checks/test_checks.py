@@ -337,7 +337,8 @@ def test_checks_and_bands_have_the_same_dangerous_peaks() -> None:
     own = (resonance(11000.0), resonance(5400.0), resonance(8000.0, dangerous=False), resonance(6100.0))
     curve = SimpleNamespace(points=points, speeds=rpm * RPM)
     base = solved(resonances=own)
-    run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, curve)}))
+    curves = SimpleNamespace(named={"180 Nm": (180.0, curve)})
+    run: Any = SimpleNamespace(curves=curves, ramp=SimpleNamespace(cut=""))
     assert base.loads is not None
     found = [one for one in mesh_resonances(rig(), run, base.loads) if one.where == "test at 180 Nm"]
     spans = {round(one.speed / RPM): (round(one.low / RPM), round(one.high / RPM)) for one in found}

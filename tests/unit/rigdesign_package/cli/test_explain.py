@@ -171,10 +171,7 @@ def test_whether_a_check_applies_is_known_before_anything_is_solved(name: str) -
     case = load_case(CASES / name)
     for identity, entry in expected["checks"].items():
         found, applied = explain_check(case, identity), entry["verdict"] != "not applicable"
-        if expected["fidelity"] == "quick" and not {LOADED_CONTACT, BENDING}.isdisjoint(found.needs):
-            assert not applied
-        else:
-            assert found.applicable == applied, identity
+        assert found.applicable == applied, identity
 
 
 def test_a_check_says_rule_procedure_source_and_inputs(rigdesign: Rigdesign) -> None:
