@@ -254,23 +254,24 @@ class ProcessWorkers(Workers):
             sent = pickle.dumps((work, task))
         except Exception as error:  # whatever the classes of the user raise
             raise _NoWorkersError(f"worker processes cannot compute this ({error})") from error
+        started = pool
         try:
-            pool = pool or _ProcessPool(count)
+            started = started or _ProcessPool(count)
             with self._starting(), nullcontext() if b"__main__" in sent else _script_hidden():
-                loading = [pool.executor.submit(_fault, sent) for _ in range(count)]
+                loading = [started.executor.submit(_fault, sent) for _ in range(count)]
             fault = next(filter(None, [future.result() for future in loading]), "")
             if not fault:
-                return pool
+                proven, started = started, None
+                return proven
         except BrokenProcessPool:
+            if pool is not None:  # a process died while nothing was computed
+                return self._proven(None, count, work, task)
             fault = "they end while they start; does the script call this below if __name__ == '__main__'?"
         except (OSError, ImportError, NotImplementedError) as error:  # no process, semaphore or memory left
             fault = str(error)
-        except BaseException:
-            if pool is not None:
-                pool.end(at_once=True)
-            raise
-        if pool is not None:
-            pool.end(at_once=True)
+        finally:
+            if started is not None:
+                started.end(at_once=True)
         raise _NoWorkersError(f"worker processes cannot compute this ({fault})")
 
     def _withdraw(self, pending: Collection[Future[Outcome]]) -> None:

@@ -3,8 +3,10 @@
 import csv
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
@@ -216,6 +218,17 @@ def test_a_machine_without_room_for_processes_computes_in_this_one(monkeypatch):
     with ProcessWorkers(2) as workers:
         assert dict(workers.compute(process_number, [None, None])) == dict.fromkeys(range(2), os.getpid())
         assert "Resource temporarily unavailable" in workers.remark
+
+
+@pytest.mark.whole_run
+def test_a_process_that_dies_while_it_waits_is_replaced():
+    with ProcessWorkers(1) as workers:
+        ((_, first),) = workers.compute(process_number, [None])
+        os.kill(first, signal.SIGKILL)
+        time.sleep(0.5)
+        workers.open(process_number, [None])
+        ((_, second),) = workers.compute(process_number, [None])
+    assert second not in (first, os.getpid()) and not workers.remark
 
 
 def dies(task):
