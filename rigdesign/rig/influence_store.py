@@ -59,8 +59,7 @@ class InfluenceStore:
         found = self.stored(model, say)
         if found is not None:
             return found
-        gear = model.form.gear
-        say(f"influence numbers of the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm")
+        say(f"influence numbers of {gear_words(model)}")
         return self.compute(model)
 
     def stored(self, model: GearModel, say: Progress = silent) -> InfluenceNumbers | None:
@@ -130,6 +129,12 @@ def identity(model: GearModel) -> str:
     """Hash of everything the numbers of a gear follow from."""
     # json writes numbers of numpy and of Python alike, to the last digit
     return hashlib.sha256(json.dumps([SCHEMA, asdict(model)], default=int).encode()).hexdigest()
+
+
+def gear_words(model: GearModel) -> str:
+    """The gear as a user knows it."""
+    gear = model.form.gear
+    return f"the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm"
 
 
 def _entries(numbers: InfluenceNumbers) -> dict[str, Array]:

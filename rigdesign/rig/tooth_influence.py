@@ -14,7 +14,7 @@ from dynamics.influence.gear_body import GearBody
 from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
 from rigdesign.base.parallel import BackgroundTasks, cores
-from rigdesign.rig.influence_store import InfluenceStore, Progress, silent
+from rigdesign.rig.influence_store import InfluenceStore, Progress, gear_words, silent
 from thermal.fe.kept_results import kept
 
 INTEGRAL = 0.5
@@ -71,7 +71,7 @@ class ToothInfluence:
                     for new in missing[len(begun) : done + at_once]
                 )
                 (self._found[model],) = begun[done].results()
-                count(done + 1, whole, _words(model))
+                count(done + 1, whole, gear_words(model))
 
     def of_pair(self, pair: GearPair) -> Numbers:
         """Numbers of pinion and wheel on the face positions of the contact: positive z comes into mesh last."""
@@ -100,11 +100,6 @@ class ToothInfluence:
             return model
         alike = (one for one in self.near if replace(model, face_width=one.face_width) == one)
         return next(alike, model)
-
-
-def _words(model: GearModel) -> str:
-    gear = model.form.gear
-    return f"the gear with {gear.teeth} teeth, module {1e3 * gear.normal_module:g} mm"
 
 
 def _at_once() -> int:

@@ -48,12 +48,6 @@ def kept_as(key: Hashable, make: Callable[[], T]) -> T:
     return made
 
 
-def held_bytes() -> int:
-    """What all kept results hold now [bytes]; they may have grown since they were kept."""
-    seen: set[int] = set()
-    return sum(_bytes([key, found], seen) for key, found in list(_results.items()))
-
-
 def _forget_oldest() -> None:
     """Drop what lies beyond the limit, counted from the result that was used last; what two share counts once."""
     seen: set[int] = set()

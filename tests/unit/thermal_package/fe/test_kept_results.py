@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermal.fe import kept_results
-from thermal.fe.kept_results import held_bytes, kept
+from thermal.fe.kept_results import kept
 
 MEGABYTE = 1_000_000
 
@@ -23,6 +23,10 @@ class Made:
 
     values: np.ndarray
     later: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+def held_bytes() -> int:
+    return kept_results._bytes([kept_results._results], set())
 
 
 def counted(megabytes: float):
