@@ -8,7 +8,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.events import EventRecord, Quantity
+from rigdesign.results.events import NOT_WITHIN, EventRecord, Quantity
 from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
 
 GROUP = "events"
@@ -59,9 +59,9 @@ def _one(value: Callable[[EventRecord], float | None], where: str) -> Callable[[
 
 
 def _trip(record: EventRecord) -> Values:
-    """A monitor that never trips needs more than the time for which it was watched."""
+    """A monitor that never trips needs more than the time for which it was watched: the value is a bound."""
     if record.untripped is not None:
-        return [(record.untripped, f"no crossing within {record.untripped:g} s")]
+        return [(record.untripped, f"{NOT_WITHIN} {record.untripped:g} s, for which the event is followed")]
     return [] if record.tripped is None else [(record.tripped, "first crossing of the limit of the monitor")]
 
 

@@ -67,7 +67,10 @@ def _tooth_loss(place: EventPlace, event: ToothLoss) -> EventRecord:
         history,
     )
     if trip is not None and history.tripped is None:
-        notes = (*notes, f"the monitor does not trip within {event.duration:g} s")
+        notes = (
+            *notes,
+            f"the monitor does not trip within the {event.duration:g} s for which the event is followed",
+        )
         record = replace(record, untripped=event.duration)
     standstill = None
     if history.tripped is not None:

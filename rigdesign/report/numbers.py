@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.results.check import Check
+from rigdesign.results.events import NOT_WITHIN
 
 if TYPE_CHECKING:
     from rigdesign.difference.reading import CheckValue
@@ -16,14 +17,14 @@ UNIT_SIGNS = {
     "l_min": "l/min", "W_m2K": "W/(m² K)", "W/m2K": "W/(m² K)", "W/(m2 K)": "W/(m² K)", "N_um": "N/µm",
     "mm2_s": "mm²/s", "mm2/s": "mm²/s", "kg_m3": "kg/m³", "kg/m3": "kg/m³", "m_s": "m/s", "Nm": "N m",
     "Nm_deg": "N m/°", "kgm2": "kg m²", "kg m2": "kg m²", "W_mK": "W/(m K)", "GPa": "GPa", "1/K": "1/K",
-    "kNm_rad": "kN m/rad", "m3_h": "m³/h", "m3/h": "m³/h",
+    "J_kgK": "J/(kg K)", "um_mK": "µm/(m K)", "kNm_rad": "kN m/rad", "m3_h": "m³/h", "m3/h": "m³/h",
 }  # fmt: skip
 """Unit as stored -> as printed."""
 
 KEY_UNITS = (
-    "l_min", "W_m2K", "W_mK", "N_um", "mm2_s", "m3_h", "kg_m3", "m_s", "kNm_rad", "Nm_deg", "kgm2", "degC", "deg",
-    "mrad", "MPa", "Nm", "rpm", "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
-    "h",
+    "l_min", "W_m2K", "um_mK", "W_mK", "J_kgK", "N_um", "mm2_s", "m3_h", "kg_m3", "m_s", "kNm_rad", "Nm_deg", "kgm2",
+    "degC", "deg", "mrad", "MPa", "GPa", "Nm", "rpm", "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s",
+    "K", "m", "h",
 )  # fmt: skip
 """Units that may end a key, longest first."""
 
@@ -149,6 +150,8 @@ def _with_unit(value: float, unit: str, digits: int) -> str:
 
 def value_text(check: Check) -> str:
     """The value of a check, with as many digits as it takes to tell it from a limit that it is not."""
+    if check.reason.startswith(NOT_WITHIN):
+        return f"> {quantity_text(check.value, check.unit)}"
     limits = [limit for limit in (check.limit, check.upper_limit) if limit is not None]
     for digits in (4, 5, 6, 7):
         text = quantity_text(check.value, check.unit, digits)
@@ -179,7 +182,8 @@ def limit_change_text(change: "CheckChange") -> str:
 
 def margin_text(check: Check) -> str:
     """The distance to the limit; between two temperatures it is in kelvin."""
-    return quantity_text(check.margin, margin_unit(check.unit), digits=3)
+    text = quantity_text(check.margin, margin_unit(check.unit), digits=3)
+    return f"< {text}" if check.reason.startswith(NOT_WITHIN) else text
 
 
 def margin_unit(unit: str) -> str:

@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Quantity = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
+NOT_WITHIN = "not within"
+"""How the reason of a check begins whose value is the time followed without the event it waits for: a lower bound."""
 
 
 @dataclass(frozen=True, kw_only=True)

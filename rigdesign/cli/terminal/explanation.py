@@ -9,11 +9,12 @@ from rich.table import Table
 from rich.text import Text
 
 from rigdesign.cli.terminal.console import hanging, new_console
+from rigdesign.explanation.built_in import BuiltIn
 from rigdesign.explanation.check import CheckExplanation
 from rigdesign.explanation.keys import KeyEntry
 from rigdesign.explanation.overview import Overview
 from rigdesign.explanation.path import PathExplanation, StatedValue
-from rigdesign.report.numbers import number_text, percent_text, quantity_text, unit_text
+from rigdesign.report.numbers import cell_text, heading_text, number_text, percent_text, quantity_text, unit_text
 
 HEAD = 11
 """Columns of the word before an answer."""
@@ -53,9 +54,43 @@ def print_overview(seen: Overview, case: Path) -> None:
         f"rigdesign check {case} --fidelity quick --out results",
         f"rigdesign explain {case} PATH, e.g. {_example(seen)}.oil.inlet_temperature",
         f"rigdesign explain {case} --check {next(iter(seen.checks.values()))[0]}" if seen.checks else "",
+        "rigdesign list limits" if seen.unlimited else "",
     ):
         if command:
             _answer(console, "next", command)
+
+
+def print_built_in(found: BuiltIn) -> None:
+    """A table of the rows, then where their numbers come from; of limits what each is for."""
+    console = new_console(wrap=True)
+    columns = [key for key in found.rows[0] if key not in ("source", "checks", "filled_in")]
+    if found.kind == "limits":
+        for row in found.rows:
+            span = f" ({row['range']})" if row["range"] else ""
+            default = f"default {row['default']}{span}: " if row["filled_in"] else ""
+            checks = f"; checks {', '.join(row['checks'])}" if row["checks"] else ""
+            console.print(Text(row["name"], "bold") + Text(f"  {row['holds']}", "dim"))
+            hanging(console, Text("  "), f"{default}{row['source']}{checks}")
+    else:
+        table = Table(box=None, pad_edge=False, header_style="dim")
+        for key in columns:
+            number = isinstance(found.rows[0][key], float) or key.endswith(("MPa", "stage"))
+            table.add_column(
+                Text(heading_text(key)),
+                justify="right" if number else "left",
+                overflow="fold",
+                no_wrap=key == "name",
+            )
+        for row in found.rows:
+            table.add_row(*(Text(cell_text(row[key])) for key in columns))
+        console.print(table)
+        sources: dict[str, list[str]] = {}
+        for row in found.rows:
+            sources.setdefault(row["source"], []).append(row["name"])
+        for source, names in sources.items():
+            of = "" if len(sources) == 1 else f"{', '.join(names)}: "
+            hanging(console, Text("source: ", "dim"), of + source)
+    hanging(console, Text("use: ", "dim"), found.note)
 
 
 def print_path(found: PathExplanation) -> None:

@@ -80,8 +80,8 @@ remove = ["housing"]
 
 
 COMMANDS = (
-    "check", "study", "compare", "diagnose", "calibrate", "diff", "validate", "explain", "new", "import", "mesh",
-    "schema", "doctor", "completion",
+    "check", "report", "study", "compare", "diagnose", "calibrate", "diff", "validate", "explain", "list", "new",
+    "import", "mesh", "schema", "doctor", "completion",
 )  # fmt: skip
 
 
@@ -107,8 +107,14 @@ needs_posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and li
 
 def test_help_of_check_lists_its_options() -> None:
     text = help_text("check")
-    options = ("--out", "--fidelity", "--transient", "--ranges", "--all", "--json", "--fail-on")
+    options = ("--out", "--fidelity", "--transient", "--ranges", "--checks", "--all", "--json", "--fail-on")
     assert all(option in text for option in (*options, "--verbose", "--quiet"))
+
+
+def test_help_of_study_says_how_all_gearboxes_are_varied() -> None:
+    assert "gearboxes.*." in help_text("study") and "any name" in " ".join(
+        help_text("study").replace("│", "").split()
+    )
 
 
 HELP = (

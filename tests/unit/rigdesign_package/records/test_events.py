@@ -17,8 +17,10 @@ from rigdesign.records.curves import Curves, curve_at
 from rigdesign.records.events import overspeed_time, solve_events
 from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.report.numbers import margin_text, value_text
 from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
+from rigdesign.results.check import Checks
 from rigdesign.results.events import EventRecord
 from rigdesign.results.rows.events import event_row
 from rigdesign.rig.model import build_rig
@@ -196,7 +198,9 @@ def test_a_monitor_that_does_not_trip_fails_its_limit(rig: SolvedRig) -> None:
     by_id = {check.id: check for check in checks(replace(rig, events=[silent]))}
     check = by_id["event.trip_time_maximum.broken"]
     assert (check.value, check.verdict) == (0.008, "fail")
-    assert "no crossing" in check.reason
+    assert check.reason.startswith("not within 0.008 s") and value_text(check) == "> 0.008 s"
+    assert margin_text(check).startswith("< ")
+    assert "&gt; 0.008 s" in report_html(replace(make_result(), checks=Checks([check])))
 
 
 def test_report_and_results_show_events(rig: SolvedRig) -> None:
