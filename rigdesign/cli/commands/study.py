@@ -39,8 +39,8 @@ def study(
         Case folder or its case.toml.
     vary
         Grid: 'PATH=START:STOP:STEP' or 'PATH=v1,v2', a unit at every value or at the last. All other designs:
-        'PATH=LOW:HIGH', or 'assumed' for every assumed input with a range. Once per parameter. * in PATH stands for
-        any name: 'gearboxes.*.oil.inlet_temperature' for all gearboxes, 'gearboxes.test.bearings.*.width' for all
+        'PATH=LOW:HIGH', or 'assumed' for every assumed input with a range. Once per parameter. `*` in PATH stands
+        for any name: `gearboxes.*.oil.inlet_temperature` for all gearboxes, `gearboxes.test.bearings.*.width` for all
         bearings of one.
     out
         Folder of the study: ledger, results.csv, study.html.

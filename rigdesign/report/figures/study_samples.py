@@ -32,6 +32,11 @@ MOST_VECTORS = 1500
 """Points up to which every one is drawn as its own shape; more are drawn as a picture."""
 TITLE_WIDTH = 42
 """Characters of a line of the title above a bar chart."""
+TORNADO_LEFT, TORNADO_RIGHT = 0.36, 0.98
+"""Ends of the axis of a tornado plot in the width of its figure."""
+LEAST_SPAN = 5.0
+"""Margins that a tornado plot spans at least, so that inputs that move little look so [%]."""
+LABEL_SIZE = 6.5
 MOST_INPUTS = 12
 """Inputs of a bar chart, the strongest first."""
 
@@ -80,25 +85,25 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
         axes.barh(place - 0.17, bar.low - bar.stated, left=bar.stated, height=0.32, color=SERIES[0])
         axes.barh(place + 0.17, bar.high - bar.stated, left=bar.stated, height=0.32, color=SERIES[1], hatch="////",
                   edgecolor="white", linewidth=0)  # fmt: skip
-        for offset, tip, text in ((-0.17, bar.low, bar.swing.low), (0.17, bar.high, bar.swing.high)):
+        for offset, (tip, text) in zip((-0.17, 0.17), bar.ends, strict=True):
             left = tip < bar.stated
             axes.annotate(
                 plain(value_shown(text)),
                 (tip, place + offset), xytext=(-3 if left else 3, 0), textcoords="offset points",
-                ha="right" if left else "left", va="center", fontsize=6.5, color=INK,
+                ha="right" if left else "left", va="center", fontsize=LABEL_SIZE, color=INK,
             )  # fmt: skip
     axes.axvline(bars[0].stated, color=INK, linewidth=1.0)
-    axes.margins(x=0.25)
-    start, end = axes.get_xlim()
+    start, end = _limits(bars)
+    axes.set_xlim(start, end)
     if start < 0.0 < end:
         axes.axvspan(start, 0.0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
         axes.axvline(0.0, color=VERDICT_COLOURS["fail"], linewidth=1.2, linestyle="--")
-        axes.set_xlim(start, end)
     axes.set_yticks(range(len(bars)), [plain(fill(input_name(bar.swing.path), 26)) for bar in bars])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     finish(axes, MARGIN_LABEL, "", plain(fill(title, TITLE_WIDTH)))
-    figure.subplots_adjust(left=0.36, right=0.98, top=1 - (0.16 + 0.16 * lines) / height, bottom=0.5 / height)
+    top = 1 - (0.16 + 0.16 * lines) / height
+    figure.subplots_adjust(left=TORNADO_LEFT, right=TORNADO_RIGHT, top=top, bottom=0.5 / height)
     return figure
 
 
@@ -112,8 +117,32 @@ class _Bar:
     high: float
 
     @property
+    def ends(self) -> tuple[tuple[float, str], tuple[float, str]]:
+        """Margin and value at both ends."""
+        return (self.low, self.swing.low), (self.high, self.swing.high)
+
+    @property
     def reach(self) -> float:
         return max(self.low, self.high, self.stated) - min(self.low, self.high, self.stated)
+
+
+def _limits(bars: "Sequence[_Bar]") -> tuple[float, float]:
+    """Ends of the axis of a tornado plot: no nearer to each other than `LEAST_SPAN`, with room for the labels."""
+    labels = {
+        side: [text for bar in bars for tip, text in bar.ends if (tip < bar.stated) == (side == "left")]
+        for side in ("left", "right")
+    }
+    width = (TORNADO_RIGHT - TORNADO_LEFT) * PANEL_WIDTH * 72.0
+    left, right = (
+        (8.0 + 0.62 * LABEL_SIZE * max((len(value_shown(text)) for text in texts), default=0)) / width
+        for texts in labels.values()
+    )
+    tips = [tip for bar in bars for tip in (bar.low, bar.stated, bar.high)]
+    low, high = min(tips), max(tips)
+    spare = max(0.0, LEAST_SPAN - (high - low))
+    low, high = low - 0.5 * spare, high + 0.5 * spare
+    whole = (high - low) / (1.0 - left - right)
+    return low - left * whole, high + right * whole
 
 
 def _bar(swing: "Swing") -> _Bar | None:

@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rigdesign.base.errors import UsageError
+from rigdesign.report.figures.drawing import drawing_style
+from rigdesign.report.figures.study_samples import tornado_figure
 from rigdesign.report.margins.answer import slices, study_answer
-from rigdesign.report.margins.axis import input_name, study_axis
+from rigdesign.report.margins.axis import input_name, study_axis, value_shown
 from rigdesign.report.margins.regions import region_map
+from rigdesign.studies.result import Swing
 from rigdesign.studies.selection import CheckSelection
 from tests.builders.study_points import OIL, TORQUE, check_record, map_points, oil_points, point, study_of
 
@@ -265,3 +269,34 @@ def test_a_map_of_two_of_three_inputs_shows_the_worst_of_the_third():
     found = region_map(answer.axes[:2], points, answer.deciding)
     assert found.margin[0, 0] == pytest.approx(100.0 * (1.0 - 240.0 / 300.0))
     assert found.fails[-1, -1] and not found.fails[0, 0]
+
+
+@pytest.mark.parametrize(
+    ("ends", "low", "high"),
+    [
+        ([("3000 N s/m", "12000 N s/m", 0.5, 0.85), ("6 um", "0.5 um", 0.5, 0.6)], 15.0, 50.0),
+        ([("3000 N s/m", "12000 N s/m", 0.5, 0.5012), ("6 um", "0.5 um", 0.5, 0.4993)], 49.88, 50.07),
+        ([("80 degC", "120 degC", 0.4, 0.9)], 10.0, 60.0),
+    ],
+)
+def test_a_tornado_shows_its_labels_whole_and_small_spans_small(ends, low, high):
+    """Also where a bar has no length, and where all bars go one way."""
+    swings = [
+        Swing(
+            check="gap", path=f"gearboxes.test.input_{n}", low=first, high=second, utilisation_stated=0.5,
+            utilisation_low=at_low, utilisation_high=at_high,
+        )
+        for n, (first, second, at_low, at_high) in enumerate(ends)
+    ]  # fmt: skip
+    with drawing_style():
+        figure = tornado_figure("smallest hot gap", swings)
+        renderer = FigureCanvasAgg(figure).get_renderer()
+    axes = figure.axes[0]
+    shown = [text.get_text() for text in axes.texts]
+    assert shown == [value_shown(text) for first, second, *_ in ends for text in (first, second)]
+    frame = axes.get_window_extent(renderer)
+    for text in axes.texts:
+        box = text.get_window_extent(renderer)
+        assert frame.x0 <= box.x0 and box.x1 <= frame.x1, text.get_text()
+    start, end = axes.get_xlim()
+    assert start < low and high < end and end - start >= 5.0
