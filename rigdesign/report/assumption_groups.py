@@ -1,4 +1,4 @@
-"""Assumed inputs by part of the rig, those with the most influence on the verdicts first."""
+"""Assumed inputs by part of the rig: by what they do to the governing margins where that is known, else by name."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.report.numbers import stated_text
 from rigdesign.results.check import Check
-from rigdesign.results.ranges import RangesResult
 from rigdesign.results.result import RunResult
 
-NEAR = 0.9
+NEAR = 0.1
 """Distance from which a check counts as near its limit."""
 
 
@@ -18,8 +17,7 @@ class AssumptionLine:
     """One assumption, or several that say the same of like parts.
 
     path : relative to its group, names of like parts in braces
-    moved : largest shift of a distance over its range; None where the range was not evaluated
-    near : checks at or beyond their limit, or near it, that depend on it; checks : all that do
+    moved : largest shift of the distance of a governing check over its range; None where it was not evaluated
     """
 
     path: str
@@ -27,49 +25,53 @@ class AssumptionLine:
     range: str
     reason: str
     moved: float | None
-    near: int
-    checks: int
     count: int = 1
 
     @property
-    def influence(self) -> tuple[float, int, bool, int]:
-        """To sort by: what it moves, how much is near, whether it has a range, how much depends on it at all."""
-        return (self.moved or 0.0, self.near, bool(self.range), self.checks)
+    def order(self) -> tuple[float, str]:
+        """To sort by: what it moves, then its path."""
+        return -(self.moved or 0.0), self.path
 
 
 def assumption_groups(result: RunResult) -> dict[str, list[AssumptionLine]]:
-    """Lines by part of the rig; groups and lines by falling influence."""
-    near = {check.id for check in result.checks if _is_near(check)}
-    moved = _moved(result.ranges)
+    """Lines by part of the rig; groups and lines by what they move, without ranges by name."""
+    moved = _moved(result)
     groups: dict[str, list[tuple[str, AssumptionRecord]]] = {}
     for record in result.assumptions:
         group, rest = _split(record.path)
         groups.setdefault(group, []).append((rest, record))
-    lined = {group: _lines(records, near, moved) for group, records in groups.items()}
-    return dict(sorted(lined.items(), key=lambda item: item[1][0].influence, reverse=True))
+    lined = {group: _lines(records, moved) for group, records in groups.items()}
+    return dict(sorted(lined.items(), key=lambda item: (item[1][0].order[0], item[0])))
 
 
 def most_influential(result: RunResult, number: int) -> list[AssumptionLine]:
-    """The first of all groups together, with full paths."""
-    near = {check.id for check in result.checks if _is_near(check)}
-    lines = _lines([(record.path, record) for record in result.assumptions], near, _moved(result.ranges))
-    return lines[:number]
+    """Those that move a governing margin most, with full paths; none where no range was evaluated."""
+    lines = _lines([(record.path, record) for record in result.assumptions], _moved(result))
+    return [line for line in lines if line.moved][:number]
 
 
-def _is_near(check: Check) -> bool:
-    return check.verdict == "fail" or (check.distance or 0.0) > NEAR
+def governing_ids(checks: Sequence[Check]) -> set[str]:
+    """Checks that fail; without one those with less than `NEAR` of their limit left, else the nearest to it."""
+    predicted = [check for check in checks if not check.by_definition]
+    left = {check.id: check.distance for check in predicted if check.distance is not None}
+    failing = {check.id for check in checks if check.status == "fail"}
+    near = {identity for identity, distance in left.items() if distance < NEAR}
+    return failing or near or ({min(left, key=lambda identity: left[identity])} if left else set())
 
 
-def _moved(ranges: RangesResult | None) -> dict[str, float]:
-    """Largest shift of a distance by path."""
+def _moved(result: RunResult) -> dict[str, float]:
+    """Largest shift of the distance of a governing check by path; every range that was evaluated has one."""
+    ranges = result.ranges
     if ranges is None:
         return {}
-    stated = {row.check: row.distance or 0.0 for row in ranges.checks}
-    found: dict[str, float] = {}
+    governing = governing_ids(result.checks)
+    stated = {row.check: row.distance or 0.0 for row in ranges.checks if row.check in governing}
+    found = {entry.path: 0.0 for entry in ranges.inputs}
     for row in ranges.margins:
-        ends = (end for end in (row.distance_low, row.distance_high) if end is not None)
-        shift = max((abs(end - stated.get(row.check, 0.0)) for end in ends), default=0.0)
-        found[row.path] = max(found.get(row.path, 0.0), shift)
+        if row.check in stated:
+            ends = (end for end in (row.distance_low, row.distance_high) if end is not None)
+            shift = max((abs(end - stated[row.check]) for end in ends), default=0.0)
+            found[row.path] = max(found.get(row.path, 0.0), shift)
     return found
 
 
@@ -83,9 +85,9 @@ def _split(path: str) -> tuple[str, str]:
 
 
 def _lines(
-    records: Iterable[tuple[str, AssumptionRecord]], near: set[str], moved: Mapping[str, float]
+    records: Iterable[tuple[str, AssumptionRecord]], moved: Mapping[str, float]
 ) -> list[AssumptionLine]:
-    """Records that say the same of like parts as one line, by falling influence."""
+    """Records that say the same of like parts as one line, in their order."""
     alike: dict[tuple[object, ...], list[tuple[str, AssumptionRecord]]] = {}
     for rest, record in records:
         parts = rest.split(".")
@@ -98,15 +100,11 @@ def _lines(
             record.range,
         )
         alike.setdefault(key, []).append((rest, record))
-    lines = [_line(same, near, moved) for same in alike.values()]
-    return sorted(lines, key=lambda line: line.influence, reverse=True)
+    return sorted((_line(same, moved) for same in alike.values()), key=lambda line: line.order)
 
 
-def _line(
-    same: Sequence[tuple[str, AssumptionRecord]], near: set[str], moved: Mapping[str, float]
-) -> AssumptionLine:
+def _line(same: Sequence[tuple[str, AssumptionRecord]], moved: Mapping[str, float]) -> AssumptionLine:
     first = same[0][1]
-    decided = {identity for _, record in same for identity in record.decides}
     shifts = [moved[record.path] for _, record in same if record.path in moved]
     return AssumptionLine(
         path=in_braces([rest for rest, _ in same]),
@@ -114,8 +112,6 @@ def _line(
         range="" if first.range is None else stated_text(f"{first.range[0]} to {first.range[1]}"),
         reason=first.reason,
         moved=max(shifts) if shifts else None,
-        near=len(decided & near),
-        checks=len(decided),
         count=len(same),
     )
 

@@ -1,4 +1,4 @@
-"""Assumed inputs: the strongest in the body, all of them by part of the rig in the appendix."""
+"""Assumed inputs: those that move the governing margins most in the body, all by part of the rig in the appendix."""
 
 from rigdesign.report.assumption_groups import assumption_groups, most_influential
 from rigdesign.report.sections.section import Draw, ReportSection, Values
@@ -9,19 +9,24 @@ STRONGEST = 8
 
 
 def _strongest(result: RunResult, draw: Draw) -> Values:
-    return {"strongest": most_influential(result, STRONGEST), "near": _near_words(result)}
+    return {"strongest": most_influential(result, STRONGEST), "order": _order(result)}
 
 
 def _all(result: RunResult, draw: Draw) -> Values:
-    return {"groups": assumption_groups(result), "near": _near_words(result)}
+    return {"groups": assumption_groups(result), "order": _order(result)}
 
 
-def _near_words(result: RunResult) -> str:
-    """How the lines are sorted."""
-    evaluated = result.ranges is not None
-    by_range = "by how far they move a distance over their range, then " if evaluated else ""
-    near = "by how many checks that fail or use more than 90 % of their limit depend on them"
-    return f"{by_range}{near}, those with a range first"
+def _order(result: RunResult) -> str:
+    """How the lines are sorted, and what is not known of them."""
+    if result.ranges is not None:
+        return (
+            "Sorted by how far an input moves the distance to the limit of a governing check over its range (one that fails; if "
+            "none does, one with less than 10 % of its limit left, or the nearest); the others by name."
+        )
+    return (
+        "Sorted by name: which of them moves the governing margins most is not known, as their ranges were not "
+        f"evaluated. rigdesign check {result.case['name']} --ranges works it out."
+    )
 
 
 ASSUMPTIONS = ReportSection(

@@ -7,9 +7,15 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rigdesign.case import load_case
+from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.inputs import InputRow
 from rigdesign.report import flips, reasons
-from rigdesign.report.assumption_groups import assumption_groups, in_braces, most_influential
+from rigdesign.report.assumption_groups import (
+    assumption_groups,
+    governing_ids,
+    in_braces,
+    most_influential,
+)
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.drivetrain_sheets import bearing_sheet, joint_sheet, shaft_sheet
 from rigdesign.report.figures.drawing import drawing_style
@@ -17,6 +23,7 @@ from rigdesign.report.figures.schematic import phone_schematic_figure, rig_plan,
 from rigdesign.report.input_sheets import gear_sheets, material_sheet, oil_sheet
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.pages.report import css_string, report_html
+from rigdesign.results.check import Checks
 from rigdesign.results.flips import Flip
 from tests.builders.paths import CASES
 from tests.builders.report import make_check, make_result
@@ -359,20 +366,46 @@ def test_running_title_cannot_leave_its_style_sheet():
     assert css_string("a</style>") == '"a\\00003c\\00002fstyle\\00003e"'
 
 
-def test_assumptions_of_like_parts_share_a_line_and_the_strongest_come_first():
-    base = make_result()
-    record = replace(
-        base.assumptions[0], range=None, reason="as built", decides=("seal_gap_minimum",), value="1 mm"
-    )
-    alike = [replace(record, path=f"gearboxes.test.bearings.{name}.width") for name in ("front", "rear")]
-    strong = replace(
-        record, path="losses.share", value="5.015539e-04 kg m2", decides=("root_stress_window", "seal_gap_minimum"),
-        range=("1", "2"),
-    )  # fmt: skip
-    groups = assumption_groups(replace(base, assumptions=[*alike, strong]))
+def _assumed(path, **more):
+    return AssumptionRecord(path=path, value="1 mm", reason=f"as built {path.rpartition('.')[2]}", **more)
+
+
+def test_assumptions_of_like_parts_share_a_line_and_stand_by_name_where_no_range_was_evaluated():
+    """However many checks depend on an input: that says nothing of what it does to them."""
+    paths = ("gearboxes.test.bearings.rear.width", "gearboxes.test.bearings.front.width", "losses.share")
+    records = [_assumed(path, decides=("a", "b") if path == "losses.share" else ()) for path in paths]
+    result = make_result(assumptions=records)
+    groups = assumption_groups(result)
     assert list(groups) == ["losses", "test: bearings"]
     (line,) = groups["test: bearings"]
-    assert (line.path, line.count, line.near) == ("{front,rear}.width", 2, 0)
-    assert groups["losses"][0].value == "0.0005016 kg m²"
-    assert most_influential(replace(base, assumptions=[*alike, strong]), 1)[0].path == "losses.share"
+    assert (line.path, line.count, line.moved) == ("{rear,front}.width", 2, None)
+    assert most_influential(result, 5) == []
+    page = " ".join(report_html(result).split())
+    assert "Sorted by name: which of them moves the governing margins most is not known" in page
+    assert "rigdesign check uhcf_prototype --ranges works it out" in page and "near limit</th>" not in page
+
+
+def test_assumptions_are_ranked_by_what_their_ranges_do_to_the_governing_margins():
+    """x fails and governs: torque moves it by 0.4; gap moves z alone, which holds, and by more."""
+    found = ranges()
+    moving = [replace(row, utilisation_high=2.0) if row.check == "z" else row for row in found.margins]
+    found = replace(found, margins=[row for row in moving if row.check != "y"])
+    checks = [make_check("x", 2.0, 1.0), make_check("z", 0.5, 1.0)]
+    records = [
+        _assumed("gap", range=("40 um", "80 um")),
+        _assumed("torque", range=("1", "2")),
+        _assumed("other"),
+    ]
+    result = make_result(assumptions=records, ranges=found, checks=Checks(checks))
+    assert governing_ids(result.checks) == {"x"}
+    lines = most_influential(result, 5)
+    assert [(line.path, line.moved) for line in lines] == [("torque", pytest.approx(0.4))]
+    listed = [line for group in assumption_groups(result).values() for line in group]
+    assert [line.path for line in listed] == ["torque", "gap", "other"]
+    assert "Sorted by how far an input moves the utilisation of a governing check" in report_html(result)
+    holds = Checks([make_check("x", 0.5, 1.0), make_check("z", 0.6, 1.0)])
+    assert governing_ids(holds) == {"z"}
+
+
+def test_like_paths_stand_in_braces():
     assert in_braces(["a.x.k", "a.y.k"]) == "a.{x,y}.k"
