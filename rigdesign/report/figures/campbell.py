@@ -52,7 +52,7 @@ def campbell_diagram(campbell: Mapping[str, Any], held: Mapping[str, float]) -> 
     for stage, speed in held.items():
         axes.axvline(speed, color=MUTED, linewidth=0.9, linestyle=(0, (7.0, 1.6, 1.4, 1.6)))
         axes.annotate(
-            words(stage), (speed, bottom), textcoords="offset points", xytext=(-3, 3), rotation=90, fontsize=7.5,
+            words(stage), (speed, bottom), textcoords="offset points", xytext=(-3, 3), rotation=90, fontsize=8,
             ha="right", va="bottom", color=MUTED,
         )  # fmt: skip
     finish(axes, "pinion speed n [rpm]", "frequency [Hz]")
@@ -60,7 +60,7 @@ def campbell_diagram(campbell: Mapping[str, Any], held: Mapping[str, float]) -> 
         axis.set_major_formatter(_whole)
         axis.set_minor_formatter(_some)
     axes.grid(visible=True, which="minor", linewidth=0.3)
-    figure.legend(loc="lower left", bbox_to_anchor=(0.075, 0.0), ncols=4, fontsize=7.5)
+    figure.legend(loc="lower left", bbox_to_anchor=(0.075, 0.0), ncols=4, fontsize=8)
     figure.subplots_adjust(left=0.085, right=0.63, top=0.955, bottom=0.175)
     return figure
 
@@ -94,7 +94,7 @@ def _orders(axes: "Axes", orders: Sequence[Mapping[str, Any]]) -> None:
             text = "f_z" if order["harmonic"] == 1 else f"{order['harmonic']:g} f_z"
             at = min(0.97 * top / slope, 0.93 * high)
             axes.annotate(
-                text, (at, slope * at), textcoords="offset points", xytext=(-9, 0), fontsize=7.5, ha="right",
+                text, (at, slope * at), textcoords="offset points", xytext=(-9, 0), fontsize=8, ha="right",
                 va="top", color=SERIES[0],
             )  # fmt: skip
 
@@ -136,7 +136,7 @@ def _edge_labels(axes: "Axes", values: Sequence[float], texts: Sequence[str]) ->
     for i, at, place in zip(order, spread, places):
         axes.annotate(
             words(texts[i]), (1.0, place), (1.035, at), xycoords="axes fraction", textcoords="axes fraction",
-            fontsize=7.5, va="center", arrowprops=LEADER,
+            fontsize=8, va="center", arrowprops=LEADER,
             annotation_clip=False,
         )  # fmt: skip
 

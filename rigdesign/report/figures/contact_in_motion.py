@@ -33,7 +33,7 @@ def pair_share_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
         axes.set_ylim(bottom=0)
         finish(axes, "rolling angle of the pinion φ [°]", "share of a pair [–]" if axes is panels[0] else "")
         gearbox_title(axes, f"Gearbox {words(row['gearbox'])}, stage {words(row['stage'])}", style)
-    panels[0].legend(loc="lower center", fontsize=7)
+    panels[0].legend(loc="lower center", fontsize=8)
     if faces:
         for axes, row in zip(grid[1], rows, strict=True):
             _line_load(axes, row, styles[row["gearbox"]], first=axes is grid[1][0])
@@ -56,4 +56,4 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
         f"line load [{unit_text('N/mm')}]" if first else "",
     )
     if first:
-        axes.legend(loc="lower center", fontsize=7)
+        axes.legend(loc="lower center", fontsize=8)

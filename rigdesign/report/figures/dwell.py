@@ -40,7 +40,7 @@ def dwell_figure(dwell: Mapping[str, Any]) -> "Figure":
             axes.axvline(stage["speed_rpm"], color=colour, linewidth=1.1)
             axes.annotate(
                 words(stage["stage"]), (stage["speed_rpm"], 1.0), xycoords=("data", "axes fraction"),
-                textcoords="offset points", xytext=(0, 3), ha="center", fontsize=7.5, color=colour,
+                textcoords="offset points", xytext=(0, 3), ha="center", fontsize=8, color=colour,
             )  # fmt: skip
     axes.set_xlim(0, dwell["high_rpm"])
     axes.set_ylim(bottom=0)

@@ -30,7 +30,7 @@ def dynamic_root_figure(rows: Rows) -> "Figure":
         _rate(lower, own, speeds)
         finish(upper, "", "root stress [N/mm²]", words(gear).capitalize())
         finish(lower, "rolling angle φ [°]", "strain rate [1/s]")
-        upper.legend(loc="upper left", fontsize=7)
+        upper.legend(loc="upper left", fontsize=8)
     figure.subplots_adjust(left=0.085, right=0.985, top=0.945, bottom=0.1, wspace=0.22, hspace=0.1)
     return figure
 

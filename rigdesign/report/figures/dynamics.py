@@ -150,7 +150,7 @@ def campbell_figure(dynamics: DynamicsResult) -> "Figure":
         for axes in axes_list
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
     }
-    figure.legend(shown.values(), shown.keys(), loc="lower center", ncols=3, fontsize=7.5)
+    figure.legend(shown.values(), shown.keys(), loc="lower center", ncols=3, fontsize=8)
     figure.subplots_adjust(left=0.085, right=0.985, top=0.93, bottom=0.26, wspace=0.22)
     return figure
 
@@ -176,7 +176,7 @@ def _orders(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> 
         # the steep lines end close together: their labels stand in two rows
         row = 13 if harmonic > 2 and harmonic % 2 else 4
         axes.annotate(
-            label, (end, slope * end), textcoords="offset points", xytext=(-3, row), ha="right", fontsize=7.5
+            label, (end, slope * end), textcoords="offset points", xytext=(-3, row), ha="right", fontsize=8
         )
     axes.set_ylim(0, 1.16 * ceiling)
 

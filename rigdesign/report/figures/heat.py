@@ -35,7 +35,7 @@ def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
         left = [start + width for start, width in zip(left, power, strict=True)]
     for row, total in enumerate(left):
         axes.annotate(
-            quantity_text(total, "W", digits=3), (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
+            quantity_text(total, "W", digits=3), (total, row), textcoords="offset points", xytext=(4, -3), fontsize=8
         )  # fmt: skip
     axes.set_yticks(range(len(stages)), [words(stage) for stage in stages])
     axes.invert_yaxis()

@@ -97,5 +97,5 @@ def _stage_names(axes: "Axes", ramp: RampHistory) -> None:
             textcoords="offset points",
             xytext=(0, 4 + 11 * (number % 2)),
             ha="center",
-            fontsize=7.5,
+            fontsize=8,
         )

@@ -43,7 +43,7 @@ def margins_figure(ranges: "RangesResult", titles: dict[str, str]) -> "Figure | 
         if row.worst_path is not None:
             axes.annotate(
                 plain(f"{_short(row.worst_path)} = {row.worst_value}"), (max(high, low), place),
-                textcoords="offset points", xytext=(6, -3), fontsize=7, color=MUTED,
+                textcoords="offset points", xytext=(6, -3), fontsize=8, color=MUTED,
             )  # fmt: skip
     axes.axvspan(FLOOR, 0.0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
     axes.axvline(0.0, color=INK, linewidth=1.2)
@@ -77,7 +77,7 @@ def temperature_figure(ranges: "RangesResult") -> "Figure | None":
             warmer = temperature > stated
             axes.barh(place, temperature - stated, left=stated, color=WARM if warmer else COLD, height=0.62)
             axes.annotate(
-                plain(value), (temperature, place), textcoords="offset points", fontsize=7, color=MUTED,
+                plain(value), (temperature, place), textcoords="offset points", fontsize=8, color=MUTED,
                 xytext=(4 if warmer else -4, -3), ha="left" if warmer else "right",
             )  # fmt: skip
     axes.axvline(stated, color=INK, linewidth=1.2)

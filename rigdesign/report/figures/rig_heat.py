@@ -47,7 +47,7 @@ def rig_heat_figure(row: Mapping[str, Any]) -> "Figure":
     for place, (source, end) in enumerate(zip(sources, given, strict=True)):
         axes.annotate(
             quantity_text(source["power_W"], "W", digits=3), (end, place), textcoords="offset points", xytext=(4, -3),
-            fontsize=7.5,
+            fontsize=8,
         )  # fmt: skip
     axes.axvline(0.0, color=INK, linewidth=0.6)
     axes.set_yticks(

@@ -277,7 +277,7 @@ def _gear(axes: "Axes", gear: Gear, plan: RigPlan) -> None:
     )  # fmt: skip
     words = plan.form.gear_words(gear.name.replace("_", " "), gear.teeth)
     axes.text(
-        gear.column + GEAR_HALF + 0.01, gear.level - 0.1, plain(words), ha="left", va="bottom", fontsize=6, color=INK
+        gear.column + GEAR_HALF + 0.01, gear.level - 0.1, plain(words), ha="left", va="bottom", fontsize=6.5, color=INK
     )  # fmt: skip
 
 

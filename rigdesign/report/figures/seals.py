@@ -132,8 +132,8 @@ def _round(axes: "Axes", seal: dict[str, Any], middle: FloatArray, top: float, l
     )
     least_words = f"least {seal['hot_min_mm']:.3f} mm at {seal['angle_of_min_deg']:.0f}°"
     below = f"{least_words}, mean {seal['hot_mean_mm']:.3f} mm"
-    axes.text(middle[0], middle[1] + 1.12, below, ha="center", fontsize=7)
-    axes.text(middle[0], middle[1], "shaft", ha="center", va="center", fontsize=6.5, zorder=6)
+    axes.text(middle[0], middle[1] + 1.12, below, ha="center", fontsize=8)
+    axes.text(middle[0], middle[1], "shaft", ha="center", va="center", fontsize=8, zorder=6)
 
 
 def _scale(axes: "Axes", middle: FloatArray, top: float) -> None:
@@ -150,5 +150,5 @@ def _scale(axes: "Axes", middle: FloatArray, top: float) -> None:
         f"{number_text(ticks[-1], 2)} mm",
         ha="right",
         va="center",
-        fontsize=6,
+        fontsize=8,
     )

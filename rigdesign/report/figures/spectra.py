@@ -68,7 +68,7 @@ def _mesh_orders(axes: "Axes", row: Mapping[str, Any], last: float) -> None:
         beyond = slope * high > last
         axes.annotate(
             text, (slope * speed, speed), textcoords="offset points", xytext=(-3, 2) if beyond else (-9, -2),
-            ha="right", va="top", fontsize=7.5, color="white", annotation_clip=False,
+            ha="right", va="top", fontsize=8, color="white", annotation_clip=False,
         )  # fmt: skip
 
 
@@ -95,7 +95,7 @@ def spectrum_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
             if height is not None:
                 axes.annotate(
                     "f_z" if harmonic == 1 else f"{harmonic} f_z", (harmonic * row["teeth"], height),
-                    textcoords="offset points", xytext=(0, 4), ha="center", fontsize=7.5,
+                    textcoords="offset points", xytext=(0, 4), ha="center", fontsize=8,
                 )  # fmt: skip
         axes.set_yscale("log")
         highest = max([*heights, *row["amplitude_Nm"]], default=1.0)

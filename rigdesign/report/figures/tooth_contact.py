@@ -58,7 +58,7 @@ def _pattern(figure: "Figure", axes: "Axes", contact: dict[str, Any], style: Cur
     if edge.any():
         axes.plot(across[edge], angle[edge], linestyle="", marker=".", markersize=1.2, color=EDGE)
     bar = figure.colorbar(shown, ax=axes, fraction=0.06, pad=0.03)
-    bar.ax.tick_params(labelsize=6)
-    bar.ax.set_title("p_H [N/mm²]", fontsize=6.5, pad=4)
+    bar.ax.tick_params(labelsize=8)
+    bar.ax.set_title("p_H [N/mm²]", fontsize=8, pad=4)
     finish(axes, "face position z [mm]", "rolling angle φ [°]")
     gearbox_title(axes, "Pinion flank", style)

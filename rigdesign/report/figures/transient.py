@@ -212,7 +212,7 @@ def _phase_names(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
         lines = textwrap.wrap(words(column.phase), max(room, NARROW))
         axes.annotate(
             "\n".join(lines), (column.start, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points",
-            xytext=(2, height), va="bottom", fontsize=7.5, fontweight="bold",
+            xytext=(2, height), va="bottom", fontsize=8, fontweight="bold",
         )  # fmt: skip
         height = height + 10 * len(lines) if max(map(len, lines)) > room else 4
 
@@ -232,7 +232,7 @@ def _time_axis(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
                 shown = place - last >= LABEL_ROOM
                 labels.append(text if shown else "")
                 last = place if shown else last
-    axes.set_xticks(places, labels, fontsize=6.5)
+    axes.set_xticks(places, labels, fontsize=8)
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlim(columns[0].start, columns[-1].end)
     axes.set_xlabel("time since the start of the phase, logarithmic")

@@ -51,3 +51,20 @@ def test_a_missing_library_is_named_with_both_commands(
         MissingLibraryError, match=r"pip install 'rigdesign\[pdf\]'.*apt-get install.*libpango"
     ):
         require_pdf()
+
+
+def test_every_word_of_the_printed_report_can_be_read(tmp_path: Path) -> None:
+    """Body and figures at 6.5 pt or more as printed; indices and exponents of one or two signs are smaller."""
+    write_results(make_result(inputs=rig_inputs()), tmp_path, Issue(date=date(2026, 1, 2)), pdf=True)
+    small: list[tuple[float, str]] = []
+
+    def visit(text: str, cm: list[float], tm: list[float], font: object, size: float) -> None:
+        scale = abs((cm[0] * cm[3] - cm[1] * cm[2]) * (tm[0] * tm[3] - tm[1] * tm[2])) ** 0.5
+        if len(text.strip()) > 2 and size * scale < 6.45:
+            small.append((round(size * scale, 2), text.strip()))
+
+    reader = PdfReader(tmp_path / "report.pdf")
+    for page in reader.pages:
+        page.extract_text(visitor_text=visit)
+    assert not small, small[:20]
+    assert len(reader.pages) < 30
