@@ -38,20 +38,26 @@ REMEDY = 'check unit and power of ten; if it is right, write { value = …, conf
 
 def unusual_inputs(case: "Case") -> dict[str, str]:
     """Path -> what is unusual about its value, for every value that the case states and does not confirm."""
-    settled = {
-        path
-        for path, mark in case.origin.mark_of.items()
-        if mark.confirmed or (mark.assumed or mark.source or "").startswith(BY_THE_TOOL)
+    marks, value_of, known = case.origin.mark_of, case.origin.value_of, _measures(case)
+    found = {path: _beyond(path, value, slot, known) for path, (value, slot) in _stated(case).items()}
+    found |= dict(_misplaced(case))
+    return {
+        path: f"{path} = {value_of[path]} {text}: {REMEDY}"
+        for path, text in found.items()
+        if text and not (path in marks and marks[path].confirmed)
     }
-    known = _measures(case)
-    found = {
-        path: _beyond(path, value, slot, known)
-        for path, value, slot in _numbers(case, slot_of(type(case)), "")
-        if path not in settled
-    }
-    found |= {path: text for path, text in _misplaced(case) if path not in settled}
-    value_of = case.origin.value_of
-    return {path: f"{path} = {value_of[path]} {text}: {REMEDY}" for path, text in found.items() if text}
+
+
+def stated_numbers(case: "Case") -> list[str]:
+    """Paths of the numbers that the case states, those of its defaults left out."""
+    return list(_stated(case))
+
+
+def _stated(case: "Case") -> dict[str, tuple[float, Slot]]:
+    marks = case.origin.mark_of.values()
+    filled = {mark.path for mark in marks if (mark.assumed or mark.source or "").startswith(BY_THE_TOOL)}
+    numbers = _numbers(case, slot_of(type(case)), "")
+    return {path: (value, slot) for path, value, slot in numbers if path not in filled}
 
 
 def _numbers(node: Any, slot: Slot, path: str) -> Iterator[tuple[str, float, Slot]]:

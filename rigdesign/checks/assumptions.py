@@ -73,13 +73,14 @@ def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
 class _CaseKind:
     """What entries of `INPUTS` ask of a case.
 
-    wet : a machine is cooled by an oil circuit; bends : the shafts do
+    wet : a machine is cooled by an oil circuit; bends : the shafts do; drags : bearing films give their drag
     films : plain bearings whose lateral coefficients the case does not take as stated, as ``gearbox.bearings.name``
     bare : gearboxes without a housing
     """
 
     wet: bool
     bends: bool
+    drags: bool
     films: tuple[str, ...]
     bare: tuple[str, ...]
 
@@ -90,6 +91,7 @@ class _CaseKind:
         return cls(
             wet=any(machine.coolant in case.oil_circuits for machine in case.rig_heat.machines.values()),
             bends=bends,
+            drags=case.losses.bearing_drag == "film",
             films=()
             if bends and train is not None and train.bearing_coefficients == "stated"
             else _films(case),
@@ -100,6 +102,8 @@ class _CaseKind:
         """Paths that an entry of `INPUTS` means in the case."""
         if "{dry}" in part:
             return [] if self.wet else [part.replace("{dry}", "")]
+        if "{drag}" in part:
+            return [part.replace("{drag}", "")] if self.drags else []
         if "{torsional}" in part:
             return [] if self.bends else self.filled(part.replace("{torsional}", ""))
         if "{film}" in part:

@@ -37,7 +37,9 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
         "drivetrain.couplings.*.angle_maximum",
         "gearboxes.{film}.radial_stiffness",
         "gearboxes.{film}.radial_damping",
+        "gearboxes.*.bearings.*.torsional_damping{drag}",
         "gearboxes.{bare}.heat_split",
+        "gearboxes.{bare}.seals.*.radial_gap{torsional}",
         "gearboxes.{bare}.bearings.*.locating{torsional}",
     ): (),
     ("drivetrain.couplings.*.cold_offset_lateral", "drivetrain.couplings.*.cold_offset_vertical"): (
@@ -62,7 +64,7 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
 """Inputs -> what they move; the first entry that holds a path counts. ``*`` stands for any name, ``{bare}`` for a
 gearbox without a housing, ``{film}`` for a plain bearing whose coefficients are computed; an entry with ``{dry}``
 counts where no machine heats an oil circuit, which feeds gearboxes, one with ``{torsional}`` where they only
-twist."""
+twist, one with ``{drag}`` where the films give the drag of the bearings."""
 OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
 """Influences of an input that stay in its gearbox: the place of a check begins with it."""
 SPEEDS = (

@@ -29,10 +29,10 @@ def loss_findings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[Findin
     for stage, found in losses.items():
         whole = sum(placed.loss.power for placed in found)
         for placed in found:
+            outside = placed.loss.kind != "mesh"  # whose floors and caps belong to the law of its friction
             for text in placed.loss.warnings:
-                stages.setdefault((placed.name, text), {})[stage] = (
-                    placed.loss.power / whole if whole else 0.0
-                )
+                share = placed.loss.power / whole if whole and outside else 0.0
+                stages.setdefault((placed.name, text), {})[stage] = share
     for (place, text), shares in stages.items():
         where = list(shares)
         named = f"stage {where[0]}" if len(where) == 1 else f"stages {', '.join(where)}"

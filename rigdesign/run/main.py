@@ -52,7 +52,7 @@ from rigdesign.run.mesh_convergence import discretisation
 from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
 from rigdesign.run.rival_laws import law_spreads
 from rigdesign.run.solver_errors import solver_errors
-from rigdesign.run.warnings import not_modelled, warnings_of
+from rigdesign.run.warnings import not_modelled, warnings_of, without_effect
 from thermal.fe.kernels import one_thread
 
 Progress = Callable[[str], None]
@@ -204,7 +204,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(solved),
-        warnings=[*_doubts(case), *warnings_of(solved, losses)],
+        warnings=[*_doubts(case), *warnings_of(solved, losses), *without_effect(case, checks)],
         timings_s=clock.laps,
         fields=[field for p in points for field in fields_of(rig, p)],
     )

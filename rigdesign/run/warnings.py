@@ -8,7 +8,10 @@ from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
+from rigdesign.case.model import Case
 from rigdesign.case.rules.rotating_parts import sideways_keys
+from rigdesign.case.usual import stated_numbers
+from rigdesign.checks.assumptions import depends, influences_of
 from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.mesh_models import laws_of
@@ -18,6 +21,7 @@ from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
+from rigdesign.results.check import Check
 from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
@@ -57,6 +61,19 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="heat_audit", text=text) for text in heat_audits(solved)),
     ]
     return list(dict.fromkeys(found))
+
+
+def without_effect(case: Case, checks: Sequence[Check]) -> list[Finding]:
+    """Numbers that the case states and no check depends on, those of like parts in one sentence."""
+    idle: dict[str, int] = {}
+    for path in stated_numbers(case):
+        if influences_of(case, path) == () and not any(depends(case, check, path) for check in checks):
+            names = path.split(".")
+            if names[0] == "gearboxes" and len(names) == 5:
+                names[3] = "*"
+            idle[".".join(names)] = idle.get(".".join(names), 0) + 1
+    text = "no check of this case depends on it, whatever its value"
+    return [Finding(id="without_effect", text=f"{path} ({number}): {text}") for path, number in idle.items()]
 
 
 def _gears(solved: SolvedRig) -> Iterator[str]:

@@ -72,9 +72,10 @@ def test_a_loss_outside_of_its_law_leaves_open_what_it_heats(power: float, rests
     """From a tenth of the heat on; a small one moves no temperature."""
     losses = [
         SimpleNamespace(
-            name="test.pinion", loss=SimpleNamespace(power=power, warnings=("outside of its tests",))
+            name="test.pinion",
+            loss=SimpleNamespace(kind="windage", power=power, warnings=("outside of its tests",)),
         ),
-        SimpleNamespace(name="test.main", loss=SimpleNamespace(power=60.0, warnings=())),
+        SimpleNamespace(name="test.main", loss=SimpleNamespace(kind="mesh", power=60.0, warnings=())),
     ]
     (finding,) = loss_findings({"dwell": losses})  # type: ignore[dict-item]
     assert any(fnmatchcase("temperature.gear_bulk", pattern) for pattern in finding.checks) is rests
