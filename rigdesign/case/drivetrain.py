@@ -50,7 +50,7 @@ class DiscInput(Part):
 
     position: Gap
     """Distance from the start of the shaft."""
-    inertia: Annotated[Inertia, Usual(0.2, 2.7, "mass times the shaft diameter squared")]
+    inertia: Annotated[Inertia, Usual(0.2, 3.2, "mass times the shaft diameter squared")]
     """Polar mass moment of inertia about the axis of the shaft."""
     mass: Mass | None = None
     """For bending; that of a steel disc a third as thick as its radius when left out."""

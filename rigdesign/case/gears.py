@@ -201,7 +201,7 @@ class Gear(Part):
     profile_shift: Annotated[float, Usual(0.02, 1.2)] | None = Field(default=None, ge=-2.0, le=2.0)
     """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh. For both gears they
     have to agree with the centre distance."""
-    tip_shortening: Annotated[Play, Usual(0.005, 1.0, "module")] = 0.0
+    tip_shortening: Annotated[Play, Usual(1e-6, 1.0, "module")] = 0.0
     """Radial cut of the tip cylinder; or ``contact_ratio`` of the mesh."""
     tooth_thinning: Annotated[Small, Usual(0.007, 0.12, "module")] = 0.0
     """Allowance of the normal tooth thickness that makes the backlash."""

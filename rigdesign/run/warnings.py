@@ -1,5 +1,6 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -64,16 +65,13 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
 
 
 def without_effect(case: Case, checks: Sequence[Check]) -> list[Finding]:
-    """Numbers that the case states and no check depends on, those of like parts in one sentence."""
-    idle: dict[str, int] = {}
+    """Numbers that the case states and no check depends on, those of like parts together."""
+    idle: dict[str, None] = {}
     for path in stated_numbers(case):
         if influences_of(case, path) == () and not any(depends(case, check, path) for check in checks):
-            names = path.split(".")
-            if names[0] == "gearboxes" and len(names) == 5:
-                names[3] = "*"
-            idle[".".join(names)] = idle.get(".".join(names), 0) + 1
-    text = "no check of this case depends on it, whatever its value"
-    return [Finding(id="without_effect", text=f"{path} ({number}): {text}") for path, number in idle.items()]
+            idle[re.sub(r"^(gearboxes\.\w+\.\w+)\.\w+(?=\.)", r"\1.*", path)] = None
+    text = f"no check of this case depends on {', '.join(idle)}"
+    return [Finding(id="without_effect", text=text)] if idle else []
 
 
 def _gears(solved: SolvedRig) -> Iterator[str]:

@@ -16,6 +16,7 @@ from rigdesign.case.defaults.fill import rules, with_defaults
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import BY_THE_TOOL, Given
 from rigdesign.case.defaults.runs import _response_period
+from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.loader import changed_together
 from rigdesign.case.shipped import shipped_cases
 from rigdesign.rig.model import build_rig
@@ -114,6 +115,17 @@ def test_stated_films_add_to_the_standard_ones(tmp_path: Path, minimal: Case) ->
     assert any(record.path == f"{at}.rims.film_factor" for record in stated.assumptions)
     varied = stated.with_value(f"{at}.rims.film_factor", 0.5).gearboxes["test"].housing.boundary  # type: ignore[union-attr]
     assert set(varied) == set(found) and varied["rims"].film_factor == 0.5  # type: ignore[union-attr]
+
+
+def test_a_pinion_may_be_cut_into_its_shaft(tmp_path: Path) -> None:
+    """Its shaft is as thick in it as in the bearings; the root is that of a solid gear."""
+    solid = 'gears.pinion = { bore_diameter = "0 mm",'
+    file = minimal_case(tmp_path)
+    file.write_text(file.read_text(encoding="utf-8").replace("gears.pinion = {", solid, 1), encoding="utf-8")
+    box = load_case(file).gearboxes["test"]
+    assert box.gears["pinion"].bore_diameter == 0.0 and box.seat_diameter("pinion") == pytest.approx(30e-3)
+    pinion, wheel = housing_geometry(box).shafts
+    assert pinion.seat_diameter == pytest.approx(30e-3) and wheel.seat_diameter == pytest.approx(30e-3)
 
 
 def test_a_default_can_be_varied_by_its_path(minimal: Case) -> None:

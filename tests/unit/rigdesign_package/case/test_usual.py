@@ -14,6 +14,9 @@ from rigdesign.case.model import Case
 from rigdesign.case.paths import slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.case.usual import unusual_inputs
+from rigdesign.explanation.overview import overview
+from rigdesign.explanation.path import explain_path
+from rigdesign.run.main import _doubts
 from tests.builders.paths import CASES
 
 BOTH, UP, DOWN = (10.0, 0.1), (10.0,), (0.1,)
@@ -168,3 +171,13 @@ def _slipped(value: Any) -> Iterator[tuple[float, Any]]:
         if slipped:
             as_written = int(slipped) if isinstance(value, int) and factor > 1.0 else slipped
             yield factor, f"{slipped:.12g} {unit}" if unit else as_written
+
+
+def test_run_and_explain_say_what_is_unusual() -> None:
+    case = load_case(CASES / "loop_1to1").with_value("ambient.temperature", "293 degC")
+    (finding,) = _doubts(case)
+    assert finding.id == "unusual_input" and finding.text == unusual_inputs(case)["ambient.temperature"]
+    assert overview(case).unusual == (finding.text,)
+    explained = explain_path(case, "ambient.temperature")
+    assert explained.unusual == (finding.text,)
+    assert explained.key.bounds == "at least -60 degC and at most 600 degC; usually -45 degC to 60 degC"
