@@ -44,7 +44,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="gear", text=text) for text in _gears(solved)),
         *(Finding(id="iso_6336_1", text=text) for text in _iso(solved)),
         *(Finding(id="shaft", text=t.finding) for t in solved.rig.shaft_torsions if t.finding),
-        *(Finding(id="fidelity", text=text) for text in without_effect(solved)),
+        *(Finding(id="fidelity", text=text) for text in _only_for_bending(solved)),
         *(Finding(id="response", text=text) for text in _response(solved)),
         *(Finding(id="damping", text=text) for text in _light_dwells(solved)),
         *(Finding(id="tooth_deviations", text=text) for text in _deviating_teeth(solved)),
@@ -266,7 +266,7 @@ def _rival_laws(solved: SolvedRig) -> Iterator[str]:
         yield f"{spread.cause} moves {moved}; measure the no-load torque"
 
 
-def without_effect(solved: SolvedRig) -> Iterator[str]:
+def _only_for_bending(solved: SolvedRig) -> Iterator[str]:
     """Keys of the case that shafts which only twist do not read."""
     keys = sideways_keys(solved.case) if solved.rig.shaft_model == "torsional" else []
     if keys:

@@ -127,8 +127,8 @@ def _expansion(reading: str, result: RunResult) -> Iterator[ValidationRow]:
     least = min(row["hot_min_mm"] for row in expansion.seal_gaps)
     yield _row(
         reading, gap, fmean(row["hot_mean_mm"] for row in expansion.seal_gaps), GAP_GOAL,
-        f"P2 has one gap; ours is {least:.2f} mm at its narrowest, where the warm partitions lift their bores against the "
-        "shafts, which the cold end walls carry",
+        f"P2 has one gap; ours is {least:.2f} mm at its narrowest, where the warm partitions lift their bores against "
+        "the shafts, which the cold end walls carry",
     )  # fmt: skip
 
 
@@ -146,6 +146,6 @@ def _row(
         "fitted",
         goal,
         free_parameters=free_parameters(reading),
-        assumptions=f"cases/uhcf_main/{reading}.toml, quick; box, shafts and materials are ours, free is what this file "
-        f"assumes beyond case.toml; {remark}",
+        assumptions=f"cases/uhcf_main/{reading}.toml, quick; box, shafts and materials are ours, free is what this "
+        f"file assumes beyond case.toml; {remark}",
     )

@@ -14,7 +14,14 @@ from rigdesign.explanation.check import CheckExplanation
 from rigdesign.explanation.keys import KeyEntry
 from rigdesign.explanation.overview import Overview
 from rigdesign.explanation.path import PathExplanation, StatedValue
-from rigdesign.report.numbers import cell_text, heading_text, number_text, percent_text, quantity_text, unit_text
+from rigdesign.report.numbers import (
+    cell_text,
+    heading_text,
+    number_text,
+    percent_text,
+    quantity_text,
+    unit_text,
+)
 
 HEAD = 11
 """Columns of the word before an answer."""

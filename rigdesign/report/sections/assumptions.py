@@ -20,8 +20,8 @@ def _order(result: RunResult) -> str:
     """How the lines are sorted, and what is not known of them."""
     if result.ranges is not None:
         return (
-            "Sorted by how far an input moves the distance to the limit of a governing check over its range (one that fails; if "
-            "none does, one with less than 10 % of its limit left, or the nearest); the others by name."
+            "Sorted by how far an input moves the distance to the limit of a governing check over its range (one that "
+            "fails; if none does, one with less than 10 % of its limit left, or the nearest); the others by name."
         )
     return (
         "Sorted by name: which of them moves the governing margins most is not known, as their ranges were not "

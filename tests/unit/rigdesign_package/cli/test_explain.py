@@ -13,7 +13,7 @@ import pytest
 
 from rigdesign.case import Case, load_case
 from rigdesign.case.paths import known_paths
-from rigdesign.explanation.check import BENDING, LOADED_CONTACT, explain_check
+from rigdesign.explanation.check import explain_check
 from rigdesign.explanation.keys import case_keys, entry_at, starred
 from rigdesign.explanation.path import explain_path
 from rigdesign.explanation.reference import key_reference

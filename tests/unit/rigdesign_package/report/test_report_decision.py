@@ -388,7 +388,7 @@ def test_assumptions_of_like_parts_share_a_line_and_stand_by_name_where_no_range
 def test_assumptions_are_ranked_by_what_their_ranges_do_to_the_governing_margins():
     """x fails and governs: torque moves it by 0.4; gap moves z alone, which holds, and by more."""
     found = ranges()
-    moving = [replace(row, utilisation_high=2.0) if row.check == "z" else row for row in found.margins]
+    moving = [replace(row, distance_high=-1.0) if row.check == "z" else row for row in found.margins]
     found = replace(found, margins=[row for row in moving if row.check != "y"])
     checks = [make_check("x", 2.0, 1.0), make_check("z", 0.5, 1.0)]
     records = [
@@ -402,7 +402,9 @@ def test_assumptions_are_ranked_by_what_their_ranges_do_to_the_governing_margins
     assert [(line.path, line.moved) for line in lines] == [("torque", pytest.approx(0.4))]
     listed = [line for group in assumption_groups(result).values() for line in group]
     assert [line.path for line in listed] == ["torque", "gap", "other"]
-    assert "Sorted by how far an input moves the utilisation of a governing check" in report_html(result)
+    assert "Sorted by how far an input moves the distance to the limit of a governing check" in report_html(
+        result
+    )
     holds = Checks([make_check("x", 0.5, 1.0), make_check("z", 0.6, 1.0)])
     assert governing_ids(holds) == {"z"}
 

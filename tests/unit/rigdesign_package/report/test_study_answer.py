@@ -283,8 +283,8 @@ def test_a_tornado_shows_its_labels_whole_and_small_spans_small(ends, low, high)
     """Also where a bar has no length, and where all bars go one way."""
     swings = [
         Swing(
-            check="gap", path=f"gearboxes.test.input_{n}", low=first, high=second, utilisation_stated=0.5,
-            utilisation_low=at_low, utilisation_high=at_high,
+            check="gap", path=f"gearboxes.test.input_{n}", low=first, high=second, distance_stated=0.5,
+            distance_low=1.0 - at_low, distance_high=1.0 - at_high,
         )
         for n, (first, second, at_low, at_high) in enumerate(ends)
     ]  # fmt: skip

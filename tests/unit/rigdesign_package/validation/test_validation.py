@@ -155,7 +155,10 @@ def test_expansion_of_the_main_rig_is_held_to_one_goal(gap, wheel, verdicts):
     mean, as P2 has one; the least stands beside it as our own finding."""
     expansion = SimpleNamespace(
         shafts=[{"shaft": "test_pinion", "growth_mm": 0.53}, {"shaft": "test_wheel_a", "growth_mm": wheel}],
-        seal_gaps=[{"hot_mean_mm": gap - 0.01, "hot_min_mm": 0.41}, {"hot_mean_mm": gap + 0.01, "hot_min_mm": 0.43}],
+        seal_gaps=[
+            {"hot_mean_mm": gap - 0.01, "hot_min_mm": 0.41},
+            {"hot_mean_mm": gap + 0.01, "hot_min_mm": 0.43},
+        ],
     )
     thermal = SimpleNamespace(heat=[], max_temperature_degC=178.0, max_temperature_body="gear")
     result = cast(RunResult, SimpleNamespace(thermal=[thermal], expansion=[expansion]))
@@ -308,7 +311,10 @@ def test_free_parameters_of_the_main_rig_are_what_its_files_assume():
     reasons = {one.path: one.reason for one in load_case("cases/uhcf_main/as_published.toml").assumptions}
     for path, reason in IN_VIEW_OF_FIGURE_12.items():
         assert reason in reasons[path]
-    assert {name: main_rig.free_parameters(name) for name in main_rig.READINGS} == {"as_published": 16, "fitted": 20}
+    assert {name: main_rig.free_parameters(name) for name in main_rig.READINGS} == {
+        "as_published": 16,
+        "fitted": 20,
+    }
     row = next(row for row in main_rig.rows_without_run() if row.id == "P2-growth-seal-gap")
     assert row.free_parameters == 20
 
