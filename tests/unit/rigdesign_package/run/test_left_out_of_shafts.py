@@ -10,7 +10,7 @@ from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
-from rigdesign.run.warnings import not_modelled, without_effect
+from rigdesign.run.warnings import _only_for_bending, not_modelled
 from tests.builders.paths import CASES
 
 
@@ -54,7 +54,7 @@ def test_keys_that_only_bending_shafts_read_are_named_where_shafts_only_twist() 
     """elastic_seats.toml at quick gives what case.toml gives, so it says that it does."""
     case = load_case(CASES / "uhcf_prototype" / "elastic_seats.toml")
     quick, standard = (
-        list(without_effect(SimpleNamespace(case=case, rig=build_rig(case, fidelity))))  # type: ignore[arg-type]
+        list(_only_for_bending(SimpleNamespace(case=case, rig=build_rig(case, fidelity))))  # type: ignore[arg-type]
         for fidelity in ("quick", "standard")
     )
     assert standard == []
