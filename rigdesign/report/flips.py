@@ -24,14 +24,12 @@ def searched(result: RunResult) -> str:
         return ""
     said = []
     if search.checks:
-        subject = (
-            "the nearest to its limit" if not any(c.status == "fail" for c in result.checks) else "failing"
-        )
+        aim = "so that they hold" if any(c.status == "fail" for c in result.checks) else "until it fails"
         wanted = ", ".join(titles[name] for name in search.checks)
         turned = {flip.check for flip in result.flips if flip.path}
         outcome = "" if turned else "; none turns it within a factor of five"
         said.append(
-            f"Moved, each alone: {', '.join(search.inputs) or 'no input'} (of the checks {subject}: {wanted}); "
+            f"Looked at: {wanted}. Moved {aim}, each alone: {', '.join(search.inputs) or 'no input'}, in "
             f"{number_text(result.timings_s.get('flips', 0.0), 2)} s{outcome}."
         )
         if any(c.status == "fail" for c in result.checks) and not any(flip.turns for flip in result.flips):
