@@ -125,8 +125,8 @@ RULES = (
             "Eigenvalues of the closed loop at the held stages, films linearised at their load, speed and"
             " temperature, damping that turns with the shafts included. Lateral modes up to the speed of the fastest"
             f" shaft count, and every mode that grows. Shafts that sway as rigid bodies below {SWAYING:g} of that"
-            " speed, in bearings without load, have a stiffness near zero and so a decrement near zero: they have to"
-            " die away, no more."
+            " speed, in bearings without load, have a stiffness and so a decrement near zero: they only have to die"
+            " away."
         ),
         source="limits.dynamics.logarithmic_decrement_minimum; API 617",
         comparison=">=",

@@ -242,7 +242,7 @@ def _windage(
         loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
         other = anderson_loewenthal(rotor.pitch_radius, rotor.face_width, omega, oil_viscosity)
         rival: dict[str, float | str] = {RIVAL_LAW: "Anderson and Loewenthal", RIVAL_POWER: other}
-        loss = replace(loss, details={**loss.details, **rival})
+        loss = replace(loss, details=loss.details | rival)
         yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 
