@@ -15,8 +15,8 @@ class ChurningComparison:
     """One stage by all laws that its data allow.
 
     losses : both gears by law; recommended : the first of `LAWS` that is extrapolated by no more than `EXTRAPOLATION`,
-    else the least extrapolated; reason : one sentence with the factors. Carry smallest to largest as the range: the
-    laws can differ by more than five on small gears.
+    else the least extrapolated; reason : one sentence with the factors. The laws can differ by more than
+    five on small gears.
     """
 
     losses: dict[ChurningLaw, tuple[Loss, Loss]]
@@ -27,16 +27,6 @@ class ChurningComparison:
     def powers(self) -> dict[ChurningLaw, float]:
         """Sum of both gears by law [W]."""
         return {law: first.power + second.power for law, (first, second) in self.losses.items()}
-
-    @property
-    def smallest(self) -> float:
-        """[W]"""
-        return min(self.powers.values())
-
-    @property
-    def largest(self) -> float:
-        """[W]"""
-        return max(self.powers.values())
 
 
 def compare_churning(stage: tuple[RunningGear, RunningGear], bath: OilBath) -> ChurningComparison:

@@ -1,7 +1,7 @@
-"""SKF model of the frictional moment: four sources M = phi_ish phi_rs M_rr + M_sl + M_seal + M_drag.
+"""SKF model of the frictional moment: M = phi_ish phi_rs M_rr + M_sl + M_seal + M_drag, without that of contact seals.
 
 Symbols and units as printed (N, mm, mm2/s, 1/min), moments in N mm. Sources: SKF General Catalogue 6000, pp. 87-105
-(equations, tables 2a, 3, 3a, 3c, 3d, 4, 5 and the worked example were read), this edition alone: later ones (10000,
+(equations, tables 2a, 3, 3a, 3c, 3d, 5 and the worked example were read), this edition alone: later ones (10000,
 17000) have 0.4 of its drag plus a turbulent term, mu_bl = 0.12 in motion and other constants. The curve of V_M exists
 as a diagram only: the points below are from memory of it, +-30 %, tied to the two values that are printed or quoted
 (roller 0.3e-4 at H/d_m = 0.041; ball 0.0012 when submerged).
@@ -175,16 +175,6 @@ def mu_sl(n: float, nu: float, d_m: float, mu_EHL: float) -> float:
     """Sliding friction coefficient [-]: phi_bl mu_bl + (1 - phi_bl) mu_EHL, phi_bl = exp(-2.6e-8 (n nu)^1.4 d_m)."""
     phi_bl = math.exp(-2.6e-8 * (n * nu) ** 1.4 * d_m)
     return phi_bl * MU_BL + (1.0 - phi_bl) * mu_EHL
-
-
-def M_seal(K_S1: float, K_S2: float, beta: float, d_s: float) -> float:
-    """Moment of contact seals on both sides [N mm]: K_S1 d_s^beta + K_S2, counterface diameter d_s [mm].
-
-    Table 4, deep groove ball bearings: RS1 beta 2.25, (K_S1, K_S2) (0.023, 2) up to D = 62, (0.018, 20) up to 80,
-    (0.018, 15) up to 100, (0.018, 0) above; RSH 2.25 (0.028, 2) up to 52; RZ none. Half of it with one seal.
-    """
-    moment: float = K_S1 * d_s**beta + K_S2
-    return moment
 
 
 def V_M(level: float, roller: bool) -> float:

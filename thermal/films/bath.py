@@ -1,23 +1,20 @@
 """Films inside a dip-lubricated box: splashed and drained walls; faces, teeth and shafts that pass the bath.
 
 What is published is little: constants for walls (Niemann/Winter; ISO/TR 14179-2 takes 200 W/(m2 K)) and the bulk
-temperature of the teeth (Michaelis). The laws here are closed solutions of what happens to the oil (a draining film, a
-disc in a viscous fluid, a film flung off), each with its limits, and the constants stand beside them.
+temperature of the teeth (Michaelis). The laws here are closed solutions of what happens to the oil (a disc in a
+viscous fluid, a film flung off), each with its limits, and the constants stand beside them.
 """
 
 import math
 from dataclasses import replace
 
-from thermal.films.convection import OIL_RANGE, constant
-from thermal.films.flank import GRAVITY, FilmOil, ToothRing, Wetting, fling_off
+from thermal.films.convection import constant
+from thermal.films.flank import FilmOil, ToothRing, Wetting, fling_off
 from thermal.films.inputs import FilmError, not_negative, outside, positive
 from thermal.films.law import FilmCoefficient, FilmLaw
 
 WALL_RANGE = (100.0, 300.0)
 """Splashed inner walls [W/(m2 K)], Niemann/Winter II, from memory."""
-NUSSELT_FALLING_FILM = 1.885
-"""h delta/k of a developed laminar film, wall of one temperature, mixed mean to wall: a quarter of 7.541 (Shah and
-London 1978, parallel plates), the film being one half of a symmetrical channel."""
 TANK_OF_LIQUID = (1e3, 1e5)
 """Re = omega d^2/(2 nu) of the cylinders that Eisenberg, Tobias and Wilke turned in a liquid."""
 LAMINAR_DISC = 3e5
@@ -37,42 +34,6 @@ def wetted_wall_film(value: float = 200.0) -> FilmLaw:
         formula="wetted_wall",
         usual=WALL_RANGE,
     )
-
-
-def falling_film(flow_per_width: float, oil: FilmOil) -> FilmLaw:
-    """Vertical wall down which splashed oil drains in a laminar film: h = 1.885 k/delta [W/(m2 K)].
-
-    delta = (3 nu G/g)^(1/3), G the volume flow per width of the wall
-
-    flow_per_width : G [m2/s], the oil thrown on the wall over its wetted width; oil : its properties
-
-    The fluid temperature is the mixed mean of the oil that runs down; properties at the mean of wall and oil. Thermally
-    developed: near the top of the wall the film cools more. Source: W. Nusselt, Z. VDI 60 (1916) 541 (thickness);
-    Shah and London 1978 (Nusselt number). Laminar below Re = 4 G/nu of 1600, wavy above 30: waves raise the film.
-    """
-    positive("oil flow per width of the wall", flow_per_width, "m2/s")
-
-    def law(wall: float, fluid: float) -> FilmCoefficient:
-        mean = 0.5 * (wall + fluid)
-        conductivity, _, viscosity = oil.at(mean)
-        thickness: float = (3.0 * viscosity * flow_per_width / GRAVITY) ** (1.0 / 3.0)
-        value = NUSSELT_FALLING_FILM * conductivity / thickness
-        reynolds = 4.0 * flow_per_width / viscosity
-        return FilmCoefficient(
-            value=value,
-            formula="falling_film",
-            inputs={
-                "flow_per_width": flow_per_width, "film_thickness": thickness, "reynolds": reynolds,
-                "film_temperature": mean, "viscosity": viscosity,
-            },
-            valid_range="laminar draining film, Re = 4 G/nu up to 1600; usual 100 to 600 W/(m2 K)",
-            source="Nusselt 1916; Shah and London 1978",
-            warnings=oil.warnings(mean)
-            + outside("Reynolds number of the film", reynolds, 0.0, 1600.0, "take the constant instead")
-            + outside("film of the draining oil", value, *OIL_RANGE, "check the flow on the wall", "W/(m2 K)"),
-        )  # fmt: skip
-
-    return law
 
 
 def dipped_face_film(speed: float, radius: float, wetted_share: float, oil: FilmOil) -> FilmLaw:

@@ -9,7 +9,6 @@ from thermal.films.bath import (
     dipped_face_film,
     dipped_rim_film,
     dipped_shaft_film,
-    falling_film,
     wetted_wall_film,
 )
 from thermal.films.convection import constant
@@ -36,24 +35,6 @@ def test_splashed_wall_is_a_constant_with_range_and_source() -> None:
     assert "outside 100 to 300" in wetted_wall_film(500.0)(WALL, SUMP).warnings[0]
     with pytest.raises(FilmError, match="must be greater than 0"):
         wetted_wall_film(0.0)
-
-
-def test_falling_film_by_hand() -> None:
-    """1 l/min over 0.3 m: delta = (3 x 14e-6 x 5.56e-5/9.81)^(1/3) = 0.620 mm, h = 1.885 x 0.13/0.620e-3 = 395."""
-    film = falling_film(1e-3 / 60 / 0.3, OIL)(WALL, SUMP)
-    assert film.inputs["film_thickness"] == pytest.approx(0.620e-3, rel=2e-3)
-    assert film.value == pytest.approx(395.0, rel=3e-3)
-    assert film.inputs["reynolds"] == pytest.approx(15.9, rel=0.01)
-    assert film.warnings == ()
-
-
-def test_more_oil_makes_a_thicker_film_that_cools_less() -> None:
-    values = [falling_film(flow, OIL)(WALL, SUMP).value for flow in (1e-5, 8e-5, 64e-5)]
-    assert values[0] / values[1] == pytest.approx(2.0)
-    assert values[1] / values[2] == pytest.approx(2.0)
-    assert "Reynolds number of the film" in falling_film(1e-2, OIL)(WALL, SUMP).warnings[0]
-    with pytest.raises(FilmError, match="oil flow per width"):
-        falling_film(0.0, OIL)
 
 
 def test_dipped_face_by_hand_and_limits() -> None:
