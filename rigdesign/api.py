@@ -62,7 +62,7 @@ def run_case(
     CaseError
         A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
     NotConvergedError
-        An iteration that does not converge, a speed the motor does not reach, a result that is NaN or infinite.
+        An iteration that does not converge, a first stage that the motor does not hold, a NaN or infinite result.
     MissingLibraryError
         A system library that gmsh needs.
     """

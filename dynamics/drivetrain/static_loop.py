@@ -285,7 +285,7 @@ def _round_off(model: PortModel, u: Array, twist: float) -> float:
     size = max(
         float((np.abs(model.stiffness) @ windup).max()), float(np.abs(model.twist * twist).max()), tooth
     )
-    return float(16.0 * np.finfo(float).eps * size)
+    return 16.0 * float(np.finfo(float).eps) * float(size)
 
 
 def _transmitted_change(own: Array, moves: Array, mesh: int) -> Array:
