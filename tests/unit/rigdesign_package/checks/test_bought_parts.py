@@ -49,7 +49,7 @@ def solved_rig_of(case: Case) -> SolvedRig:
     made = made_ramp(rig, SECTIONS, {(0, "run_down"): (-250.0, 80.0), (2, "test"): (170.0, 201.0)})
     ramp = SimpleNamespace(
         drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0]), windows=made.windows,
-        sections=made.sections,
+        sections=made.sections, cut="",
     )  # fmt: skip
     point: Any = SimpleNamespace(
         point=OperatingPoint(stage="test", speed=12000.0 * RPM, torque=180.0), setting=None,

@@ -274,7 +274,7 @@ def test_a_motor_at_its_limit_says_so_of_torque_and_power() -> None:
     rig, point = base()
     time = np.linspace(2.0, 8.0, 101)
     torque = np.where(np.arange(101) < 50, 20.0, 10.0)
-    run: Any = SimpleNamespace(ramp=SimpleNamespace(time=time, drive_torque=torque))
+    run: Any = SimpleNamespace(ramp=SimpleNamespace(time=time, drive_torque=torque, cut=""))
     solved = replace(as_solved_rig(rig, point), run=run)
     motor = rig.case.limits.bought_parts["motor"]
     for quantity in ("drive_torque", "drive_power"):
