@@ -65,7 +65,7 @@ def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics, style: CurveStyle, o
         color=style.colour,
         linewidth=0.8,
         linestyle=LINES[2],
-        label="simulated, 1 + half peak-to-peak / mean",
+        label="simulated, 1 + half\npeak-to-peak / mean",
     )
     others = {
         f"simulated at {stated_quantity(key)}": (key, curve)

@@ -42,7 +42,7 @@ def tooth_contact_figure(contact: dict[str, Any], style: CurveStyle | None = Non
         gearbox_title(axes, f"{words(gear).capitalize()}, stage {words(contact['stage'])}", style)
         axes.set_ylim(top=ROOM * max(course["highest_MPa"]))
         axes.legend(loc="upper right")
-    figure.subplots_adjust(left=0.065, right=0.985, top=0.90, bottom=0.17, wspace=0.46)
+    figure.subplots_adjust(left=0.065, right=0.985, top=0.90, bottom=0.17, wspace=0.54)
     return figure
 
 

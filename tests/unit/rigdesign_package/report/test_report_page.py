@@ -113,7 +113,7 @@ def test_sections_stand_in_the_order_of_reading(page):
         "displacement, size [µm]",
         "heat flux, size [kW/m²]",
         "simulated at 180 N m, max / mean",
-        "simulated, 1 + half peak-to-peak / mean",
+        "peak-to-peak / mean",
         "0 to peak",
         "iteration [–]",
     ],
