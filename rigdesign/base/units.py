@@ -20,13 +20,15 @@ if TYPE_CHECKING:
 class QuantityError(ValueError):
     """A text that is no quantity of the kind asked for.
 
-    ``problem`` says what is wrong, ``remedy`` what is accepted, with an example.
+    ``problem`` says what is wrong, ``remedy`` what is accepted, with an example; ``outside``: the text is a quantity of
+    the kind, its number none that exists.
     """
 
-    def __init__(self, problem: str, remedy: str) -> None:
+    def __init__(self, problem: str, remedy: str, *, outside: bool = False) -> None:
         super().__init__(problem, remedy)
         self.problem = problem
         self.remedy = remedy
+        self.outside = outside
 
     def __str__(self) -> str:
         return f"{self.problem}; {self.remedy}"
@@ -104,7 +106,7 @@ def _parse(text: str, kind: str, example: str | None) -> float:
     factor, offset = _worth(expression, table.si)
     value = number * factor + offset
     if kind == "temperature" and value < 0.0:
-        raise QuantityError("below absolute zero", table.remedy)
+        raise QuantityError("below absolute zero", table.remedy, outside=True)
     return value
 
 

@@ -55,7 +55,7 @@ class Quantity:
         try:
             value = units.parse(text, self.kind, self.example)
         except units.QuantityError as error:
-            raise fault(error.problem, error.remedy, impossible=True) from None
+            raise fault(error.problem, error.remedy, impossible=not error.outside) from None
         for limit, words, holds in (
             (self.above, "is not above", float.__gt__),
             (self.at_least, "is below", float.__ge__),
