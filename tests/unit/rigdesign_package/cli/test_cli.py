@@ -607,7 +607,7 @@ EMPTY_OUT: dict[str, tuple[str, ...]] = {
     "check": ("x",), "compare": ("x", "y"), "diagnose": ("x", "y"), "diff": ("a", "b"), "mesh": ("x",),
     "calibrate": ("x", "y", "z"),
     "new measurement": ("x",), "study": ("x", "--vary", "a=1,2"), "validate": (),
-    "import": ("unit.rexs",),
+    "import": ("unit.rexs",), "report": ("x",),
 }  # fmt: skip
 """Commands with ``--out``, and what else they need."""
 
