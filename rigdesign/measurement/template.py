@@ -38,6 +38,7 @@ delimiter = ","                          # ";" with decimal = "," for files of a
 decimal = "."
 # orders = "orders.csv"                  # complex orders: point,repeat,channel,order,real,imaginary
 # tach = {{ kind = "pulses", signal = "Tach" }}    # of recordings: one pulse a turn of {gear}
+# time_unit = "ms"                       # of recordings whose files have no unit of time; seconds when left out
 # costs = {{ temperature = 150, torque = 6000, operating_point = 400 }}   # of one more, to choose the next measurement
 # [[data.recordings]]                    # raw time data of a point: .tdms, .h5, .mf4 or .csv
 # point = "P01"

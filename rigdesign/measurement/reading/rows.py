@@ -28,7 +28,7 @@ from rigdesign.measurement.reading.measurement_set import (
     MeasuredPoint,
     SettingSensor,
 )
-from rigdesign.measurement.reading.table import Table, numbers
+from rigdesign.measurement.reading.table import Table, numbers, time_stamps
 from rigdesign.prediction.model import (
     ORDER_QUANTITIES,
     ROOT_WINDOWS,
@@ -43,7 +43,7 @@ STATIC_TESTS = "standstill"
 """Name of rows that hold numbers of the rig at rest, at the temperature of the room; they need no settings."""
 KEYS = ("point", "repeat")
 TIME = "time"
-"""Column of when each row was read, from any start, with a unit of time; it needs no entry."""
+"""Column of when each row was read, with a unit of time or as time stamps; it needs no entry."""
 WHOLE = re.compile(r"[0-9]{1,9}")
 """A repeat as the table may have it."""
 GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
@@ -97,15 +97,12 @@ class Rows:
 
     def times_of(self, point: str) -> NDArray[np.float64] | None:
         """(repeats,) when the rows of a point were read [s]; None without a column of times."""
-        return None if self._time_unit is None else self._columns[TIME][self.rows_of(point)]
+        return self._columns[TIME][self.rows_of(point)] if self._timed else None
 
     @property
-    def _time_unit(self) -> str | None:
-        """Unit of the column of times; None where there is none, or the column is a sensor or no time."""
-        described = {*self._document.settings, *self._document.channels}
-        if TIME not in self.table.places or TIME in described:
-            return None
-        return accepted_unit(self.table.unit(TIME).strip().strip("[]()"), "time")
+    def _timed(self) -> bool:
+        """Whether a column says when each row was read, and is not a sensor of that name."""
+        return TIME in self._columns and not {TIME} & {*self._document.settings, *self._document.channels}
 
     def place(self, point: str, repeat: int) -> int | None:
         """Index of a repeat among those of its point; None when there is no such row."""
@@ -159,7 +156,7 @@ class Rows:
         known = {*KEYS, *self._document.settings, *channels}
         for name, one in channels.items():
             known |= set(window_columns(name, one.channel.windows))
-        if self._time_unit is not None:
+        if self._timed:
             known.add(TIME)
         unused = [name for name in self.table.names if name not in known]
         found = [
@@ -184,6 +181,8 @@ class Rows:
         """Numbers such as 2.871 that fit their column, where no other has three decimals, as 2871 only."""
         decimal = self._document.data.decimal
         for name, values in self._columns.items():
+            if name == TIME:
+                continue
             cells = [cell.strip() for cell in self.table.column(name)]
             grouped = {row for row, cell in enumerate(cells) if GROUPED.fullmatch(cell)}
             plain = [row for row in np.flatnonzero(np.isfinite(values)) if row not in grouped]
@@ -256,10 +255,15 @@ class Rows:
             values, wrong = numbers(self.table, name, self._document.data.decimal)
             faults += wrong
             self._keep(name, to_si(np.array(values, dtype=float), measured.kind, spelled), measured)
-        if (time_unit := self._time_unit) is not None:
-            values, wrong = numbers(self.table, TIME, self._document.data.decimal)
-            faults += wrong
-            self._columns[TIME] = to_si(np.array(values, dtype=float), "time", time_unit)
+        if TIME in self.table.places and TIME not in wanted:
+            time_unit = accepted_unit(self.table.unit(TIME).strip().strip("[]()"), "time")
+            stamps = time_stamps(self.table.column(TIME))
+            if stamps is not None:
+                self._columns[TIME] = (stamps - np.nanmin(stamps)) / np.timedelta64(1, "s")
+            elif time_unit is not None:
+                values, wrong = numbers(self.table, TIME, self._document.data.decimal)
+                faults += wrong
+                self._columns[TIME] = to_si(np.array(values, dtype=float), "time", time_unit)
         return faults
 
     def _keep(self, name: str, values: NDArray[np.float64], measured: Measured) -> None:

@@ -23,7 +23,7 @@ from rigdesign.measurement.reading.hdf5_samples import (
     is_meant,
     read_datasets,
 )
-from rigdesign.measurement.reading.table import Table, numbers, read_table
+from rigdesign.measurement.reading.table import numbers, read_table, time_stamp, time_stamps
 
 Array = NDArray[np.float64]
 AXIS = "recording_time"
@@ -39,10 +39,6 @@ PLACES_IN_TIME = re.compile(
     re.I,
 )
 """Attributes that say when a signal began."""
-STAMP = re.compile(
-    r"(?:(\d{4})-(\d\d)-(\d\d)[T ]|(\d\d?)\.(\d\d?)\.(\d{4}) )?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,6})\d*)?Z?"
-)
-"""Date, as 2026-03-04 or 4.3.2026 and optional, and time of day."""
 SPELLED = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "µsec": "us", "usec": "us"}
 """Spellings of units of time in recordings."""
 STEP_UNITS = ("wf_xunit_string", "dt_unit", "dt_units")
@@ -210,7 +206,7 @@ def _axis(at: str, column: _Column, data: DataSection) -> _Axis:
         offset = _number(at, "wf_start_offset", marks.pop("wf_start_offset", 0.0))
         time = offset * _unit_of_time(at, _step_unit(known), data) + step * np.arange(count)
         for key in STARTS:
-            if (stamp := _stamp(marks.get(key))) is not None:
+            if (stamp := _start(marks.get(key))) is not None:
                 del marks[key]
                 start = None if stamp == NO_START else stamp
     if time is None:
@@ -290,21 +286,13 @@ def _apart(file: str, axes: Mapping[str, _Axis]) -> Iterator[Fault]:
             )  # fmt: skip
 
 
-def _stamp(said: Any) -> "np.datetime64 | None":
-    """A time stamp as such, as a text, without a date on some day, or as seconds since any day; None for all else."""
+def _start(said: Any) -> "np.datetime64 | None":
+    """Start by an attribute: a time stamp, or seconds that all signals of a file count alike; None for all else."""
     if isinstance(said, np.datetime64) and not np.isnat(said):
         return np.datetime64(str(said), "us")
     if isinstance(said, int | float) and abs(said) <= LONGEST:
         return np.datetime64(round(1e6 * said), "us")
-    match = STAMP.fullmatch(said.strip()) if isinstance(said, str) else None
-    if match is None:
-        return None
-    year, month, day, day_de, month_de, year_de, *clock, fraction = match.groups()
-    date = f"{year or year_de or 2000}-{month or month_de or 1:0>2}-{day or day_de or 1:0>2}"
-    try:
-        return np.datetime64(f"{date}T{clock[0]:0>2}:{':'.join(clock[1:])}.{fraction or 0:0<6}", "us")
-    except ValueError:
-        return None
+    return time_stamp(said) if isinstance(said, str) else None
 
 
 def _tdms(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
@@ -410,9 +398,12 @@ def _csv(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _
     key = next((time for time in TIME_NAMES if time in table.places), None)
     if key is None:
         raise refused(name, "no column 'time'", "add the time of each row, with its unit")
-    time = _times(table, key, data)
     names = tuple(column for column in table.names if column != key)
+    time: NDArray[Any] | None = time_stamps(table.column(key))
     faults: list[Fault] = []
+    if time is None:
+        times, faults = numbers(table, key, data.decimal)
+        time = np.array(times)
     found: list[_Column] = []
     for column in names:
         if any(is_meant(column, one) for one in wanted):
@@ -427,14 +418,3 @@ def _csv(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _
     if faults:
         raise MeasurementError(faults)
     return names, found
-
-
-def _times(table: Table, key: str, data: DataSection) -> NDArray[Any]:
-    """A column of times: numbers, or time stamps."""
-    stamps = [_stamp(cell) for cell in table.column(key)]
-    if all(stamp is not None for stamp in stamps):
-        return np.array(stamps)
-    values, faults = numbers(table, key, data.decimal)
-    if faults:
-        raise MeasurementError(faults)
-    return np.array(values)

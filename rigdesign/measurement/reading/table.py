@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.base.files import foreign
 from rigdesign.case.faults import written
@@ -22,6 +25,10 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 """What a cell with a number looks like: no other digits, no grouping, no infinity."""
 SEPARATOR = re.compile(r'"?sep=(.)"?[,;\s]*', re.I)
 """First line of a file by which a spreadsheet says what parts the columns."""
+STAMP = re.compile(
+    r"(?:(\d{4})-(\d\d)-(\d\d)[T ]|(\d\d?)\.(\d\d?)\.(\d{4}) )?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,6})\d*)?Z?"
+)
+"""Date, as 2026-03-04 or 4.3.2026 and optional, and time of day."""
 MOST_FAULTS = 20
 """Cells of one table that are complained of one by one."""
 
@@ -153,6 +160,28 @@ def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fa
     more = f", and {len(wrong) - 1} more cells below" if len(wrong) > 1 else ""
     remedy = f'write a number (data.decimal = "{decimal}") or leave the cell empty'
     return values, [Fault(f"{table.file} line {line}, {name}", written(cell), reason + more, remedy)]
+
+
+def time_stamp(text: str) -> "np.datetime64 | None":
+    """The time stamp of a cell, on some day where it has no date; None for any other text."""
+    match = STAMP.fullmatch(text.strip())
+    if match is None:
+        return None
+    year, month, day, day_de, month_de, year_de, *clock, fraction = match.groups()
+    date = f"{year or year_de or 2000}-{month or month_de or 1:0>2}-{day or day_de or 1:0>2}"
+    try:
+        return np.datetime64(f"{date}T{clock[0]:0>2}:{':'.join(clock[1:])}.{fraction or 0:0<6}", "us")
+    except ValueError:
+        return None
+
+
+def time_stamps(cells: Sequence[str]) -> "NDArray[np.datetime64] | None":
+    """(n,) time stamps of a column, NaT where missing; None where a cell is something else, or none is one."""
+    found = [
+        np.datetime64("NaT", "us") if cell.strip().lower() in MISSING else time_stamp(cell) for cell in cells
+    ]
+    stamps = np.array([stamp for stamp in found if stamp is not None], dtype="datetime64[us]")
+    return stamps if len(stamps) == len(found) and not np.isnat(stamps).all() else None
 
 
 def _text(path: Path, name: str, data: DataSection) -> str:

@@ -48,6 +48,21 @@ def test_the_rate_is_the_slope_over_the_times(tmp_path: Path, unit: str, per_uni
     assert set(found) == {"TC1", "TC2"}
 
 
+@pytest.mark.parametrize("day", ["2026-03-04 ", "4.3.2026 ", ""])
+def test_time_stamps_of_rows_are_read(tmp_path: Path, day: str) -> None:
+    path = drifting(tmp_path, 6.0, unit="") / "data.csv"
+    lines = [line.rpartition(",") for line in path.read_text(encoding="utf-8").splitlines()]
+    rows = [f"{row},{day}{8 + int(time) // 60}:{int(time) % 60:02d}:00" for row, _, time in lines[2:]]
+    rows[-1] = rows[-1].rpartition(",")[0] + ","  # of the row at standstill
+    path.write_text(
+        "\n".join([*(f"{row},{time}" for row, _, time in lines[:2]), *rows]) + "\n", encoding="utf-8"
+    )
+    measurement = load_measurement(tmp_path, CASE)
+    found = {rate.channel: rate for rate in rates(measurement, measurement.points[2])}
+    assert 3600.0 * found["TC1"].value == pytest.approx(6.0, rel=1e-6)
+    assert "unused_column" not in {one.id for one in measurement.findings}
+
+
 def test_rates_are_channels_of_their_own(tmp_path: Path) -> None:
     data = features(load_measurement(drifting(tmp_path, 6.0), CASE))
     known = dict(zip(data.features, zip(data.values, data.noise, data.usable)))
