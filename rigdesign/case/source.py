@@ -127,7 +127,7 @@ def _read(file: Path) -> dict[str, Any]:
     if (what := foreign(content)) is not None:
         raise CaseError(f"is {what}; a case is a TOML text, write it as one", str(file))
     try:
-        tree = tomllib.loads(content.decode("utf-8-sig"))
+        tree: dict[str, Any] | None = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise CaseError(f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)) from None
     except tomllib.TOMLDecodeError as error:
@@ -135,12 +135,15 @@ def _read(file: Path) -> dict[str, Any]:
     except ValueError:
         raise CaseError("holds a whole number of too many digits to be read; correct it", str(file)) from None
     except RecursionError:
-        tree, level = {}, [None]
-    else:
-        level: list[Any] = [tree]
-        for _ in range(DEEPEST):
-            tables = (node.values() if isinstance(node, dict) else node for node in level)
-            level = [node for table in tables for node in table if isinstance(node, dict | list)]
-    if level:
+        tree = None
+    if tree is None or _is_deep(tree):
         raise CaseError(f"is nested more than {DEEPEST} tables deep; flatten its tables", str(file))
     return tree
+
+
+def _is_deep(tree: dict[str, Any]) -> bool:
+    level: list[Any] = [tree]
+    for _ in range(DEEPEST):
+        tables = (node.values() if isinstance(node, dict) else node for node in level)
+        level = [node for table in tables for node in table if isinstance(node, dict | list)]
+    return bool(level)

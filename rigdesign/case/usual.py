@@ -71,9 +71,8 @@ def _numbers(node: Any, slot: Slot, path: str) -> Iterator[tuple[str, float, Slo
     elif isinstance(node, Mapping | tuple):
         kinds = [typing.get_args(kind) for kind, _ in slot.choices if typing.get_args(kind)]
         inner = slot_of(kinds[0][1 if isinstance(node, Mapping) else 0]) if kinds else slot
-        items = node.items() if isinstance(node, Mapping) else enumerate(node)
-        for key, item in items:
-            name = item_name({"name": getattr(item, "name", None)}, key) if isinstance(key, int) else key
+        named = (item_name({"name": getattr(item, "name", None)}, number) for number, item in enumerate(node))
+        for name, item in node.items() if isinstance(node, Mapping) else zip(named, node):
             yield from _numbers(item, inner, below + name)
     elif isinstance(node, int | float) and not isinstance(node, bool):
         yield path, float(node), slot
@@ -262,8 +261,8 @@ def _of_drivetrain(known: Measures, case: "Case", train: "DrivetrainInput") -> N
             "stiffness of the shaft": max(stiffness[shaft] for shaft in coupling.shafts),
             "stiffness of the coupling times 1 s": coupling.torsional_stiffness,
         }
-    for name, shaft in train.shafts.items():
-        for disc_name, disc in shaft.discs.items():
+    for name, entry in train.shafts.items():
+        for disc_name, disc in entry.discs.items():
             known[f"drivetrain.shafts.{name}.discs.{disc_name}"]["mass times the shaft diameter squared"] = (
                 disc.mass or 0.0
             ) * typical[name] ** 2

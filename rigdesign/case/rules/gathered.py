@@ -64,9 +64,9 @@ def broken_rules(case: "Case") -> list[Fault]:
 
 
 def _substances(case: "Case") -> Iterator[Fault]:
-    for name, oil in case.oils.items():
+    for name, own in case.oils.items():
         try:
-            oil.properties(name)
+            own.properties(name)
         except OilError as error:
             problem, _, remedy = str(error).rpartition("; ")
             yield Fault(f"oils.{name}", "", problem, remedy)
