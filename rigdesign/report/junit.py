@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 
-from rigdesign.report.numbers import limit_text, margin_text, quantity_text
+from rigdesign.report.numbers import limit_text, margin_text, value_text
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 
@@ -82,7 +82,7 @@ def _testcase(check: Check, case: str, seconds: float):  # type: ignore[no-untyp
 
 def check_summary(check: Check) -> str:
     """One line: title, value, limit, margin, distance."""
-    value = quantity_text(check.value, check.unit)
+    value = value_text(check)
     parts = [f"{check.title}: {value}, limit {limit_text(check)}"]
     if check.margin is not None:
         parts.append(f"margin {margin_text(check)}")

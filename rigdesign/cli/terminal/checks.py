@@ -14,7 +14,7 @@ from rich.text import Text
 from rigdesign.base.errors import one_line
 from rigdesign.cli.terminal.console import NARROWEST, hanging, new_console, verbosity, verdict_console
 from rigdesign.cli.terminal.reason_groups import reason_groups
-from rigdesign.report.numbers import limit_text, margin_text, percent_text, quantity_text
+from rigdesign.report.numbers import limit_text, margin_text, percent_text, quantity_text, value_text
 from rigdesign.report.views import sorted_checks
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
@@ -64,7 +64,7 @@ def _print_verdict(console: Console, result: RunResult) -> None:
 def _print_summary(console: Console, result: RunResult) -> None:
     for check in sorted_checks(result.checks):
         if check.status == "fail":
-            against = f"{quantity_text(check.value, check.unit)}, limit {limit_text(check)}"
+            against = f"{value_text(check)}, limit {limit_text(check)}"
             hanging(console, Text("fail: ", STYLES["fail"]), f"{check.title}: {against}")
             hanging(console, Text(" " * 6), check.reason.partition("; ")[0])
     _print_reasons(console, result.checks)
@@ -127,7 +127,7 @@ def _table(first: str, *further: str) -> Table:
 def _numbers(check: Check) -> tuple[str, str, str, str]:
     """Value, limit and margin in their units, distance."""
     distance = "" if check.distance is None else percent_text(check.distance)
-    value = "" if check.value is None else quantity_text(check.value, check.unit)
+    value = "" if check.value is None else value_text(check)
     limit = "" if check.limit is None else limit_text(check)
     return value, limit, "" if check.margin is None else margin_text(check), distance
 
