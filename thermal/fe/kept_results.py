@@ -17,7 +17,7 @@ import numpy as np
 P = ParamSpec("P")
 T = TypeVar("T")
 
-LIMIT = 250_000_000
+LIMIT = 150_000_000
 """Of all results together [bytes]: those of a large rig at standard, of some dozens of small ones."""
 _SHARED = (type, ModuleType, FunctionType, BuiltinFunctionType)
 """What belongs to the program and not to a result."""
@@ -67,7 +67,10 @@ def _bytes(values: list[Any], seen: set[int]) -> int:
             continue
         seen.add(id(value))
         if isinstance(value, np.ndarray) and value.base is not None:
-            values.append(value.base)
+            if isinstance(value.base, np.ndarray):
+                values.append(value.base)
+            else:  # of a compiled function, which owns the memory
+                total += value.nbytes
             continue
         total += sys.getsizeof(value, 0)
         values += gc.get_referents(value)

@@ -7,6 +7,7 @@ import pytest
 
 from thermal.fe import kept_results
 from thermal.fe.kept_results import kept
+from thermal.fe.kernels import cells_of_nodes
 
 MEGABYTE = 1_000_000
 
@@ -79,3 +80,12 @@ def test_what_two_results_share_counts_once_and_what_grew_later_counts() -> None
     first.later["more"] = np.zeros((9 * MEGABYTE // 8,))
     half(2)
     assert held_bytes() < 7 * MEGABYTE and half(1) is second
+
+
+def test_memory_of_compiled_functions_counts() -> None:
+    """numba hands out arrays that do not own theirs."""
+    count = MEGABYTE // 16
+    points, cells = np.zeros((3, count)), np.arange(4 * count).reshape(4, -1) % count
+    assert cells_of_nodes(cells, points.shape[1])[1].base is not None
+    kept(lambda: cells_of_nodes(cells, count))()
+    assert held_bytes() > cells.nbytes // 2
