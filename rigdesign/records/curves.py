@@ -1,24 +1,21 @@
-"""K_V over speed: simulated, under variants of the mesh law, and by ISO 6336-1."""
+"""K_V over speed: simulated, and by ISO 6336-1."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Final
 
 import numpy as np
 
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
-from rigdesign.coupling.mesh_models import laws_of, mesh_models
+from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.results.dynamics import DynamicFactorPoint
@@ -35,8 +32,6 @@ BEYOND = 1.25
 HARDNESS = ("case_hardened", "nitrided", "through_hardened")
 """Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
 DEFAULT = RatingOptions()
-VARIANT: Final = "weber_banaschek_0.8"
-"""The other reading of the mesh stiffness beside that of ISO 6336-1; beside all others stands that of ISO."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +42,12 @@ class Curves:
     """At the torque of the governing held point, past the highest held speed."""
     others: Mapping[float, ResponseCurve]
     """At every other torque [N m, at the control mesh] at which the schedule holds or changes the speed."""
-    variants: Mapping[str, ResponseCurve]
-    """At the torque of ``response`` with another reading of the mesh stiffness."""
     torque: float
     """Of ``response`` [N m]."""
 
     @property
     def named(self) -> Mapping[str, tuple[float, ResponseCurve]]:
-        """Every curve of the shipped mesh laws with its torque, by its name in the results."""
+        """Every curve with its torque, by its name in the results."""
         found = {self.torque: self.response, **self.others}
         return {f"{abs(torque):g} Nm": (torque, curve) for torque, curve in found.items()}
 
@@ -64,43 +57,26 @@ class CurvePlan:
     """What `Curves` are made of: computations that need nothing of each other."""
 
     torque: float
-    works: Mapping[float | str, Callable[[], ResponseCurve]]
-    """By torque, those of the shipped laws; by name, those under a variant."""
+    works: Mapping[float, Callable[[], ResponseCurve]]
+    """By torque."""
 
     def curves(self, solved: Sequence[ResponseCurve]) -> Curves:
         """The results of the works, in their order."""
         found = dict(zip(self.works, solved, strict=True))
-        shipped = {key: curve for key, curve in found.items() if isinstance(key, float)}
-        return Curves(
-            response=shipped.pop(self.torque),
-            others=shipped,
-            variants={key: curve for key, curve in found.items() if isinstance(key, str)},
-            torque=self.torque,
-        )
+        return Curves(response=found.pop(self.torque), others=found, torque=self.torque)
 
 
-def plan_curves(rig: Rig, warm: IterationResult, *, variants: bool = True) -> CurvePlan:
-    """Periodic response over speed at every torque of the schedule, warm gears of ``warm``.
-
-    variants : with the other reading of the mesh stiffness, which the report compares and no check asks for
-    """
-    numerics = rig.case.numerics
-    governing = torque_key(signed_torque(rig, warm.point))
-    solve = partial(_curve, rig, warm, laws_of(warm.models))
-    works: dict[float | str, Callable[[], ResponseCurve]] = {
-        torque: partial(solve, torque, grid(rig, *limits)) for torque, limits in speed_ranges(rig).items()
+def plan_curves(rig: Rig, warm: IterationResult) -> CurvePlan:
+    """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
+    works = {
+        torque: partial(curve_at, rig, warm, torque, limits) for torque, limits in speed_ranges(rig).items()
     }
-    other: MeshStiffness = VARIANT if rig.mesh_stiffness == "iso_6336_scaled" else "iso_6336_scaled"
-    if variants and rig.fidelity != "quick":
-        models = mesh_models(rig, warm.point, warm.coupling_state, other)
-        own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)
-        works[other] = partial(_curve, rig, warm, laws_of(models), governing, own, refined=False)
-    return CurvePlan(torque=governing, works=works)
+    return CurvePlan(torque=torque_key(signed_torque(rig, warm.point)), works=works)
 
 
 def solve_curves(rig: Rig, warm: IterationResult) -> Curves:
-    """The curves of `plan_curves` that checks ask for, one after the other."""
-    plan = plan_curves(rig, warm, variants=False)
+    """The curves of `plan_curves`, one after the other."""
+    plan = plan_curves(rig, warm)
     return plan.curves([work() for work in plan.works.values()])
 
 
@@ -150,25 +126,11 @@ def resolved(rig: Rig) -> bool:
     return rig.fidelity != "quick" and rig.case.numerics.response_period == "mesh"
 
 
-def _curve(
-    rig: Rig,
-    warm: IterationResult,
-    laws: Sequence[MeshLaw],
-    torque: float,
-    speeds: Sequence[float],
-    *,
-    refined: bool = True,
-) -> ResponseCurve:
-    solve = response_solver(rig, warm, torque, (min(speeds), max(speeds)), laws)
-    return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
-
-
 def response_solver(
     rig: Rig,
     warm: IterationResult,
     torque: float,
     limits: tuple[float, float],
-    laws: Sequence[MeshLaw] | None = None,
     *,
     stable_only: bool = False,
 ) -> Callable[[Sequence[float]], ResponseCurve]:
@@ -176,7 +138,7 @@ def response_solver(
 
     Bearings run under that torque.
 
-    limits : lowest and highest of these speeds; laws : of the meshes, those of ``warm`` when left out
+    limits : lowest and highest of these speeds
     stable_only : stable states that repeat in every mesh, by harmonic balance; none at speeds where there are none
     """
     settings = SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode)
@@ -186,7 +148,7 @@ def response_solver(
     ends = [speed / rig.pinion_speed(1.0) for speed in limits]
     drivetrain = loop_over_speed(rig, warm, (ends[0], ends[1]), lambda _: share)
     return partial(
-        periodic_response, drivetrain, periodic_laws(rig, laws or laws_of(warm.models)), load=LoopLoad(torque=torque),
+        periodic_response, drivetrain, periodic_laws(rig, laws_of(warm.models)), load=LoopLoad(torque=torque),
         drag_torques=warm.drags, settings=settings,
     )  # fmt: skip
 
@@ -196,7 +158,9 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
 
     limits : lowest and highest stated speed [rad/s]
     """
-    return _curve(rig, warm, laws_of(warm.models), torque, grid(rig, *limits))
+    speeds = grid(rig, *limits)
+    solve = response_solver(rig, warm, torque, (min(speeds), max(speeds)))
+    return refined_response(solve, speeds, rounds=ROUNDS) if resolved(rig) else solve(speeds)
 
 
 def rating_options(rig: Rig, name: str) -> RatingOptions:

@@ -171,8 +171,7 @@ def _stresses(rig: Rig, point: PointResult, mesh: int) -> _HeldRoots:
 
 def unsolved(rig: Rig, run: DynamicRun, mesh: int) -> Iterator[UnsolvedSpeed]:
     """Speeds at which a curve has no point, each with what the solvers said."""
-    curves = {name: curve for name, (_, curve) in run.curves.named.items()} | dict(run.curves.variants)
-    for name, curve in curves.items():
+    for name, (_, curve) in run.curves.named.items():
         for speed, reason in curve.failed:
             yield UnsolvedSpeed(curve=name, speed=own_ratio(rig, mesh) * speed, reason=reason)
 

@@ -101,9 +101,6 @@ def _mesh_section(solved: SolvedRig, run: DynamicRun, mesh: int, loads: MeshLoad
         role=loads.role,
         torque=main,
         dynamic_factor=factor_points(rig, mesh, run.curves.response),
-        dynamic_factor_variants={
-            kind: factor_points(rig, mesh, curve) for kind, curve in run.curves.variants.items()
-        },
         dynamic_factor_at={
             other: factor_points(rig, mesh, curve)
             for other, (_, curve) in run.curves.named.items()

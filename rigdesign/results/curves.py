@@ -115,25 +115,19 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
-    """K_V(n): the curves of all torques and variants below each other, distinguished by the last two columns."""
+    """K_V(n): the curves of all torques below each other, distinguished by the last column."""
     header = (
         "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque",
-        "variant",
     )  # fmt: skip
-    main = gearbox.torque
-    curves = [
-        (main, "", gearbox.dynamic_factor),
-        *((torque, "", points) for torque, points in gearbox.dynamic_factor_at.items()),
-        *((main, variant, points) for variant, points in gearbox.dynamic_factor_variants.items()),
-    ]
+    curves = {gearbox.torque: gearbox.dynamic_factor, **gearbox.dynamic_factor_at}
     return _columns(
         header,
         (
             (
                 point.speed_rpm, point.simulated, point.simulated_half_peak_to_peak,
-                point.iso_6336_1_method_b, point.method, torque, variant,
+                point.iso_6336_1_method_b, point.method, torque,
             )
-            for torque, variant, points in curves
+            for torque, points in curves.items()
             for point in points
         ),
     )  # fmt: skip

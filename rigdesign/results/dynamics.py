@@ -76,8 +76,6 @@ class GearboxDynamics:
     dynamic_factor: list[DynamicFactorPoint]
     dynamic_factor_at: dict[str, list[DynamicFactorPoint]]
     """The same at the other torques at which the schedule holds or changes the speed (``90 Nm``)."""
-    dynamic_factor_variants: dict[str, list[DynamicFactorPoint]]
-    """The curve of ``dynamic_factor`` under a named variant of the mesh law (``weber_banaschek_0.8``)."""
     stage_loads: list[dict[str, Any]]
     """Time run, per stage that turns under torque: {stage, dynamic_factor, speed_rpm, mean_Nm, peak_Nm, least_Nm,
     least_share, least_share_at_rpm, least_share_mean_Nm}."""

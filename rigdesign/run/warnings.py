@@ -148,7 +148,6 @@ def _states(solved: SolvedRig) -> dict[str, list[CurvePoint]]:
     assert solved.run is not None
     curves = solved.run.curves
     found = {f"curve {name}": list(curve.points) for name, (_, curve) in curves.named.items()}
-    found |= {f"curve {name}": list(curve.points) for name, curve in curves.variants.items()}
     for point in solved.points:
         if point.last.response is not None:
             found[f"stage {point.point.stage}"] = [point.last.response]

@@ -219,7 +219,6 @@ def gearbox(role, excitation, resonances):
         torque="180 Nm",
         dynamic_factor=curve(1.0),
         dynamic_factor_at={"90 Nm": curve(1.2)},
-        dynamic_factor_variants={"unscaled_weber_banaschek_x0.8": curve(0.8)},
         stage_loads=[
             {
                 "stage": "run_up",

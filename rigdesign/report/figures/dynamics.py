@@ -32,7 +32,7 @@ SIGMA_F = "σ_F"
 
 
 def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
-    """K_V(n) of every gearbox: simulated max/mean, half peak-to-peak, ISO 6336-1 method B, variants."""
+    """K_V(n) of every gearbox: simulated max/mean, half peak-to-peak, ISO 6336-1 method B."""
     count = len(dynamics.gearboxes)
     figure = new_figure(0.4 + 2.6 * count)
     axes_list = figure.subplots(count, 1, squeeze=False)[:, 0]
@@ -47,7 +47,7 @@ def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
 
 
 def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics, style: CurveStyle, others_from: int) -> None:
-    """One gearbox; others_from : number of the style of the first curve at another torque or of a variant."""
+    """One gearbox; others_from : number of the style of the first curve at another torque."""
     torque = stated_quantity(gearbox.torque)
     points = gearbox.dynamic_factor
     speed = [point.speed_rpm for point in points]
@@ -67,22 +67,14 @@ def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics, style: CurveStyle, o
         linestyle=LINES[2],
         label="simulated, 1 + half\npeak-to-peak / mean",
     )
-    others = {
-        f"simulated at {stated_quantity(key)}": (key, curve)
-        for key, curve in gearbox.dynamic_factor_at.items()
-    }
-    others |= {
-        f"variant {words(key)} at {torque}": (key, curve)
-        for key, curve in gearbox.dynamic_factor_variants.items()
-    }
-    for number, (label, (key, curve)) in enumerate(others.items(), start=others_from):
+    for number, (key, curve) in enumerate(gearbox.dynamic_factor_at.items(), start=others_from):
         shown = _with_gaps(gearbox, key, curve)
         axes.plot(
             [point.speed_rpm for point in shown],
             [point.simulated for point in shown],
             **curve_style(number).drawn,
             linewidth=0.9,
-            label=_wrapped(f"{label}, max / mean"),
+            label=f"simulated at {stated_quantity(key)}, max / mean",
         )
     axes.plot(
         speed,
@@ -284,9 +276,3 @@ def _margins(figure: "Figure", rows: int, right: float) -> None:
     figure.subplots_adjust(
         left=0.075, right=right, top=1 - 0.28 / height, bottom=0.45 / height, hspace=0.16 + 0.17 * rows
     )
-
-
-def _wrapped(label: str, width: int = 34) -> str:
-    from textwrap import fill
-
-    return fill(label, width)

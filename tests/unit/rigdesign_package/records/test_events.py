@@ -67,7 +67,7 @@ def solved(folder: Path) -> SolvedRig:
     rig, test = base()
     own = build_rig(load_case(file), "quick").with_models(rig.models)
     curve = curve_at(own, test.last, 180.0, (4000.0 * RPM, 12500.0 * RPM))
-    curves = Curves(response=curve, others={}, variants={}, torque=180.0)
+    curves = Curves(response=curve, others={}, torque=180.0)
     run = made_run(own, [test], made_ramp(own, None), curves)
     return SolvedRig(rig=own, points=[test], run=run, loads=LOADS, events=solve_events(own, run))
 

@@ -25,7 +25,7 @@ def curves() -> Curves:
     """Between 11,000 and 12,500 rpm in steps of 500 rpm, the test speed among them."""
     rig, point = base()
     curve = curve_at(rig, point.last, 180.0, (11000.0 * RPM, 12500.0 * RPM))
-    return Curves(response=curve, others={}, variants={}, torque=180.0)
+    return Curves(response=curve, others={}, torque=180.0)
 
 
 @cache

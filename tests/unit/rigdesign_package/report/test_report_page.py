@@ -203,7 +203,6 @@ def test_gearbox_without_curves_still_has_its_page():
     bare = replace(
         base.gearboxes["test"],
         dynamic_factor=[],
-        dynamic_factor_variants={},
         dynamic_factor_at={},
         stage_loads=[],
         unsolved=[],
