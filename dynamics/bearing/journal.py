@@ -158,12 +158,6 @@ def transition_speed(bearing: JournalBearing, load: float, viscosity: float) -> 
     return per_minute * math.pi / 30.0
 
 
-def largest_starting_load(bearing: JournalBearing, omega: float, viscosity: float) -> float:
-    """Load whose transition speed is ``omega`` [N]: Vogelpohl's formula solved for the load."""
-    per_minute = omega * 30.0 / math.pi
-    return per_minute * bearing.transition_constant * viscosity * bearing.volume / VOGELPOHL_CONSTANT
-
-
 @dataclass(frozen=True)
 class _Film:
     """Mechanical state of the film at one viscosity [Pa s]."""

@@ -1,4 +1,4 @@
-"""Load distribution, displacement and linearised stiffness of a rolling bearing or a preloaded pair.
+"""Load distribution, displacement and linearised stiffness of a rolling bearing.
 
 Rings stay round; they move against each other by a radial and an axial displacement. Every rolling element is pressed
 by what the displacement takes off its space and gives its force back along its contact angle; the sum over the
@@ -8,11 +8,10 @@ against tilting. The bearing is found without tilting; a program whose shaft ben
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from dynamics.bearing.protocol import BearingError, BearingNotConvergedError
 from dynamics.bearing.rolling_row import FloatArray, RowOfElements, contacts, ring_load
@@ -76,71 +75,22 @@ def bearing_stiffness(row: RowOfElements, radial: float, axial: float) -> Bearin
     return _solve((row,), radial, axial, free_axially=free and not (row.elements.roller and not angled))
 
 
-def stiffness_matrix(row: RowOfElements, radial: float, axial: float, azimuth: float = 0.0) -> FloatArray:
-    """Tangent stiffness of a single bearing at a load, untilted; (5, 5) in the order x, y, z, rx, ry.
+def stiffness_at(row: RowOfElements, found: BearingStiffness, azimuth: float = 0.0) -> FloatArray:
+    """Tangent stiffness of a single bearing, untilted; (5, 5) in the order x, y, z, rx, ry.
 
     z is the axis, rx and ry are rotations about x and y; forces in N, moments in N m, displacements in m and rad, of
     the inner ring against the outer one at the middle of the bearing. Symmetric and positive semidefinite: rows of a
     direction without stiffness (z of cylindrical rollers, whose flanges are not counted) are 0.
 
-    radial, axial : load, not negative [N]; the axial one presses the row, in its ``direction``
+    found : displacement that `bearing_stiffness` found for the row in direction 1
     azimuth : of the radial load from x towards y [rad]; the most loaded element stands there
-
-    Raises as `bearing_stiffness`.
     """
-    return stiffness_at(row, bearing_stiffness(replace(row, direction=1), radial, axial), azimuth)
-
-
-def stiffness_at(row: RowOfElements, found: BearingStiffness, azimuth: float = 0.0) -> FloatArray:
-    """As `stiffness_matrix`, at a displacement that `bearing_stiffness` has found for the row in direction 1."""
     along = row.direction * found.axial_displacement
     matrix = ring_load((row,), np.array([found.radial_displacement, 0.0, along, 0.0, 0.0])).stiffness
     cosine, sine = math.cos(azimuth), math.sin(azimuth)
     turn = np.eye(5)
     turn[:2, :2] = turn[3:, 3:] = [[cosine, -sine], [sine, cosine]]
     return np.asarray(turn @ matrix @ turn.T)
-
-
-def preload_offset(row: RowOfElements, preload: float) -> float:
-    """Axial approach [m] at which ``preload`` [N] presses the rings of one bearing of a pair together.
-
-    Raises BearingError for a row without contact angle, which cannot be preloaded axially.
-    """
-    if row.elements.contact_angle == 0.0:
-        raise BearingError(
-            f"preload = {preload:.6g} N: a bearing without contact angle is not preloaded axially; preload an "
-            "angular contact or tapered roller pair"
-        )
-    if preload <= 0.0:
-        return 0.0
-
-    def excess(approach: float) -> float:
-        return float(_balance((row,), 0.0, approach).force[1]) - preload
-
-    approach: float = brentq(excess, 0.0, 0.05 * row.elements.diameter, xtol=1e-13)
-    return approach
-
-
-def preloaded_pair(row: RowOfElements, preload: float, radial: float, axial: float) -> BearingStiffness:
-    """Stiffness of two equal bearings set against each other with an axial preload [N] under a load of the pair [N].
-
-    The rings do not tilt: face to face and back to back are the same. Their distance counts by the ``position`` of the
-    rows of `ring_load`.
-
-    Raises BearingError for a row without contact angle, BearingNotConvergedError where no displacement carries the load
-    """
-    offset = preload_offset(row, preload)
-    pair = tuple(
-        RowOfElements(
-            elements=row.elements,
-            law=row.law,
-            clearance=row.clearance,
-            axial_offset=offset,
-            direction=direction,
-        )
-        for direction in (1, -1)
-    )
-    return _solve(pair, radial, axial, free_axially=True)
 
 
 @dataclass(frozen=True)

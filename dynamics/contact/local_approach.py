@@ -20,7 +20,6 @@ from dynamics.contact.compliance import FlankCompliance
 from dynamics.contact.corner import ContactPlace, TipEnd
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
-from dynamics.kernels.loaded_contact import LEAST_SLOPE
 
 Array = NDArray[np.float64]
 
@@ -78,15 +77,6 @@ class LocalContact:
         """Half width of the contact (n,) under normal forces (n,) [m]."""
         load = np.maximum(force, 0.0) / self.length
         return np.asarray(np.sqrt(4.0 * load * self.radius * self.modulus / pi))
-
-    def too_wide(self, force: Array) -> NDArray[np.bool_]:
-        """Points (n,) whose contact is too wide against the depth of the teeth for the logarithm.
-
-        Their approach goes on as a straight line: the teeth are overloaded, or a tip is nearly pointed.
-        """
-        a, c = self.law[..., 0], self.law[..., 1]
-        turn = np.exp(np.minimum(a / c - 1.0 - LEAST_SLOPE, 690.0))
-        return np.asarray(np.maximum(force, 0.0) > turn)
 
     def pressure(self, force: Array) -> Array:
         """Largest Hertzian pressure (n,) under normal forces (n,) [Pa]."""

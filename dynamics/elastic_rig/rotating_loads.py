@@ -59,13 +59,6 @@ def line_loads(model: ElasticModel) -> dict[tuple[str, SpeedPower], Complex]:
     return found
 
 
-def load_at_speed(model: ElasticModel, line: str, speed: float) -> Complex:
-    """Load (n,) of a line of `line_loads` at the speed [rad/s] of the reference shaft."""
-    own = abs(model.spins[line]) * speed
-    parts = [own**power * load for (name, power), load in line_loads(model).items() if name == line]
-    return np.asarray(sum(parts, np.zeros(model.size, complex)))
-
-
 def misalignment_load(model: ElasticModel, misalignments: tuple[AxisMisalignment, ...]) -> Array:
     """Standing load (n,) of axes out of line on both shafts of their couplings [N], [N m].
 

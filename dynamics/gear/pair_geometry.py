@@ -259,11 +259,6 @@ class PairGeometry:
         return self.path.length / self.base_pitch
 
     @property
-    def tip_contact_ratio(self) -> float:
-        """eps_alpha that the tips alone would give [-]."""
-        return (self.path.tip_end - self.path.tip_start) / self.base_pitch
-
-    @property
     def overlap_ratio(self) -> float:
         """eps_beta over the common face width [-]."""
         return self.face_width * tan(self.base_helix_angle) / self.base_pitch

@@ -1,26 +1,22 @@
 """Loss of a gear mesh by tooth sliding, P = mu F_N v_g, and the record of any loss at any place.
 
-`mesh_loss` is the steady loss from the integrated tooth-loss factor; `sliding_power` takes the tooth forces
-of a simulation, with the sliding speed and the smooth reversal of the mesh kernel, so the heat in the box
-is the work that brakes the shafts.
+`mesh_loss` is the steady loss from the integrated tooth-loss factor.
 """
 
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.friction import FrictionCoefficient
-from dynamics.mesh.sliding import PairStiffness, ToothPath, sliding_speed, tooth_loss_factor
+from dynamics.mesh.sliding import PairStiffness, ToothPath, tooth_loss_factor
 
 __all__ = [
     "Loss",
     "LossError",
     "ToothPath",
     "mesh_loss",
-    "sliding_power",
-    "sliding_speed",
     "squeeze_loss",
     "tooth_loss_factor",
 ]
@@ -49,45 +45,6 @@ class Loss:
     details: dict[str, float | str] = field(default_factory=dict)
     """Numbers behind it, SI, by field name, with the source under ``source``."""
     warnings: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ToothContacts:
-    """Tooth contacts of a simulated history.
-
-    force : tooth forces in the transverse line of action, any shape, e.g. (n_times, n_pairs) [N]
-    position : their path positions from the pitch point, same shape [m]
-    omega_1, omega_2 : speeds of both gears, broadcastable to that shape [rad/s]
-    """
-
-    force: ArrayLike
-    position: ArrayLike
-    omega_1: ArrayLike
-    omega_2: ArrayLike
-
-
-def sliding_power(
-    path: ToothPath, contacts: ToothContacts, coefficient: float, reversal_speed: float = 0.0
-) -> Array:
-    """Sliding loss of each tooth contact of a simulated history [W].
-
-    Parameters
-    ----------
-    path : geometry
-    contacts : forces, places and speeds
-    coefficient : friction coefficient of the flank (of the normal force) [-]
-    reversal_speed : sliding speed over which friction changes sign, as in the mesh law [m/s]
-
-    Returns
-    -------
-    power : shape of ``force`` [W]; sum over pairs and slices, mean over time gives the loss of the mesh
-    """
-    speed = sliding_speed(path, contacts.position, contacts.omega_1, contacts.omega_2)
-    ratio = np.clip(speed / reversal_speed, -1.0, 1.0) if reversal_speed > 0.0 else np.sign(speed)
-    direction = ratio * (1.5 - 0.5 * ratio**2) if reversal_speed > 0.0 else ratio
-    force = np.asarray(contacts.force, dtype=np.float64)
-    power = path.transverse_friction(coefficient) * force * direction * speed
-    return np.asarray(power, dtype=np.float64)
 
 
 def mesh_loss(

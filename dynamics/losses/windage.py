@@ -122,7 +122,7 @@ def tooth_coefficient(gear: GearRotor) -> float:
 
     Source: Y. Diab, F. Ville, P. Velex, C. Changenet, Windage losses in high speed gears, ASME J. Mech. Des.
     126 (2004); gears of about 300 mm, 30 to 102 teeth. Confidence medium: it meets the correlation of
-    the same authors (`diab_correlation`) within 10 % on their gears; no test is known at 100 mm.
+    the same authors within 10 % on their gears; no test is known at 100 mm.
     """
     cosine = math.cos(gear.tip_space_angle)
     shape = (1.0 - cosine) * (1.0 + cosine) ** 3
@@ -178,46 +178,6 @@ def shaft_windage(place: str, radius: float, length: float, omega: float, mist: 
             "source": "Theodorsen and Regier, NACA Report 793",
         },
         warnings=_density_warning(mist),
-    )
-
-
-def diab_correlation(gear: GearRotor, omega: float, mist: Mist, wall_distances: tuple[float, float]) -> Loss:
-    """Windage of one gear by the dimensional correlation of Diab et al. [W], for comparison.
-
-    C = 60 Re^-0.25 (b/R)^0.8 z^-0.4 ((h1/R)^0.56 + (h2/R)^0.56), h the distances to the side walls [m]
-
-    Range: Re 6e5 to 9.6e5, b/R 0.08 to 0.78, z 30 to 102, h/R 0.09 to 0.52 (larger h counts as 0.52).
-    Source: as `tooth_coefficient`. Confidence medium.
-    """
-    radius, speed = gear.pitch_radius, abs(omega)
-    reynolds = mist.reynolds(speed, radius)
-    ratios = [min(distance / radius, 0.52) for distance in wall_distances]
-    width = gear.face_width / radius
-    coefficient = 0.0
-    if reynolds > 0.0:
-        coefficient = 60.0 * reynolds**-0.25 * width**0.8 * gear.teeth**-0.4 * sum(r**0.56 for r in ratios)
-    checked = (
-        ("Reynolds number", reynolds, 6e5, 9.6e5),
-        ("width ratio b/R", width, *WIDTH_RANGE),
-        ("number of teeth", float(gear.teeth), 30.0, 102.0),
-        ("wall distance ratio", min(ratios), 0.09, 0.52),
-    )
-    outside = tuple(
-        f"windage (Diab correlation): {name} = {value:.3g}: outside {low:.3g} to {high:.3g}; "
-        "use the default law"
-        for name, value, low, high in checked
-        if not low <= value <= high
-    )
-    return Loss(
-        place="comparison",
-        kind="windage",
-        power=0.5 * coefficient * mist.density * speed**3 * radius**5,
-        details={
-            "coefficient": coefficient,
-            "reynolds_number": reynolds,
-            "source": "Diab et al. 2004, correlation",
-        },
-        warnings=outside,
     )
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
@@ -172,18 +172,6 @@ def ohlendorf_factor(path: ToothPath, teeth_1: int) -> float:
         path.end / path.base_pitch,
         -path.start / path.base_pitch,
     )
-
-
-def sliding_speed(path: ToothPath, position: ArrayLike, omega_1: ArrayLike, omega_2: ArrayLike) -> Array:
-    """Sliding speed v_g = omega_1 rho_1 - omega_2 rho_2 [m/s], rho_1 = T1C + s, rho_2 = T2C - s.
-
-    Path positions [m] and the running speeds of both gears [rad/s] broadcast against each other.
-    """
-    s = np.asarray(position, dtype=np.float64)
-    ratio = math.tan(path.working_pressure_angle)
-    first = np.asarray(omega_1) * (path.base_radius_1 * ratio + s)
-    second = np.asarray(omega_2) * (path.base_radius_2 * ratio - s)
-    return np.asarray(first - second, dtype=np.float64)
 
 
 def _uniform(position: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Dynamic factor, loss of contact and resonances from the response of a gearbox over speed.
+"""Resonances from the response of a gearbox over speed.
 
 The dynamic torque of a gearbox is what its mesh transmits at the pinion: ``r_b1`` times the front less the
 back normal force in the transverse line of action, without friction and derivative torques. That is the
@@ -6,38 +6,12 @@ load of the teeth, which ISO 6336 multiplies by K_V; the torque in an adjacent s
 between.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from dynamics.errors import DynamicsInputError
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
-def dynamic_factor(torque: ArrayLike) -> Array:
-    """Return the greatest over the mean torque along the last axis (P2, Formula 1) [-].
-
-    Torques on the back flank are negative throughout; the factor compares in the direction of the mean.
-
-    Raises DynamicsInputError if a mean torque is zero.
-    """
-    values = np.asarray(torque, float)
-    mean = _mean(values)
-    factor: Array = np.max(values * np.sign(mean)[..., None], axis=-1) / np.abs(mean)
-    return factor
-
-
-def half_peak_to_peak_factor(torque: ArrayLike) -> Array:
-    """Return 1 + half the peak-to-peak value over the mean torque along the last axis [-].
-
-    Raises DynamicsInputError if a mean torque is zero.
-    """
-    values = np.asarray(torque, float)
-    factor: Array = 1.0 + 0.5 * np.ptp(values, axis=-1) / np.abs(_mean(values))
-    return factor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,14 +20,12 @@ class DynamicFactorCurve:
 
     speed : (n_speeds,) of the first pinion [rad/s], increasing
     factor : greatest over mean torque (P2, Formula 1) [-]
-    half_peak_to_peak : 1 + half peak-to-peak over mean torque [-]
     mean_torque, amplitude : mean and half peak-to-peak of the dynamic torque [N m]
     lift_off_share : share of time without contact [-]
     """
 
     speed: Array
     factor: Array
-    half_peak_to_peak: Array
     mean_torque: Array
     amplitude: Array
     lift_off_share: Array
@@ -79,42 +51,6 @@ class Resonance:
     amplification: float
     lift_off_share: float
     at_end: bool = False
-
-
-def factor_curve(
-    speed: ArrayLike,
-    torques: Sequence[ArrayLike],
-    lift_off_share: ArrayLike,
-) -> DynamicFactorCurve:
-    """Collect the curve from dynamic torques (n_meshes, n_steps) at each speed.
-
-    Parameters
-    ----------
-    lift_off_share : (n_speeds, n_meshes)
-
-    Raises
-    ------
-    DynamicsInputError
-        If speeds do not increase, sizes disagree or a mean torque is zero.
-    """
-    speeds = np.asarray(speed, float)
-    shares = np.asarray(lift_off_share, float)
-    if speeds.ndim != 1 or len(speeds) != len(torques) or len(speeds) != len(shares):
-        raise DynamicsInputError(
-            f"{speeds.size} speeds, {len(torques)} torques, {len(shares)} lift-off shares: must agree"
-        )
-    if np.any(np.diff(speeds) <= 0.0):
-        raise DynamicsInputError("speeds must increase; sort the responses, one branch of a jump at a time")
-    waves = [np.atleast_2d(np.asarray(torque, float)) for torque in torques]
-    amplitude = np.array([0.5 * np.ptp(wave, axis=1) for wave in waves]).T
-    return DynamicFactorCurve(
-        speed=speeds,
-        factor=np.array([dynamic_factor(wave) for wave in waves]).T,
-        half_peak_to_peak=np.array([half_peak_to_peak_factor(wave) for wave in waves]).T,
-        mean_torque=np.array([wave.mean(axis=1) for wave in waves]).T,
-        amplitude=amplitude,
-        lift_off_share=shares.T.copy(),
-    )
 
 
 def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> tuple[Resonance, ...]:
@@ -153,15 +89,6 @@ def _rise_at_end(values: Array) -> float:
         return 0.0
     higher = np.flatnonzero(values > values[-1])
     return float(values[-1] - values[higher[-1] if higher.size else 0 :].min())
-
-
-def _mean(values: Array) -> Array:
-    mean: Array = np.asarray(values.mean(axis=-1))
-    if np.any(mean == 0.0):
-        raise DynamicsInputError(
-            "dynamic factor: mean torque is 0 N m, the mesh carries no load; leave this speed out"
-        )
-    return mean
 
 
 def _peak_speed(speeds: Array, factors: Array, peak: int) -> float:

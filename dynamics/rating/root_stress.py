@@ -69,27 +69,6 @@ def root_influence(pair: GearPair, index: int, *, n_path: int = 161) -> RootInfl
     return RootInfluence(path=path, value=scale * factors, width=root_width(pair, index))
 
 
-def root_stress_history(influence: RootInfluence, force: ArrayLike, path: ArrayLike) -> Array:
-    """Root stress of one followed tooth [Pa], shape (n,).
-
-    force : (n,) or (n, k) transverse normal force on the tooth, k contacts at a time summed [N]
-    path : path positions of the contacts, same shape [m]; any value where the force is zero
-
-    Raises DynamicsInputError if the shapes differ or a force pulls.
-    """
-    loads, places = np.asarray(force, dtype=float), np.asarray(path, dtype=float)
-    if loads.shape != places.shape:
-        raise DynamicsInputError(
-            f"force {loads.shape} and path {places.shape} must have one shape; pair them by time"
-        )
-    if np.any(loads < 0.0):
-        raise DynamicsInputError(
-            f"force = {loads.min():.3g} N must not be negative; a tooth contact cannot pull"
-        )
-    stress = loads / influence.width * influence.at(places)
-    return stress.sum(axis=-1) if stress.ndim == 2 else stress
-
-
 def root_stress_over_face(
     influence: RootInfluence, slice_forces: ArrayLike, path: ArrayLike, slice_shift: ArrayLike, width: float
 ) -> Array:

@@ -1,4 +1,4 @@
-"""ISO/TR 14179-2:2001, thermal load carrying capacity of gears: losses of mesh, seals and dipped gears, heat balance.
+"""ISO/TR 14179-2:2001, thermal load carrying capacity of gears: losses of mesh, seals and dipped gears.
 
 Symbols and units as printed (N, mm, m/s, mPa s, um, 1/min, W). Confidence: the friction formula and the seal
 constant were found in two public programs that cite the document; the limits of validity are from the field's
@@ -17,15 +17,6 @@ SPEED_MAXIMUM = 50.0
 """Pitch line velocity v_t [m/s] above which the value at 50 is used."""
 SPEED_MINIMUM = 1.0
 """Pitch line velocity v_t [m/s] below which the value at 1 is used: boundary friction is not described."""
-
-LUBRICANT_FACTOR = {
-    "mineral": 1.0,
-    "polyalphaolefin": 0.8,
-    "ester": 0.8,
-    "phosphate_ester": 1.3,
-    "traction": 1.5,
-}
-"""X_L by base oil; medium confidence (Schlenk 1994), a measured value is better."""
 
 
 class PitchPointContact(NamedTuple):
@@ -99,8 +90,6 @@ B_0 = 10.0
 """Reference face width b_0 [mm]."""
 V_T0 = 10.0
 """Reference circumferential speed v_t0 [m/s]."""
-ALPHA_OIL = 200.0
-"""Usual film of the oil on the inner wall alpha_oil [W/(m2 K)]."""
 
 
 class DippedStage(NamedTuple):
@@ -147,23 +136,3 @@ def T_H(stage: DippedStage, v_t: float) -> float:
     no digit was found in a public source.
     """
     return C_Sp(stage) * C_1(stage) * math.exp(C_2(stage) * v_t / V_T0)
-
-
-def k_housing(alpha_ca: float, A_oil_A_ca: float = 1.0, delta_W_lambda_W: float = 0.0) -> float:
-    """Heat transmission of the housing k [W/(m2 K)], referred to its outer surface A_ca.
-
-    1/k = 1/(alpha_oil A_oil/A_ca) + delta_W/lambda_W + 1/alpha_ca, alpha_oil = 200 W/(m2 K) (Funck 1985)
-
-    alpha_ca : outside, convection and radiation [W/(m2 K)]; A_oil_A_ca : inner over outer surface [-];
-    delta_W_lambda_W : wall thickness over conductivity [m2 K/W]
-    """
-    return 1.0 / (1.0 / (ALPHA_OIL * A_oil_A_ca) + delta_W_lambda_W + 1.0 / alpha_ca)
-
-
-def theta_oil(theta_inf: float, P_V: float, k: float, A_ca: float) -> float:
-    """Mean sump temperature [degC] of a box cooled by its housing alone: theta_inf + P_V/(k A_ca).
-
-    theta_inf : air [degC]; P_V : all losses of the box [W]; k [W/(m2 K)]; A_ca : outer surface [m2]. Heat through
-    shafts and foundation is not counted: it lowers the temperature.
-    """
-    return theta_inf + P_V / (k * A_ca)

@@ -137,11 +137,6 @@ class Circuit:
         """Oil left in the tank while pipes and consumers are full [m3], at room temperature."""
         return self.tank.fill - math.fsum(line.volume for line in self.lines)
 
-    @property
-    def dwell_time(self) -> float:
-        """Mean time the oil rests in the tank between two rounds [s]."""
-        return self.running_fill / (self.pump.flow if self.pump else self.flow)
-
     def line_pump_heat(self, line: SupplyLine) -> float:
         """Heat of the pump in the oil of a line [W], by its share of the flow and less what its jets carry away."""
         return self.pump.heat_into_oil * line.flow / self.pump.flow - line.jet_power if self.pump else 0.0

@@ -64,7 +64,6 @@ def _of_mesh(curve: ResponseCurve, mesh: int) -> DynamicFactorCurve:
     return DynamicFactorCurve(
         speed=curve.speeds,
         factor=np.array([[p.dynamic_factor[mesh] for p in points]]),
-        half_peak_to_peak=np.array([[p.dynamic_factor_half_peak_to_peak[mesh] for p in points]]),
         mean_torque=np.array([[p.mean[mesh] for p in points]]),
         amplitude=np.array([[0.5 * (p.maximum[mesh] - p.minimum[mesh]) for p in points]]),
         lift_off_share=np.array([[p.lift_off_share[mesh] for p in points]]),

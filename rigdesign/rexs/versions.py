@@ -18,7 +18,6 @@ from rigdesign.rexs.model import (
     RoleReference,
 )
 
-NEWEST = "2.0"
 _VERSIONS = re.compile(r"(?:1\.[0-7]|2\.0)(?:\.[0-9]{1,4})?")
 
 ROLLING_BEARINGS = ("rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry")

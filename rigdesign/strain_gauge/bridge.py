@@ -166,11 +166,6 @@ class Bridge:
         top, bottom = numerator.constant, denominator.constant
         return float((numerator.linear * bottom - top * denominator.linear) / bottom**2)
 
-    @property
-    def lead_factor(self) -> float:
-        """Sensitivity over B k / 4: what leads and completion leave of it."""
-        return self.sensitivity / (0.25 * self.bridge_factor * self.gauge.gauge_factor)
-
     def ratio(self, strain: float | Array, temperature: float | Array | None = None) -> Array:
         """U_B / U_E [V/V] at the indicated strain [-], not balanced.
 
@@ -206,10 +201,6 @@ class Bridge:
                 "look at the unit of the channel, the supply voltage, the zero and the gauge's wires",
             )])  # fmt: skip
         return found
-
-    def linear_strain(self, ratio: float | Array) -> Array:
-        """4 u / (B k) [-]: what a logger shows that knows neither leads nor nonlinearity."""
-        return np.asarray(4.0 * np.asarray(ratio) / (self.bridge_factor * self.gauge.gauge_factor))
 
     def nonlinearity(self, strain: float) -> float:
         """Relative deviation of the balanced output from the tangent at zero; -k eps / 2 for a quarter bridge [-]."""

@@ -32,11 +32,6 @@ class TurnCurve:
     left_out: int
     by_mating_tooth: Array
 
-    @property
-    def standard_error(self) -> Array:
-        """(m,) 1 sigma of the mean: scatter / sqrt(turns)."""
-        return np.asarray(self.scatter / np.sqrt(self.turns))
-
 
 @dataclass(frozen=True, kw_only=True)
 class AngleGrid:

@@ -16,7 +16,7 @@ from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.layout import ElasticRig, ShaftPlacement
 from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.rotating_loads import load_at_speed, misalignment_load
+from dynamics.elastic_rig.rotating_loads import line_loads, misalignment_load
 from dynamics.elastic_rig.rotating_parts import (
     AxisMisalignment,
     FlangeRunOut,
@@ -42,6 +42,12 @@ STATE = {
     "b1": isotropic_bearing(0.0, DAMPING),
     "b2": isotropic_bearing(1e11),
 }
+
+
+def load_at_speed(model: ElasticModel, line: str, speed: float) -> np.ndarray:
+    """Load (n,) of a shaft line at the speed [rad/s] of the reference shaft."""
+    own = abs(model.spins[line]) * speed
+    return sum(own**power * load for (name, power), load in line_loads(model).items() if name == line)
 
 
 def jeffcott(*parts: RotatingPart, sense: int = 1, elements: int = 4) -> ElasticModel:

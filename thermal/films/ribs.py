@@ -34,11 +34,6 @@ class RibArray:
             )
 
     @property
-    def area_ratio(self) -> float:
-        """Wetted area of wall and ribs over that of the bare wall [-], tips by the corrected height."""
-        return 1.0 + (2.0 * self._corrected - self.thickness) / self.pitch
-
-    @property
     def _corrected(self) -> float:
         """Height with half the thickness added, which stands for the heat through the tip [m]."""
         return self.height + 0.5 * self.thickness

@@ -10,7 +10,7 @@ from typing import Literal, Protocol
 
 from thermal.films.air import Air, air
 from thermal.films.inputs import FilmError, not_negative, outside, positive
-from thermal.films.law import STEFAN_BOLTZMANN, Correlation, FilmCoefficient, FilmLaw
+from thermal.films.law import Correlation, FilmCoefficient, FilmLaw
 
 GRAVITY = 9.80665
 """[m/s2]"""
@@ -214,7 +214,7 @@ def horizontal_cylinder_churchill_chu(diameter: float, speed: float = 0.0) -> Fi
 def iso_tr_14179_2_free(height: float) -> FilmLaw:
     """Free convection of a gear housing after ISO/TR 14179-2: 18 h^-0.1 ((T_w - T_inf)/T_inf)^0.3.
 
-    height : height of the housing [m]. Radiation is not included; see `iso_tr_14179_2_radiation`.
+    height : height of the housing [m]. Radiation is not included.
     """
     positive("housing height", height, "m")
 
@@ -228,28 +228,6 @@ def iso_tr_14179_2_free(height: float) -> FilmLaw:
             valid_range="still room air, dT <= 150 K (limit assumed)",
             source="ISO/TR 14179-2:2001, free convection of the housing",
             warnings=outside("wall - air", difference, 0.0, 150.0, _OTHER_LAW, "K"),
-        )
-
-    return law
-
-
-def iso_tr_14179_2_radiation(emissivity: float) -> FilmLaw:
-    """Radiation of a gear housing as a film after ISO/TR 14179-2: 0.23e-6 eps ((T_w + T_inf)/2)^3.
-
-    The factor is 4 sigma, rounded. A surface takes either this film or a `Radiation` condition, not both.
-    """
-    if not 0.0 <= emissivity <= 1.0:
-        raise FilmError(f"emissivity = {emissivity} must lie between 0 and 1; give a value for the surface")
-
-    def law(wall: float, fluid: float) -> FilmCoefficient:
-        mean = 0.5 * (wall + fluid)
-        return FilmCoefficient(
-            value=0.23e-6 * emissivity * mean**3,
-            formula="iso_tr_14179_2_radiation",
-            inputs={"emissivity": emissivity, "mean_temperature": mean},
-            valid_range="dT <= 150 K (linearised; limit assumed)",
-            source=f"ISO/TR 14179-2:2001; 4 sigma = {4.0 * STEFAN_BOLTZMANN:.4g} W/(m2 K4)",
-            warnings=outside("wall - surroundings", abs(wall - fluid), 0.0, 150.0, "use Radiation", "K"),
         )
 
     return law

@@ -14,8 +14,6 @@ from dynamics.bearing.rolling_elements import RollingElements
 from dynamics.bearing.rolling_row import RowOfElements
 from dynamics.bearing.rolling_stiffness import (
     bearing_stiffness,
-    preload_offset,
-    preloaded_pair,
 )
 
 BALLS = RollingElements(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
@@ -158,31 +156,9 @@ def test_too_little_axial_load_leaves_the_bearing_to_its_partner() -> None:
     assert free.axial_load == pytest.approx(3000.0)
 
 
-def test_preloaded_pair_is_twice_as_stiff_and_shares_the_axial_load() -> None:
-    bearing = row("7208 B")
-    preload = 1000.0
-    pair = preloaded_pair(bearing, preload, 0.0, 0.0)
-    single = bearing_stiffness(bearing, 0.0, preload)
-    assert preload_offset(bearing, preload) == pytest.approx(single.axial_displacement)
-    assert pair.axial == pytest.approx(2.0 * single.axial, rel=1e-6)
-    assert pair.radial == pytest.approx(2.0 * single.radial, rel=1e-6)
-    loaded = preloaded_pair(bearing, preload, 0.0, 500.0)
-    assert loaded.axial_displacement == pytest.approx(500.0 / pair.axial, rel=0.05)
-
-
-def test_pair_unloads_its_partner_at_2_83_times_the_preload() -> None:
-    """Rigid contact angle: F = (2 delta)^1.5 is 2.83 times the preload; the changing angle raises it a little."""
-    bearing = row("7208 B")
-    offset = preload_offset(bearing, 500.0)
-    pair = preloaded_pair(bearing, 500.0, 0.0, 2.83 * 500.0)
-    assert pair.axial_displacement == pytest.approx(offset, rel=0.05)
-
-
 def test_what_has_no_axial_stiffness_is_refused() -> None:
     with pytest.raises(BearingError, match=r"axial load = 100 N.*flanges"):
         bearing_stiffness(row("NJ 208"), 1000.0, 100.0)
-    with pytest.raises(BearingError, match="without contact angle is not preloaded"):
-        preload_offset(row("6208"), 100.0)
 
 
 def test_no_load_is_no_stiffness() -> None:

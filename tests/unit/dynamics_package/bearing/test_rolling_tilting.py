@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
 from dynamics.bearing.rolling_contact import contact_law
 from dynamics.bearing.rolling_row import LAMINAE, RowOfElements, ring_load
-from dynamics.bearing.rolling_stiffness import bearing_stiffness, preload_offset, stiffness_matrix
+from dynamics.bearing.rolling_stiffness import bearing_stiffness, stiffness_at
 
 LOADS = [
     ("6208", 2000.0, 800.0),
@@ -23,6 +23,13 @@ LOADS = [
 def row(designation: str, clearance: float = 0.0) -> RowOfElements:
     elements = catalogue_bearing(designation).elements
     return RowOfElements(elements=elements, law=contact_law(elements), clearance=clearance)
+
+
+def stiffness_matrix(
+    bearing: RowOfElements, radial: float, axial: float, azimuth: float = 0.0
+) -> NDArray[np.float64]:
+    """Tangent stiffness (5, 5) at a load that presses the row in its direction, untilted."""
+    return stiffness_at(bearing, bearing_stiffness(replace(bearing, direction=1), radial, axial), azimuth)
 
 
 def pressed(designation: str, radial: float, axial: float) -> NDArray[np.float64]:
@@ -171,7 +178,7 @@ def test_a_pair_tilts_on_the_distance_of_its_pressure_centres(designation: str) 
     """Preloaded, at distance l: k_r (a / 2)^2 of either row, a = l + 2 R tan(alpha) back to back, l - 2 R tan(alpha)
     face to face; besides the rows' own turning about their pressure centres, which the two arrangements share."""
     single, distance = row(designation), 0.06
-    offset = preload_offset(single, 2000.0)
+    offset = bearing_stiffness(single, 0.0, 2000.0).axial_displacement
     pairs = {
         sign: tuple(
             replace(

@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.losses.mesh_loss import LossError, ToothContacts, mesh_loss, sliding_power, squeeze_loss
+from dynamics.losses.mesh_loss import LossError, mesh_loss, squeeze_loss
 from dynamics.mesh.friction import GivenFriction, Schlenk, friction_coefficient
 from dynamics.mesh.sliding import (
     ToothPath,
     ToothPathError,
     ohlendorf_factor,
-    sliding_speed,
     tooth_loss_factor,
 )
 from tests.builders.p2_gears import helical_pair
@@ -78,14 +77,6 @@ def test_ohlendorf_refuses_a_pitch_point_outside() -> None:
         ohlendorf_factor(spur_path(0.5e-3, 8e-3), 52)
 
 
-def test_sliding_speed_vanishes_at_the_pitch_point_only() -> None:
-    path = spur_path()
-    omega_1 = 100.0
-    omega_2 = omega_1 * path.base_radius_1 / path.base_radius_2
-    speed = sliding_speed(path, [-1e-3, 0.0, 1e-3], omega_1, omega_2)
-    assert speed == pytest.approx([-1e-3 * (omega_1 + omega_2), 0.0, 1e-3 * (omega_1 + omega_2)], abs=1e-12)
-
-
 def test_steady_force_history_gives_the_steady_loss() -> None:
     """The loop's integral over forces F(t), s(t) equals mu H_V P for the same load sharing."""
     path = spur_path(base_helix_angle=0.0)
@@ -95,31 +86,13 @@ def test_steady_force_history_gives_the_steady_loss() -> None:
     s = path.start + phase[:, None] + np.arange(3)[None, :] * path.base_pitch
     touching = s <= path.end
     force = touching * (torque / path.base_radius_1 / touching.sum(axis=1))[:, None]
-    power = (
-        sliding_power(path, ToothContacts(force=force, position=s, omega_1=omega_1, omega_2=omega_2), 0.05)
-        .sum(axis=1)
-        .mean()
-    )
+    speed = np.abs(omega_1 + omega_2) * np.abs(s)
+    power = (path.transverse_friction(0.05) * force * speed).sum(axis=1).mean()
     friction = friction_coefficient(
         path.contact(torque, omega_1, reference_diameter_1=0.1, roughness=4e-7, viscosity=0.01),
         GivenFriction(value=0.05),
     )
     assert power == pytest.approx(mesh_loss("mesh", path, torque, omega_1, friction).power, rel=1e-3)
-
-
-def test_smooth_reversal_takes_a_little_off_near_the_pitch_point() -> None:
-    path = spur_path()
-    s = np.linspace(-4e-3, 5e-3, 2001)
-    sharp = sliding_power(
-        path, ToothContacts(force=np.full_like(s, 1e3), position=s, omega_1=100.0, omega_2=62.5), 0.05
-    )
-    smooth = sliding_power(
-        path, ToothContacts(force=np.full_like(s, 1e3), position=s, omega_1=100.0, omega_2=62.5), 0.05, 0.05
-    )
-    assert np.all(smooth >= 0.0)
-    assert 0.95 < smooth.sum() / sharp.sum() < 1.0
-    far = np.abs(s) > 0.05 / 162.5 + 1e-5
-    assert smooth[far] == pytest.approx(sharp[far])
 
 
 def test_helical_teeth_press_harder_than_their_transverse_force() -> None:

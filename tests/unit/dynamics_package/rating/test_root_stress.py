@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from dynamics.rating.root_stress import root_influence, root_stress_history, root_stress_over_face
+from dynamics.rating.root_stress import root_influence, root_stress_over_face
 from tests.builders.p2_gears import spur_pair
 
 PAIR = spur_pair()
@@ -15,30 +15,16 @@ def test_stress_grows_towards_the_own_tip():
     assert pinion.at(1.0) == pinion.value[-1]
 
 
-def test_history_is_force_times_influence():
-    influence = root_influence(PAIR, 0)
-    force = np.array([0.0, 1000.0, 2000.0])
-    path = np.array([1e-3, 2e-3, 3e-3])
-    stress = root_stress_history(influence, force, path)
-    assert stress == pytest.approx(force / 7e-3 * influence.at(path))
-    both = root_stress_history(influence, np.stack([force, force], 1), np.stack([path, path], 1))
-    assert both == pytest.approx(2.0 * stress)
-
-
 def test_uniform_slices_give_the_stress_of_the_whole_face():
     influence = root_influence(PAIR, 0)
     path = np.array([1e-3, 3e-3])
     slices = np.full((2, 5), 200.0)
     local = root_stress_over_face(influence, slices, path, np.zeros(5), 7e-3)
-    whole = root_stress_history(influence, np.full(2, 1000.0), path)
+    whole = 1000.0 / 7e-3 * influence.at(path)
     assert local == pytest.approx(np.repeat(whole[:, None], 5, axis=1))
 
 
 def test_impossible_histories_are_refused():
     influence = root_influence(PAIR, 0)
-    with pytest.raises(ValueError, match="one shape"):
-        root_stress_history(influence, [1.0, 2.0], [1e-3])
-    with pytest.raises(ValueError, match="must not be negative"):
-        root_stress_history(influence, [-1.0], [1e-3])
     with pytest.raises(ValueError, match="slice_forces"):
         root_stress_over_face(influence, np.ones((2, 4)), [1e-3, 2e-3], np.zeros(5), 7e-3)

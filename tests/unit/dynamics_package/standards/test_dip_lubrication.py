@@ -24,15 +24,6 @@ def test_hydraulic_length_of_a_square_is_its_side() -> None:
     assert tr14179.l_h(100.0**2, 400.0) == 100.0
 
 
-def test_housing_heat_balance() -> None:
-    """Films 200 inside and 15 outside on equal surfaces: k = 13.95; 500 W over 0.6 m2 raise the oil by 59.7 K."""
-    k = tr14179.k_housing(15.0)
-    assert k == pytest.approx(1.0 / (1.0 / 200.0 + 1.0 / 15.0))
-    assert tr14179.theta_oil(20.0, 500.0, k, 0.6) == pytest.approx(79.72, abs=0.01)
-    assert tr14179.theta_oil(20.0, 0.0, k, 0.6) == 20.0
-    assert tr14179.k_housing(15.0, A_oil_A_ca=0.5, delta_W_lambda_W=2e-4) < k
-
-
 def test_michaelis_bulk_temperature_of_fzg_gears() -> None:
     """Load stage 10, mesh loss 985 W by hand on 91.5 x 14 mm2: 90 + 42.4/1.2 = 125.3 degC, "about 126" by hand."""
     assert theta_M(90.0, 0.985, 91.5 * 14.0, "dip") == pytest.approx(125.3, abs=0.1)

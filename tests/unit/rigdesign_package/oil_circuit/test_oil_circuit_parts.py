@@ -69,7 +69,6 @@ def test_refuses_what_cannot_be(build: Callable[[], object], key: str, words: st
 def test_holdup_of_consumers_counts_as_oil_out_of_the_tank() -> None:
     held = replace(line(), consumers=(Consumer(name="gears", flow=15 * LITRE_A_MINUTE, holdup=0.03),))
     assert circuit(held).running_fill == pytest.approx(0.05)
-    assert circuit(held).dwell_time == pytest.approx(200.0)
     with pytest.raises(CaseError, match="runs dry"):
         circuit(held, tank=replace(TANK, suction_minimum=0.05))
 

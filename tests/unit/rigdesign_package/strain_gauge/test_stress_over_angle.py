@@ -114,7 +114,6 @@ def test_average_by_mating_tooth() -> None:
     assert curve.by_mating_tooth[:, 100] == pytest.approx([100.0, 105.0, 110.0], rel=1e-6)
     assert curve.mean[100] == pytest.approx(105.0, rel=1e-6)
     assert curve.scatter[100] == pytest.approx(5.0 * math.sqrt(2 / 3 * 30 / 29), rel=1e-5)
-    assert curve.standard_error[100] == pytest.approx(curve.scatter[100] / math.sqrt(30))
 
 
 def test_turns_with_missing_samples_are_left_out() -> None:

@@ -6,10 +6,11 @@ import skfem
 from numpy.testing import assert_allclose
 
 from tests.builders.curved_blocks import cylinder_sector
+from tests.builders.scikit_fem_mesh import from_scikit_fem
 from thermal.conditions.boundary import ConditionError
 from thermal.conduction.capacity import HeatCapacity
 from thermal.fe.elements import FiniteElements
-from thermal.fe.mesh import CellName, box_mesh, from_scikit_fem
+from thermal.fe.mesh import CellName, box_mesh
 
 
 @pytest.mark.parametrize("cell", ["tetra10", "hexahedron20", "hexahedron27"])

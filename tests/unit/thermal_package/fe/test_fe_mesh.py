@@ -7,15 +7,14 @@ import pytest
 import skfem
 from numpy.testing import assert_allclose, assert_array_equal
 
+from tests.builders.scikit_fem_mesh import from_scikit_fem, second_order
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import (
     MeshError,
     NamedMesh,
     box_mesh,
     disjoint_union,
-    from_scikit_fem,
     named_mesh,
-    second_order,
 )
 from thermal.fe.reference_elements import TETRAHEDRON_10
 

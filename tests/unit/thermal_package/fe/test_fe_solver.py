@@ -8,12 +8,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy import sparse
 from scipy.spatial import Delaunay
 
+from tests.builders.scikit_fem_mesh import second_order
 from thermal.errors import ThermalNotConverged
 from thermal.fe import direct
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.direct import Backend, DirectError, available_backend
 from thermal.fe.elements import FiniteElements
-from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union, second_order
+from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
 from thermal.fe.smoothing import Scaling
 from thermal.fe.solver import (
     HeldMatrix,
