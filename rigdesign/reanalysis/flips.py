@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import partial
-from itertools import chain
 
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.parallel import BackgroundTasks
@@ -100,29 +99,32 @@ def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
     """
     failing = [check for check in sorted(result.checks, key=_order) if check.status == "fail"]
     wanted = failing or [check for check in sorted(result.checks, key=_order) if _predicted(check)][:1]
-    targets = [check for check in wanted if _is(check, (*BY_LOADS, *BY_HEAT))][:SHOWN]
+    by_loads = [check for check in wanted if _is(check, BY_LOADS)][:SHOWN]
+    by_heat = [check for check in wanted if _is(check, BY_HEAT)][:1]  # each solves the coupling loop again
+    targets = [check for check in wanted if check in (*by_loads, *by_heat)]
     others = tuple(check.id for check in wanted if check not in targets)
     if not targets:
         return replace(result, flip_search=FlipSearch(not_searched=others))
-    heat = any(_is(target, BY_HEAT) for target in targets)
-    solve = partial(_checks, solved, through_heat=heat)
-    search = Search(targets, [check for check in result.checks if _holds(check)], solve, final=not others)
-    candidates = list(_candidates(solved, targets, heat))
-    works = [partial(_flips, solved.case, candidate, search) for candidate in candidates]
-    if heat:  # runs compiled threads, which a copy of this process has not
-        rows = [work() for work in works]
-    else:
-        with BackgroundTasks(works) as tasks:
-            rows = tasks.results()
-    nearest = [flip for _, flip in sorted(chain(*rows), key=lambda row: (not row[1].turns, row[0]))]
+    rows, inputs = list[tuple[float, Flip]](), dict[str, None]()
+    held = [check for check in result.checks if _holds(check)]
+    for group, heat in ((by_loads, False), (by_heat, True)):
+        solve = partial(_checks, solved, through_heat=heat)
+        search = Search(group, held, solve, final=len(group) == len(wanted))
+        candidates = list(_candidates(solved, group, heat)) if group else []
+        works = [partial(_flips, solved.case, candidate, search) for candidate in candidates]
+        if heat:  # runs compiled threads, which a copy of this process has not
+            rows += [row for work in works for row in work()]
+        else:
+            with BackgroundTasks(works) as tasks:
+                rows += [row for found in tasks.results() for row in found]
+        inputs |= dict.fromkeys(candidate.title for candidate in candidates)
+    nearest = [flip for _, flip in sorted(rows, key=lambda row: (not row[1].turns, row[0]))]
     of_each = [next((flip for flip in nearest if flip.check == target.id), None) for target in targets]
     leading = [flip for flip in of_each if flip is not None]
     rest = [flip for flip in nearest if flip not in leading]
     flips = [*[*leading, *rest][:SHOWN], _limit(targets[0], final=len(wanted) == 1)]
     looked_at = FlipSearch(
-        inputs=tuple(candidate.title for candidate in candidates),
-        checks=tuple(target.id for target in targets),
-        not_searched=others,
+        inputs=tuple(inputs), checks=tuple(target.id for target in targets), not_searched=others
     )
     return replace(result, flips=sorted(flips, key=lambda flip: not flip.turns), flip_search=looked_at)
 

@@ -36,7 +36,7 @@ def searched(result: RunResult) -> str:
             said.append("None of them alone turns the verdict.")
     if search.not_searched:
         listed = ", ".join(titles[name] for name in search.not_searched)
-        said.append(f"Not looked at, as each input would take the whole run again: {listed}.")
+        said.append(f"Not looked at, as that would take the run again: {listed}.")
     return " ".join(said)
 
 

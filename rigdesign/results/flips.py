@@ -29,7 +29,8 @@ class FlipSearch:
     """What was looked at for `Flip` rows.
 
     inputs : titles of the inputs that were moved, each alone
-    checks : ids of the checks that they were to turn; ``not_searched`` those that would take the whole run again
+    checks : ids of the checks that they were to turn; ``not_searched`` the other failing
+        ones, which would take the run again
     """
 
     inputs: tuple[str, ...] = ()
