@@ -120,7 +120,8 @@ class RuleFamily:
             return not_applicable(rule, NO_LIMIT)
         if self.needs is not None and not self.needs.met(solved):
             stated = any(solved.case.origin.value_of.get(path) for path in self.limits_of(rule))
-            asked = stated or solved.case.drivetrain is not None
+            case = solved.case
+            asked = stated or (case.drivetrain is not None and case.losses.basis != "input")
             return (not_evaluated if asked else not_applicable)(rule, self.needs.reason)
         listed = list(values)
         if not listed:

@@ -118,7 +118,7 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
         records__gauge_stress="root stress there from influence numbers",
     ),
     "gearboxes.*.gears.*.strain_gauges.*.gauge_factor": stations_at(
-        strain_gauge__bridge="strain to bridge voltage"
+        strain_gauge__gauge="strain to change of resistance"
     ),
     "gearboxes.*.gears.*.strain_gauges.*.resistance": stations_at(
         strain_gauge__bridge="strain to bridge voltage"

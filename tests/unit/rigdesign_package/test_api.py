@@ -50,7 +50,7 @@ def test_a_result_is_shown_in_a_line() -> None:
     checks = [make_check("gap", 1.0, 0.3, comparison=">="), make_check("oil", 200.0, 150.0, unit="degC")]
     result = make_result(checks=checks, verdict="fail")
     assert (
-        repr(result) == f"RunResult({result.case['name']}, {result.fidelity}: fail; 2 checks: 1 pass, 1 fail)"
+        repr(result) == f"RunResult({result.case['name']}, {result.fidelity}: fail; 2 checks: 1 fail, 1 pass)"
     )
     page = result._repr_html_()
     assert page.count("<tr>") == 3 and "<td>oil</td><td>200</td><td>150</td><td>degC</td>" in page

@@ -22,13 +22,14 @@ NAME = re.compile(
     r"(?<![\w./%@{-])(?:[a-z][a-z0-9]*(?:_[a-z0-9]+)+|(?:\*|[a-z_0-9]+)(?:\.(?:\*|[a-z_0-9]+))+)(?![\w/(-])"
 )
 """snake_case words and dotted paths, ``*`` for what an f-string fills in."""
-SYMBOL = re.compile(r"(?:[a-z]|alpha|eps|epsilon|omega)_[a-z0-9_]+")
+SYMBOL = re.compile(r"(?:[a-z]|alpha|eps|epsilon|mu|omega)_[a-z0-9_]+")
 """Symbols of formulas such as ``h_f`` and ``eps_alpha``."""
 OTHER_WORDS = ("rexs", "rexs_case", "validation", "diagnosis")
 """Folders whose words are attributes of REXS, rows of papers and effects."""
 COLUMNS = {
     "user_version", "journal_mode", "sqlite_master", "case_hash", "tool_version", "wf_increment", "roll_length",
-    "roll_angle", "max_temperature", "not_applicable", "operating_point",
+    "roll_angle", "max_temperature", "not_applicable", "not_evaluated", "operating_point", "sample_rate_unit",
+    "wf_start_time",
 }  # fmt: skip
 """SQLite, columns of ledger, tables and files, properties of TDMS, a function of the rules, a name in a table."""
 

@@ -29,7 +29,7 @@ from rigdesign.cli.ending import exit_status
 from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write
 from tests.builders.schema import complaints
 
-WARNING = SMALL.replace("1000 h", "720 h")
+WARNING = SMALL.replace("[limits.oil]", '[limits.oil]\nflow_maximum = "27 l/min"')
 FAILING = SMALL.replace('remove = ["cooler_power_maximum", ', 'cooler_power_maximum = "1 kW"\nremove = [')
 SHORT_RAMP = f"""
 extends = "{(PROTOTYPE / "case.toml").as_posix()}"

@@ -50,7 +50,7 @@ def test_checks_and_records_leave_out_what_a_kind_is_not_rated_by() -> None:
     states = solve_bearings(rig, result.point, result.last.coupling_state, unrated)
     assert all(bearing_ratings(state) == {} for state in states.values())
     point = SimpleNamespace(point=result.point, last=SimpleNamespace(bearings=states))
-    solved: Any = SimpleNamespace(case=rig.case, rig=rig, points=[point])
+    solved: Any = SimpleNamespace(case=rig.case, rig=rig, points=[point], no_clearances="")
     checks = [*films.checks(solved), ramp._transition(solved)]
     assert [check.verdict for check in checks] == ["not applicable"] * 3
 

@@ -74,7 +74,7 @@ def test_the_constant_of_the_standard_tells_in_extrapolation() -> None:
         ({"temperature_2": 313.15}, "apart"),
         ({"density_15": -1.0}, "density_15"),
         ({"heat_capacity": 0.0}, "heat_capacity"),
-        ({"density_slope": -0.65}, "density_slope"),
+        ({"density_slope": -0.65}, "density changes by"),
     ],
 )
 def test_impossible_oil(changes: dict[str, float], word: str) -> None:

@@ -8,12 +8,12 @@ from rigdesign import load_case
 from rigdesign.report.pages.report import report_html
 from rigdesign.results.result import RunResult
 from tests.builders.paths import CASES
-from tests.builders.shared_runs import shipped_run
+from tests.builders.shared_runs import quick_run
 
 
 @cache
 def hunting() -> RunResult:
-    return shipped_run("loop_hunting")
+    return quick_run("loop_hunting")
 
 
 def test_modes_say_where_they_are_largest() -> None:

@@ -57,6 +57,7 @@ def test_results_json_keeps_the_contract(written):
     assert document["warnings"][0] == {
         "id": "iso_6336_range",
         "text": "stiffness regression outside its range",
+        "checks": [],
     }
     assert {"assumptions", "timings_s", "tool_version"} <= set(document)
 
