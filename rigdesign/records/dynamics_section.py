@@ -5,15 +5,14 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from dynamics.drivetrain.modes import order_crossings, sampling_audit, shaft_frequencies
+from dynamics.drivetrain.modes import sampling_audit
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.contact_in_motion import pair_shares
-from rigdesign.records.curves import factor_points, iso_factor, own_ratio
+from rigdesign.records.curves import factor_points, iso_factor
 from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.loaded_contact import loaded_contact
-from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.reversed_bending import bent_both_ways
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.spectra import held_spectra, waterfalls
@@ -42,8 +41,6 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
     rig, run, loads = solved.rig, solved.run, solved.loads
     drivetrain = rig.drivetrain
     assert drivetrain is not None and run is not None and loads is not None
-    frequencies = shaft_frequencies(drivetrain)
-    top = max(run.curves.response.speeds) * max(own_ratio(rig, m) for m in range(len(rig.mesh_names)))
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
@@ -54,11 +51,6 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
             for mesh, name in enumerate(rig.mesh_names)
         },
         natural_frequencies=[rows.mode_row(number, mode) for number, mode in numbered(loads.modes)],
-        shaft_frequencies={name: [float(f) for f in values] for name, values in frequencies.items()},
-        crossings=[
-            rows.shaft_crossing_row(rig.mesh_labels[crossing.mesh], crossing)
-            for crossing in order_crossings(drivetrain, frequencies, top, HARMONICS)
-        ],
         damping_audit=[rows.damping_row(record) for record in loads.damping],
         sampling={
             "sample_rate_Hz": rig.case.numerics.sample_rate,

@@ -135,7 +135,7 @@ def loss_table(losses: Sequence[LossRow]) -> tuple[list[str], list[tuple[str, li
 
 
 def crossing_table(
-    crossings: list[dict[str, Any]], keys: Sequence[str] = ("gearbox", "shaft", "frequency_Hz")
+    crossings: list[dict[str, Any]], keys: Sequence[str]
 ) -> tuple[list[Any], list[tuple[list[Any], list[Any]]]]:
     """Harmonics, and (values of ``keys``, speed by harmonic) of every natural frequency."""
     harmonics = sorted({item["harmonic"] for item in crossings})

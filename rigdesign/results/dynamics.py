@@ -134,10 +134,6 @@ class DynamicsResult:
     """{mode, frequency_Hz, damping_ratio, shape, largest_at}: modes of the closed loop, meshes at their mean
     stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that oscillate most; mode 0 is
     rigid rotation."""
-    shaft_frequencies: dict[str, list[float]]
-    """Free-free torsional frequencies [Hz] of each isolated shaft."""
-    crossings: list[dict[str, Any]]
-    """{gearbox, shaft, frequency_Hz, harmonic, speed_rpm}: of the isolated shafts."""
     damping_audit: list[dict[str, Any]]
     """{joint, damping_ratio, corner_frequency_Hz, warning}."""
     sampling: dict[str, float]

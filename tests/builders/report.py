@@ -279,24 +279,6 @@ def ramp():
 
 
 def dynamics():
-    shafts = {
-        "test pinion": [4022.7, 5657.2, 7776.4],
-        "test wheel": [5926.7, 9482.0, 12831.0],
-        "reference pinion": [4887.5, 7763.9, 9646.9],
-        "reference wheel": [3563.9, 5092.0, 6895.0],
-    }
-    crossings = [
-        {
-            "gearbox": shaft.split()[0],
-            "shaft": shaft,
-            "frequency_Hz": f,
-            "harmonic": k,
-            "speed_rpm": 60 * f / (99 * k),
-        }
-        for shaft, values in shafts.items()
-        for f in values
-        for k in (1, 2, 3)
-    ]
     resonances = [
         {
             "torque": "180 Nm",
@@ -322,8 +304,6 @@ def dynamics():
         natural_frequencies=[
             {"frequency_Hz": 412.0, "damping_ratio": 0.04, "shape": "test against reference gearbox"}
         ],
-        shaft_frequencies=shafts,
-        crossings=crossings,
         damping_audit=[
             {
                 "joint": "test pinion spline",

@@ -1,6 +1,6 @@
-"""Figures of the drivetrain: K_V(n), order crossings, root stress over the mesh."""
+"""Figures of the drivetrain: K_V(n), root stress over the mesh."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -118,111 +118,6 @@ def _with_gaps(
         if row["curve"] == curve
     ]
     return sorted([*points, *holes], key=lambda point: point.speed_rpm)
-
-
-def campbell_figure(dynamics: DynamicsResult) -> "Figure":
-    """Tooth-mesh orders of every gearbox over speed against the modes of the closed loop and of its shafts alone."""
-    names = list(dynamics.gearboxes)
-    figure = new_figure(4.1)
-    styles = gearbox_colours(names)
-    axes_list = figure.subplots(1, max(1, len(names)), squeeze=False)[0]
-    top_speed = _top_speed(dynamics)
-    for axes, name in zip(axes_list, names, strict=True):
-        crossings = [item for item in dynamics.crossings if item.get("gearbox") == name]
-        _orders(axes, crossings, top_speed)
-        _natural_frequencies(axes, crossings, name, top_speed)
-        _loop_modes(axes, [item for item in dynamics.loop_crossings if item["order_of"] == name], top_speed)
-        _crossing_marks(axes, crossings, dynamics.gearboxes[name], top_speed)
-        axes.set_xlim(0, top_speed)
-        axes.set_ylim(bottom=0)
-        finish(axes, "pinion speed n [rpm]", "frequency [Hz]")
-        gearbox_title(axes, f"Gearbox {words(name)}", styles[name])
-    shown = {
-        label: handle
-        for axes in axes_list
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    figure.legend(shown.values(), shown.keys(), loc="lower center", ncols=3, fontsize=8)
-    figure.subplots_adjust(left=0.085, right=0.985, top=0.93, bottom=0.26, wspace=0.22)
-    return figure
-
-
-def _top_speed(dynamics: DynamicsResult) -> float:
-    speeds = [p.speed_rpm for box in dynamics.gearboxes.values() for p in box.dynamic_factor]
-    speeds += [item["speed_rpm"] for item in dynamics.crossings]
-    return 1.02 * max(speeds, default=1.0)
-
-
-def _orders(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
-    """Straight lines k f_z(n); f_z per rpm follows from any crossing."""
-    slopes = {
-        item["harmonic"]: item["frequency_Hz"] / item["speed_rpm"]
-        for item in crossings
-        if item["speed_rpm"] > 0
-    }
-    ceiling = 1.15 * max((item["frequency_Hz"] for item in crossings), default=1.0)
-    for harmonic, slope in sorted(slopes.items()):
-        end = min(top_speed, ceiling / slope)
-        axes.plot([0, end], [0, slope * end], color=INK, linewidth=0.9)
-        label = "f_z" if harmonic == 1 else f"{harmonic:g} f_z"
-        # the steep lines end close together: their labels stand in two rows
-        row = 13 if harmonic > 2 and harmonic % 2 else 4
-        axes.annotate(
-            label, (end, slope * end), textcoords="offset points", xytext=(-3, row), ha="right", fontsize=8
-        )
-    axes.set_ylim(0, 1.16 * ceiling)
-
-
-def _natural_frequencies(
-    axes: "Axes", crossings: list[dict[str, Any]], gearbox: str, top_speed: float
-) -> None:
-    """Every shaft alone, in one style in all plots: its name without that of its gearbox."""
-    for number, shaft in enumerate(sorted({item["shaft"] for item in crossings})):
-        style = curve_style(number + 2)
-        name = words(shaft).removeprefix(f"{words(gearbox)} ")
-        frequencies = sorted({item["frequency_Hz"] for item in crossings if item["shaft"] == shaft})
-        for place, frequency in enumerate(frequencies):
-            label = f"torsion of the {name} shaft, free-free" if place == 0 else None
-            axes.plot([0, top_speed], [frequency, frequency], **style.drawn, linewidth=1.0, label=label)
-
-
-def _loop_modes(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
-    """Modes of the closed loop that the mesh excites, and where its orders meet them."""
-    excited = [item for item in crossings if item["kind"] == "mesh" and item["excited"]]
-    for number, frequency in enumerate(sorted({item["frequency_Hz"] for item in excited})):
-        label = "mode of the closed loop" if number == 0 else None
-        axes.plot([0, top_speed], [frequency, frequency], color=INK, linewidth=0.6, label=label)
-    if excited:
-        speeds, frequencies = ([item[key] for item in excited] for key in ("speed_rpm", "frequency_Hz"))
-        axes.plot(speeds, frequencies, "s", color=INK, markersize=3.5, label="crossing, closed loop")
-
-
-def _crossing_marks(
-    axes: "Axes", crossings: list[dict[str, Any]], gearbox: GearboxDynamics, top_speed: float
-) -> None:
-    axes.plot(
-        [item["speed_rpm"] for item in crossings],
-        [item["frequency_Hz"] for item in crossings],
-        "o",
-        markerfacecolor="white",
-        markeredgecolor=MUTED,
-        markersize=4,
-        label="crossing, isolated shaft",
-    )
-    dangerous = [
-        item
-        for item in gearbox.resonances
-        if item.get("dangerous") and item["torque"] == gearbox.torque and item["speed_rpm"] <= top_speed
-    ]
-    if dangerous:
-        axes.plot(
-            [item["speed_rpm"] for item in dangerous],
-            [item["frequency_Hz"] for item in dangerous],
-            "o",
-            color=VERDICT_COLOURS["fail"],
-            markersize=5,
-            label="dangerous resonance of the assembled loop",
-        )
 
 
 def root_stress_figure(gearbox: GearboxDynamics, style: CurveStyle | None = None) -> "Figure":

@@ -51,16 +51,9 @@ def _loads(result: RunResult, draw: Draw) -> Values:
 
 
 def _details(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.figures import dynamics as figures
-
-    dynamics = result.dynamics
-    assert dynamics is not None
-    campbell = None
-    if dynamics.crossings:
-        campbell = draw(figures.campbell_figure(dynamics), "Mesh orders and natural frequencies over speed")
-    rest = [name for name in dynamics.gearboxes if not _shown_first(result, name)]
+    assert result.dynamics is not None
+    rest = [name for name in result.dynamics.gearboxes if not _shown_first(result, name)]
     return {
-        "campbell": campbell,
         "root_stress": _root_stress(result, draw, rest),
         "contact": _contact(result, draw, rest),
     }

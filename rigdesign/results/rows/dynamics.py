@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from dynamics.drivetrain.modes import Crossing, DampingRecord, LoopMode
+from dynamics.drivetrain.modes import DampingRecord, LoopMode
 from dynamics.gear.pair import GearPair
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.results.dynamics import RootStressHistory
@@ -108,18 +108,6 @@ def mode_crossing_row(crossing: ModeCrossing) -> dict[str, Any]:
         "speed_rpm": crossing.speed * RPM,
         "gain": crossing.gain,
         "excited": crossing.excited,
-    }
-
-
-def shaft_crossing_row(label: str, crossing: Crossing) -> dict[str, Any]:
-    """A mesh order, of the mesh ``label``, that meets a natural frequency of an isolated shaft."""
-    return {
-        "gearbox": label,
-        "shaft": crossing.shaft,
-        "mode": crossing.mode,
-        "frequency_Hz": crossing.frequency,
-        "harmonic": crossing.harmonic,
-        "speed_rpm": crossing.speed * RPM,
     }
 
 

@@ -36,13 +36,11 @@ def test_a_gearbox_has_its_colour_in_every_figure(result):
     assert list(styles) == ["reference", "test"]
     with drawing_style():
         factor = dynamics_figures.dynamic_factor_figure(result.dynamics)
-        campbell = dynamics_figures.campbell_figure(result.dynamics)
         ramp = ramp_figure(result.dynamics.ramp)
         stress = dynamics_figures.root_stress_figure(result.dynamics.gearboxes["test"], styles["test"])
         seals = seal_gap_figure(result.expansion, styles)
     for name, axes in [
         *zip(result.dynamics.gearboxes, factor.axes),
-        *zip(result.dynamics.gearboxes, campbell.axes),
         *zip(result.dynamics.ramp.torque, ramp.axes[2:]),
         *(("test", axes) for axes in (*stress.axes, *seals.axes)),
     ]:
