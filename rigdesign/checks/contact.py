@@ -16,7 +16,7 @@ from rigdesign.records.gear_loads import application_factor
 from rigdesign.records.loaded_contact import held_contact
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
-from rigdesign.results.loaded_contact import EdgeContact
+from rigdesign.results.teeth import EdgeContact
 from rigdesign.results.units import MEGAPASCAL, MPA
 
 ANALYTIC = "the teeth are analytic: no loaded contact"

@@ -13,7 +13,7 @@ from rigdesign.checks.strength import OF_SAFETY, GearFamily, root_safety
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
-from rigdesign.results.flank_rating import FlankRating
+from rigdesign.results.teeth import FlankRating
 from rigdesign.results.units import MPA, NUMBER, UM, ZERO
 
 NO_SPECIMEN = "no specimen with a root strength is loaded"

@@ -20,8 +20,8 @@ from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.records.tooth_history import GearInMesh
 from rigdesign.results.check import Check
+from rigdesign.results.dynamics import FROM_INFLUENCE
 from rigdesign.results.loads import RootStressPath
-from rigdesign.results.stress_source import FROM_INFLUENCE
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
 from rigdesign.rig.model import Rig
 

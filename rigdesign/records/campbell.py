@@ -21,7 +21,7 @@ from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import HIGHEST_MODE
 from rigdesign.records.loop_states import LoopState
 from rigdesign.records.resonances import HARMONICS, LEAST_GAIN
-from rigdesign.results.campbell import (
+from rigdesign.results.vibration import (
     CampbellCrossing,
     CampbellMode,
     CampbellRecord,

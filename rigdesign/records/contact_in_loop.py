@@ -32,7 +32,7 @@ from rigdesign.coupling.time_run import drags_at
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import held_contact
 from rigdesign.records.loop_states import state_at
-from rigdesign.results.contact_in_loop import ContactInLoop, LoopedContact
+from rigdesign.results.teeth import ContactInLoop, LoopedContact
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 

@@ -13,7 +13,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.records import root
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.results.contact_in_motion import PairShare
+from rigdesign.results.teeth import PairShare
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

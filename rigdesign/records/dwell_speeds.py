@@ -24,15 +24,15 @@ from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe,
 from rigdesign.records.speed_limits import speed_limit
 from rigdesign.records.start_torque import StartResponse, start_torque, worst_start
 from rigdesign.records.torques_over_speed import is_around
-from rigdesign.results.campbell import CampbellRecord
-from rigdesign.results.dwell import (
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.vibration import (
     AvoidedResonance,
+    CampbellRecord,
     DwellRecord,
     DwellStage,
     ResonanceKind,
+    SectionTorqueRecord,
 )
-from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.section_torques import SectionTorqueRecord
 from rigdesign.rig.model import Rig
 
 

@@ -21,8 +21,8 @@ from rigdesign.records import root
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import ROOT
 from rigdesign.records.speed_response import SpeedResponse, held_response, response_at
-from rigdesign.results.dynamic_root import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
-from rigdesign.results.stress_source import FROM_INFLUENCE, StressSource
+from rigdesign.results.dynamics import FROM_INFLUENCE, StressSource
+from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.placement import grid_weights

@@ -21,18 +21,22 @@ from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
-from rigdesign.results.rows.campbell import campbell_row
-from rigdesign.results.rows.contact_in_loop import contact_in_loop_row
-from rigdesign.results.rows.contact_in_motion import pair_share_row
-from rigdesign.results.rows.dwell import dwell_row
-from rigdesign.results.rows.dynamic_root import dynamic_root_rows
-from rigdesign.results.rows.flank_rating import flank_rating_row
-from rigdesign.results.rows.loaded_contact import loaded_contact_row
-from rigdesign.results.rows.press_fit import press_fit_row
-from rigdesign.results.rows.section_torques import section_torque_rows
-from rigdesign.results.rows.spectra import spectrum_row, waterfall_row
-from rigdesign.results.rows.spline_capacity import spline_stress_row
-from rigdesign.results.rows.tooth_history import tooth_history_row
+from rigdesign.results.rows.seats import press_fit_row, spline_stress_row
+from rigdesign.results.rows.teeth import (
+    contact_in_loop_row,
+    dynamic_root_rows,
+    flank_rating_row,
+    loaded_contact_row,
+    pair_share_row,
+    tooth_history_row,
+)
+from rigdesign.results.rows.vibration import (
+    campbell_row,
+    dwell_row,
+    section_torque_rows,
+    spectrum_row,
+    waterfall_row,
+)
 from rigdesign.rig.model import Rig
 
 

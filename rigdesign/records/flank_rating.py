@@ -21,7 +21,7 @@ from rigdesign.properties.materials import Material
 from rigdesign.properties.oil import Oil
 from rigdesign.records.gear_loads import flank_load, rated_cycles, rated_loads
 from rigdesign.records.heat_split import split_as_solved
-from rigdesign.results.flank_rating import FlankRating
+from rigdesign.results.teeth import FlankRating
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import OilFeed, gear_feed
 

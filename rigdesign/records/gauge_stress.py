@@ -14,7 +14,7 @@ from dynamics.flank.field import Flank
 from dynamics.gear.normal_arc import normal_arc
 from dynamics.gear.pair import GearPair
 from dynamics.influence.numbers import InfluenceNumbers
-from rigdesign.results.gauge_stress import GaugeStress
+from rigdesign.results.teeth import GaugeStress
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.gauge_curve import GaugeCurve, gauge_curve

@@ -12,7 +12,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.run_torques import place_of, shear_stress
-from rigdesign.results.section_torques import HeldTorque, TorquePlace, TorqueSwing
+from rigdesign.results.vibration import HeldTorque, TorquePlace, TorqueSwing
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

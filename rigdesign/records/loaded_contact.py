@@ -24,7 +24,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.state import LEAST_TORQUE
 from rigdesign.records.contact_gap import HeldFlanks, held_flanks
 from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
-from rigdesign.results.loaded_contact import LoadedContact
+from rigdesign.results.teeth import LoadedContact
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import ToothInfluence
 from thermal.fe.kept_results import kept

@@ -14,10 +14,8 @@ from rigdesign.records.loop_modes import modes_at
 from rigdesign.records.loop_states import dwell_speeds, state_at
 from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
 from rigdesign.records.torques_over_speed import AROUND, LoopOverSpeed, is_around, torques_over_speed
-from rigdesign.results.campbell import CampbellCrossing
-from rigdesign.results.dwell import AvoidedResonance, NearResonance
 from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.section_torques import TorqueOverSpeed
+from rigdesign.results.vibration import AvoidedResonance, CampbellCrossing, NearResonance, TorqueOverSpeed
 from rigdesign.rig.model import Rig
 
 SHAFT_SHARE = 0.5

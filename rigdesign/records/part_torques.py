@@ -11,7 +11,7 @@ from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.records.run_torques import run_torques
 from rigdesign.results.events import EventPeak, EventRecord, PassingPeak
-from rigdesign.results.section_torques import HeldTorque, PlaceKind, TorquePlace
+from rigdesign.results.vibration import HeldTorque, PlaceKind, TorquePlace
 from rigdesign.rig.model import Rig
 
 

@@ -13,7 +13,7 @@ from dynamics.rating.mean_stress import PressFit, seat_pressure
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, seated_gear, shaft_material
-from rigdesign.results.press_fit import PressFitCapacity
+from rigdesign.results.seats import PressFitCapacity
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig
 

@@ -19,8 +19,8 @@ from rigdesign.records.start_torque import (
     first_speed,
     start_torque,
 )
-from rigdesign.results.dwell import AvoidedBand, NearResonance, RampStep
 from rigdesign.results.units import RPM
+from rigdesign.results.vibration import AvoidedBand, NearResonance, RampStep
 from rigdesign.rig.model import Rig
 
 

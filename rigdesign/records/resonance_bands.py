@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.results.dwell import AvoidedBand, AvoidedResonance, ResonanceKind
+from rigdesign.results.vibration import AvoidedBand, AvoidedResonance, ResonanceKind
 
 Array = NDArray[np.float64]
 USUAL_MARGIN = 0.1

@@ -13,7 +13,7 @@ from dynamics.rating.mean_stress import mean_stress_factor
 from dynamics.standards.iso6336_3_2006 import IDLER_RATIO
 from rigdesign.records.gear_loads import application_factor
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, mean_stress, sensitivity
-from rigdesign.results.tooth_history import ToothHistory
+from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig
 
 

@@ -20,8 +20,8 @@ from dynamics.rating.root_stress import RootInfluence, root_influence, root_stre
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.records.loaded_contact import ROOT
+from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE, StressSource
 from rigdesign.results.loads import RootStressPath
-from rigdesign.results.stress_source import FROM_FACTORS, FROM_INFLUENCE, StressSource
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.twist_rows import TorqueSection
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.time_run import schedule_of, stage_names
-from rigdesign.results.section_torques import RunTorque, TorquePlace
+from rigdesign.results.vibration import RunTorque, TorquePlace
 from rigdesign.rig.model import Rig
 
 Indices = NDArray[np.int64]

@@ -22,7 +22,7 @@ from rigdesign.records.torques_over_speed import (
     mesh_swing,
     torques_over_speed,
 )
-from rigdesign.results.section_torques import (
+from rigdesign.results.vibration import (
     HeldTorque,
     RunTorque,
     SectionTorqueRecord,

@@ -18,7 +18,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.results.spectra import HeldSpectrum, Waterfall
+from rigdesign.results.vibration import HeldSpectrum, Waterfall
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

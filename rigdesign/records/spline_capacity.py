@@ -15,7 +15,7 @@ from rigdesign.case.gear_seats import SplineToothing
 from rigdesign.records.part_torques import PartTorque
 from rigdesign.records.press_fits import grown_over_shaft
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, seated_gear, shaft_bore
-from rigdesign.results.spline_capacity import SplineStress, SplineStressKind
+from rigdesign.results.seats import SplineStress, SplineStressKind
 from rigdesign.rig.model import Rig
 
 

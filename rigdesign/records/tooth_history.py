@@ -22,8 +22,8 @@ from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.properties.materials import Material
 from rigdesign.records import root
 from rigdesign.records.gear_loads import application_factor
-from rigdesign.results.stress_source import FROM_FACTORS, FROM_INFLUENCE
-from rigdesign.results.tooth_history import ToothHistory
+from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE
+from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

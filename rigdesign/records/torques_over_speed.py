@@ -21,7 +21,7 @@ from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.held_torques import section_swings
 from rigdesign.records.loop_states import LoopState, dwell_speeds, nearest
-from rigdesign.results.section_torques import TorqueOverSpeed, TorquePlace, TorqueSwing
+from rigdesign.results.vibration import TorqueOverSpeed, TorquePlace, TorqueSwing
 from rigdesign.rig.model import Rig
 
 ROUNDS = 5

@@ -11,9 +11,7 @@ from rigdesign.records.loop_states import loop_states
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.start_torque import StartResponse, start_response
-from rigdesign.results.campbell import CampbellRecord
-from rigdesign.results.dwell import DwellRecord
-from rigdesign.results.section_torques import SectionTorqueRecord
+from rigdesign.results.vibration import CampbellRecord, DwellRecord, SectionTorqueRecord
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from rigdesign.report.numbers import counted, limit_text, number_text, percent_text, value_text
 from rigdesign.report.views import applicable, sorted_checks
 from rigdesign.results.check import Check
-from rigdesign.results.dynamics import GearboxDynamics
+from rigdesign.results.dynamics import FROM_INFLUENCE, GearboxDynamics
 from rigdesign.results.result import RunResult
-from rigdesign.results.stress_source import FROM_INFLUENCE
 
 AGREEMENT = 1.15
 """Ratio of two root stresses up to which the methods agree."""

@@ -233,3 +233,14 @@ def _quantity_and_unit(key: str) -> tuple[str, str]:
     """Quantity and unit of a key of the alignment: ``bearing_tilt_mrad``, ``bore_out_of_round``."""
     quantity, _, unit = key.rpartition("_")
     return (quantity, unit) if unit in ("mrad", "um", "mm") else (key, "1")
+
+
+def lateral_curves(lateral: Mapping[str, Any] | None) -> dict[str, Columns]:
+    """Orbit of every bearing over speed, by header; nothing for shafts that only twist."""
+    if lateral is None:
+        return {}
+    curve = lateral["curve"]
+    columns: Columns = {"speed [rpm]": curve["speed_rpm"]}
+    for bearing in curve["bearings"]:
+        columns[f"orbit {bearing['bearing']} [um]"] = bearing["orbit_um"]
+    return {"whirl": columns}

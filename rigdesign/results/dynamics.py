@@ -1,12 +1,14 @@
 """Dynamic results of a run, as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    pass
+from typing import Any, Literal
 
 from rigdesign.results.check import Role
+
+StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
+FROM_INFLUENCE: StressSource = "finite-element influence numbers"
+FROM_FACTORS: StressSource = "ISO 6336-3 form and stress correction factors"
+"""Where the root stress per tooth force comes from."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ from typing import Literal
 from dynamics.drivetrain.bracing import BracingDrift
 from dynamics.drivetrain.modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
-from rigdesign.results.stress_source import FROM_FACTORS, StressSource
-from rigdesign.results.tooth_history import ToothHistory
+from rigdesign.results.dynamics import FROM_FACTORS, StressSource
+from rigdesign.results.teeth import ToothHistory
 
 
 @dataclass(frozen=True, kw_only=True)

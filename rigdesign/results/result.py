@@ -12,10 +12,9 @@ from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.inputs import InputRow
 from rigdesign.results.check import STATUSES, Checks, Status
-from rigdesign.results.curves import Columns, curves_of
+from rigdesign.results.curves import Columns, curves_of, lateral_curves
 from rigdesign.results.dynamics import DynamicsResult
 from rigdesign.results.flips import Flip, FlipSearch
-from rigdesign.results.lateral_curves import lateral_curves
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.thermal import ExpansionResult, LossRow, OilRow, TemperatureField, ThermalResult
 from rigdesign.results.transient import TransientResult

@@ -28,8 +28,8 @@ from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.contact_in_loop import LoopedContact
 from rigdesign.results.result import DiscretisationRow
+from rigdesign.results.teeth import LoopedContact
 from rigdesign.rig.model import Rig
 from rigdesign.rig.resolution import Coarsening
 

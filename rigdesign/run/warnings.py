@@ -23,8 +23,8 @@ from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
 from rigdesign.results.check import Check
-from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import Finding
+from rigdesign.results.teeth import ContactInLoop
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil

@@ -18,8 +18,8 @@ from rigdesign import load_case
 from rigdesign.reanalysis.flips import with_flips
 from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.contact_in_loop import ContactInLoop
 from rigdesign.results.result import RunResult
+from rigdesign.results.teeth import ContactInLoop
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 from thermal.fe.kernel_cache import cache_folder

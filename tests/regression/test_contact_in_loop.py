@@ -2,7 +2,7 @@
 
 import pytest
 
-from rigdesign.results.contact_in_loop import LoopedContact
+from rigdesign.results.teeth import LoopedContact
 from tests.builders.shared_runs import shipped
 
 pytestmark = pytest.mark.whole_run

@@ -9,7 +9,7 @@ import numpy as np
 from rigdesign.report.figures.drawing import finish, new_figure, words
 from rigdesign.report.numbers import NARROW_SPACE
 from rigdesign.report.palette import INK, MUTED, SERIES
-from rigdesign.results.campbell import sense_of_whirl
+from rigdesign.results.vibration import sense_of_whirl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

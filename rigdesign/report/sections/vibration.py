@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
-from rigdesign.results.campbell import sense_of_whirl
 from rigdesign.results.result import RunResult
+from rigdesign.results.vibration import sense_of_whirl
 
 if TYPE_CHECKING:
     from markupsafe import Markup

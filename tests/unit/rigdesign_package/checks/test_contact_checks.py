@@ -17,8 +17,8 @@ from rigdesign.checks import contact
 from rigdesign.checks.registry import RuleFamily
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.loaded_contact import LoadedContact
 from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.teeth import LoadedContact
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.loaded_mesh import influence_of
 from tests.builders.loads import mesh_loads

@@ -17,7 +17,7 @@ from rigdesign.records.gear_loads import rated_cycles, rated_loads
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.rows.flank_rating import flank_rating_row
+from rigdesign.results.rows.teeth import flank_rating_row
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.loads import mesh_loads
 from tests.builders.paths import CASES

@@ -14,7 +14,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.report.sections.vibration import least_safe
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventPeak, EventRecord
-from rigdesign.results.rows.press_fit import press_fit_row
+from rigdesign.results.rows.seats import press_fit_row
 from rigdesign.rig.model import build_rig
 from tests.builders.checks import check as check_of
 from tests.builders.made_run import made_ramp, made_run

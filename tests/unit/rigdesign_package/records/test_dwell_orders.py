@@ -5,8 +5,7 @@ from typing import Any
 
 from rigdesign.records.dwell_speeds import _orders
 from rigdesign.records.near_dwell import Bounds, NearDwell
-from rigdesign.results.campbell import CampbellCrossing
-from rigdesign.results.dwell import AvoidedResonance
+from rigdesign.results.vibration import AvoidedResonance, CampbellCrossing
 
 
 def order(speed: float, mode: str) -> AvoidedResonance:

@@ -16,9 +16,9 @@ from rigdesign.records.gear_loads import COMPUTED, STATED, rated_loads
 from rigdesign.records.loaded_contact import held_contact, loaded_contact
 from rigdesign.records.tooth_history import tooth_histories
 from rigdesign.report.figures.tooth_contact import tooth_contact_figure
-from rigdesign.results.loaded_contact import LoadedContact
-from rigdesign.results.rows.loaded_contact import loaded_contact_row
-from rigdesign.results.stress_source import FROM_FACTORS, FROM_INFLUENCE
+from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE
+from rigdesign.results.rows.teeth import loaded_contact_row
+from rigdesign.results.teeth import LoadedContact
 from rigdesign.rig import tooth_influence
 from rigdesign.rig.influence_store import InfluenceStore
 from rigdesign.rig.model import Rig

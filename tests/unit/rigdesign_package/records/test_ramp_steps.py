@@ -16,7 +16,7 @@ from rigdesign.records.ramp_steps import RampLimits, ramp_steps
 from rigdesign.records.resonance_bands import bands, safe_windows
 from rigdesign.records.speed_limits import SpeedLimit, speed_limit
 from rigdesign.records.start_torque import StagePeak, StartResponse, first_speed, start_torque, worst_start
-from rigdesign.results.dwell import AvoidedResonance, RampStep
+from rigdesign.results.vibration import AvoidedResonance, RampStep
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 

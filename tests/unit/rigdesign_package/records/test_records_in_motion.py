@@ -15,9 +15,8 @@ from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.near_dwell import near_dwells
 from rigdesign.records.spectra import held_spectra, waterfalls
 from rigdesign.records.vibration import loop_vibration
-from rigdesign.results.dwell import DwellRecord
-from rigdesign.results.dynamic_root import DynamicRootCurve, DynamicRootRecord
-from rigdesign.results.spectra import Waterfall
+from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord
+from rigdesign.results.vibration import DwellRecord, Waterfall
 from tests.builders.solved_loop import solved
 
 TEETH, TEST_SPEED, SLOW_SPEED = 28, 3500.0 * math.pi / 30.0, 120.0 * math.pi / 30.0

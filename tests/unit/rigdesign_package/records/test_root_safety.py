@@ -16,9 +16,9 @@ from rigdesign.checks import strength
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.tooth_history import GearInMesh, mean_stress, sensitivity
+from rigdesign.results.dynamics import FROM_FACTORS, StressSource
 from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.stress_source import FROM_FACTORS, StressSource
-from rigdesign.results.tooth_history import ToothHistory
+from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.loads import mesh_loads
 from tests.builders.paths import CASES

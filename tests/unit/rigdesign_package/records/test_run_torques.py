@@ -10,8 +10,8 @@ from dynamics.drivetrain.twist_rows import TorqueSection
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.run_torques import run_torques
-from rigdesign.results.rows.section_torques import section_torque_rows
-from rigdesign.results.section_torques import SectionTorqueRecord
+from rigdesign.results.rows.vibration import section_torque_rows
+from rigdesign.results.vibration import SectionTorqueRecord
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.made_run import made_ramp
 from tests.builders.paths import CASES

@@ -13,7 +13,7 @@ from rigdesign.records.curves import Curves, curve_at
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.section_torques import chosen, section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.section_torques import SectionTorqueRecord
+from rigdesign.results.vibration import SectionTorqueRecord
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.warm_prototype import base
 

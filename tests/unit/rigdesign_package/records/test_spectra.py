@@ -5,7 +5,7 @@ import pytest
 
 from rigdesign.records.campbell import _meetings
 from rigdesign.records.spectra import _blocks, _pooled, order_spectrum, spectrum
-from rigdesign.results.campbell import CampbellMode, sense_of_whirl
+from rigdesign.results.vibration import CampbellMode, sense_of_whirl
 
 RATE = 40e3
 

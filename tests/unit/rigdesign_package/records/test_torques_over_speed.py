@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign.records import torques_over_speed as module
 from rigdesign.records.torques_over_speed import torques_over_speed
-from rigdesign.results.section_torques import TorquePlace, TorqueSwing
+from rigdesign.results.vibration import TorquePlace, TorqueSwing
 
 SHAFT, BROAD = TorquePlace(kind="shaft", part="a", start=0.0, end=0.1), TorquePlace(kind="coupling", part="b")
 AT, HALF_WIDTH, TALL = 1103.3, 11.0, 300.0

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from rigdesign.results.contact_in_loop import ContactInLoop, LoopedContact
+from rigdesign.results.teeth import ContactInLoop, LoopedContact
 from rigdesign.run import load_convergence
 from rigdesign.run.warnings import _contact_in_loop
 

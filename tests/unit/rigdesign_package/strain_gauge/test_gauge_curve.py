@@ -6,8 +6,8 @@ import pytest
 from dynamics.contact.root_course import RootCourse
 from rigdesign.base.errors import CaseError
 from rigdesign.report.figures.strain_gauges import strain_gauge_figure
-from rigdesign.results.gauge_stress import GaugeStress
-from rigdesign.results.rows.gauge_stress import gauge_stress_row
+from rigdesign.results.rows.teeth import gauge_stress_row
+from rigdesign.results.teeth import GaugeStress
 from rigdesign.strain_gauge.gauge_curve import gauge_curve
 from rigdesign.strain_gauge.placement import GaugePlacement, grid_average
 from tests.builders.strain_gauge import measuring_point

@@ -1,8 +1,8 @@
-"""Press fits as rows of the result."""
+"""Press fits and splines as rows of the result."""
 
 from typing import Any
 
-from rigdesign.results.press_fit import PressFitCapacity
+from rigdesign.results.seats import PressFitCapacity, SplineStress
 from rigdesign.results.units import MPA, UM, ZERO
 
 
@@ -21,5 +21,18 @@ def press_fit_row(found: PressFitCapacity) -> dict[str, Any]:
         "friction": found.friction,
         "slip_torque_Nm": found.slip_torque,
         "peak_torque_Nm": found.peak_torque,
+        "safety": found.safety,
+    }
+
+
+def spline_stress_row(found: SplineStress) -> dict[str, Any]:
+    """Torque, stress and what is allowed."""
+    return {
+        "gear": found.gear,
+        "where": found.where,
+        "kind": found.kind,
+        "torque_Nm": found.torque,
+        "stress_MPa": MPA * found.stress,
+        "allowable_MPa": MPA * found.allowable,
         "safety": found.safety,
     }

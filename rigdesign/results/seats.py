@@ -1,6 +1,7 @@
-"""Torque that the press fit of a gear carries, hot and at speed: SI record."""
+"""Press fit and spline of a gear at the largest torque of a stage or event: SI records."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,3 +36,28 @@ class PressFitCapacity:
     def safety(self) -> float | None:
         """Slip torque over peak torque [-]; None without torque."""
         return self.slip_torque / self.peak_torque if self.peak_torque > 0.0 else None
+
+
+SplineStressKind = Literal["flank pressure", "shear of the teeth", "shear of the shaft", "tension of the hub"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SplineStress:
+    """One stress of one spline."""
+
+    gear: str
+    """``gearbox.gear``"""
+    kind: SplineStressKind
+    where: str
+    """Stage or event of the torque, in words."""
+    torque: float
+    """[N m]"""
+    stress: float
+    """[Pa]"""
+    allowable: float
+    """As the case states it [Pa]."""
+
+    @property
+    def safety(self) -> float | None:
+        """Allowable over stress [-]; None without stress."""
+        return self.allowable / self.stress if self.stress > 0.0 else None
