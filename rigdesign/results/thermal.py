@@ -1,15 +1,12 @@
 """Losses, oil, temperatures and thermal expansion of a run, as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermal.fe.mesh import NamedMesh
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,22 +1,28 @@
 """Sections of the report in the order an engineer reads them; the page and its contents follow from this list."""
 
-from rigdesign.report.sections.assumptions import ALL_ASSUMPTIONS, ASSUMPTIONS, OVERRIDES
-from rigdesign.report.sections.checks import CHECK_BASIS, CHECKS, DRIVERS
-from rigdesign.report.sections.clearances import CLEARANCE_DETAILS, CLEARANCES
-from rigdesign.report.sections.decision import DECISION
-from rigdesign.report.sections.events import EVENTS
-from rigdesign.report.sections.ground import HAND_CHECKS, NOT_MODELLED, PROVENANCE, WARNINGS
-from rigdesign.report.sections.inputs import DRIVETRAIN_INPUTS, INPUTS
-from rigdesign.report.sections.lateral import LATERAL
+from rigdesign.report.sections.checks import CHECK_BASIS, CHECKS, DECISION, DRIVERS, RANGE_DETAILS, RANGES
+from rigdesign.report.sections.inputs import (
+    ALL_ASSUMPTIONS,
+    ASSUMPTIONS,
+    DRIVETRAIN_INPUTS,
+    HAND_CHECKS,
+    INPUTS,
+    NOT_MODELLED,
+    OVERRIDES,
+    PROVENANCE,
+    WARNINGS,
+)
 from rigdesign.report.sections.loads import LOAD_DETAILS, LOADS
-from rigdesign.report.sections.losses import LOSS_DETAILS, LOSSES
-from rigdesign.report.sections.oil_circuits import OIL_CIRCUITS
-from rigdesign.report.sections.ranges import RANGE_DETAILS, RANGES
-from rigdesign.report.sections.rig_heat import RIG_HEAT
-from rigdesign.report.sections.rolling_bearings import ROLLING_BEARINGS
+from rigdesign.report.sections.losses import LOSS_DETAILS, LOSSES, OIL_CIRCUITS, RIG_HEAT
 from rigdesign.report.sections.section import ReportSection
-from rigdesign.report.sections.temperatures import TEMPERATURE_DETAILS, TEMPERATURES
-from rigdesign.report.sections.transient import TRANSIENT
+from rigdesign.report.sections.shafts import LATERAL, ROLLING_BEARINGS
+from rigdesign.report.sections.temperatures import (
+    CLEARANCE_DETAILS,
+    CLEARANCES,
+    TEMPERATURE_DETAILS,
+    TEMPERATURES,
+)
+from rigdesign.report.sections.transient import EVENTS, TRANSIENT
 from rigdesign.report.sections.vibration import VIBRATION, VIBRATION_DETAILS
 from rigdesign.report.sections.viewer import VIEWER
 

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rigdesign.report.sections.gearbox_styles import gearbox_styles
-from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
 from rigdesign.results.dynamics import GearboxDynamics
 from rigdesign.results.result import RunResult
 
@@ -15,8 +14,7 @@ if TYPE_CHECKING:
 def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
     from rigdesign.report.figures.ramp import ramp_figure
-    from rigdesign.report.figures.strain_gauges import label
-    from rigdesign.report.figures.tooth_history import tooth_history_figure
+    from rigdesign.report.figures.teeth import label, tooth_history_figure
 
     shown: Values = {
         "ramp_figure": None,
@@ -75,7 +73,7 @@ def _root_stress(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[s
 
 
 def _contact(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, Markup]":
-    from rigdesign.report.figures.tooth_contact import tooth_contact_figure
+    from rigdesign.report.figures.teeth import tooth_contact_figure
 
     assert result.dynamics is not None
     found = {name: result.dynamics.gearboxes[name].loaded_contact for name in names}
@@ -91,7 +89,7 @@ def _contact(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, 
 
 def _gauges(result: RunResult, draw: Draw) -> "dict[str, Markup]":
     """Stress at the strain gauges of every gearbox that has some and whose contact is known."""
-    from rigdesign.report.figures.strain_gauges import strain_gauge_figure
+    from rigdesign.report.figures.teeth import strain_gauge_figure
 
     assert result.dynamics is not None
     found = {name: gearbox.loaded_contact for name, gearbox in result.dynamics.gearboxes.items()}

@@ -1,14 +1,16 @@
-"""What a section of the report is."""
+"""What a section of the report is, and one style a gearbox in all of its figures."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+from rigdesign.report.palette import CurveStyle, gearbox_colours
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
+
 
 Draw = Callable[["Figure", str], "Markup"]
 """Figure and its description for those who cannot see it -> SVG for the page."""
@@ -44,3 +46,11 @@ class ReportSection:
     applies: Callable[[RunResult], bool] = _always
     place: Place = "body"
     within: str = ""
+
+
+def gearbox_styles(result: RunResult) -> dict[str, CurveStyle]:
+    """Style of every gearbox of the rig, whichever of them a figure shows."""
+    turning = result.dynamics.gearboxes if result.dynamics is not None else {}
+    heated = [item.gearbox for item in result.thermal]
+    expanded = [item.gearbox for item in result.expansion]
+    return gearbox_colours([*turning, *heated, *expanded])

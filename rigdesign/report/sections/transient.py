@@ -1,7 +1,6 @@
-"""Thermal histories over the schedule and its events: figures by history, worst moments, settling times."""
+"""Over time: thermal histories of the schedule and its events, loads in events."""
 
-from rigdesign.report.sections.gearbox_styles import gearbox_styles
-from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
 from rigdesign.results.result import RunResult
 
 
@@ -41,3 +40,23 @@ TRANSIENT = ReportSection(
     applies=_computed,
     place="appendix",
 )
+
+
+def _events(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures.transient import event_figure
+
+    return {
+        "event_figures": {
+            event["name"]: draw(
+                event_figure(event), f"Torque in couplings and meshes over the event {event['name']}"
+            )
+            for event in result.events
+            if event["curves"]["time_s"]
+        }
+    }
+
+
+EVENTS = ReportSection(
+    id="events", title="Events", template="events.html.j2", values=_events,
+    applies=lambda result: bool(result.events),
+)  # fmt: skip

@@ -3,8 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.report.sections.gearbox_styles import gearbox_styles
-from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
 from rigdesign.results.result import RunResult
 from rigdesign.results.vibration import sense_of_whirl
 
@@ -19,10 +18,8 @@ def held_speeds(result: RunResult) -> dict[str, float]:
 
 
 def _vibration(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.figures.campbell import campbell_diagram
-    from rigdesign.report.figures.dwell import dwell_figure
-    from rigdesign.report.figures.dynamic_root import place
-    from rigdesign.report.figures.section_torques import section_torque_figure
+    from rigdesign.report.figures.teeth import place
+    from rigdesign.report.figures.vibration import campbell_diagram, dwell_figure, section_torque_figure
 
     dynamics = result.dynamics
     assert dynamics is not None and dynamics.campbell is not None
@@ -77,8 +74,8 @@ def _span(values: list[float | None]) -> tuple[float, float]:
 
 def _in_motion(result: RunResult, draw: Draw) -> Values:
     """Figures of spectra and contact."""
-    from rigdesign.report.figures.contact_in_motion import pair_share_figure
     from rigdesign.report.figures.spectra import spectrum_figure, waterfall_figure
+    from rigdesign.report.figures.teeth import pair_share_figure
 
     dynamics = result.dynamics
     assert dynamics is not None
@@ -112,7 +109,7 @@ def _in_motion(result: RunResult, draw: Draw) -> Values:
 
 def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
     """Figure of every gearbox: its gauges where it has some, else the most stressed points."""
-    from rigdesign.report.figures.dynamic_root import dynamic_root_figure
+    from rigdesign.report.figures.teeth import dynamic_root_figure
 
     found = {}
     for gearbox in dict.fromkeys(curve["gearbox"] for curve in curves):

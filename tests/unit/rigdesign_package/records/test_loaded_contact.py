@@ -15,7 +15,7 @@ from rigdesign.records import root
 from rigdesign.records.gear_loads import COMPUTED, STATED, rated_loads
 from rigdesign.records.loaded_contact import held_contact, loaded_contact
 from rigdesign.records.tooth_history import tooth_histories
-from rigdesign.report.figures.tooth_contact import tooth_contact_figure
+from rigdesign.report.figures.teeth import tooth_contact_figure
 from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.rows.teeth import loaded_contact_row
 from rigdesign.results.teeth import LoadedContact

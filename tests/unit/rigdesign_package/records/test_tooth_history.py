@@ -17,7 +17,7 @@ from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records import reversed_bending, root, tooth_history
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, tooth_histories
-from rigdesign.report.figures.tooth_history import tooth_history_figure
+from rigdesign.report.figures.teeth import tooth_history_figure
 from rigdesign.results.rows.teeth import tooth_history_row
 from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig, build_rig

@@ -13,7 +13,7 @@ from rigdesign.report.figures.ramp import ramp_figure
 from rigdesign.report.figures.seals import seal_gap_figure
 from rigdesign.report.numbers import NARROW_SPACE, unit_text
 from rigdesign.report.palette import gearbox_colours
-from rigdesign.report.sections.gearbox_styles import gearbox_styles
+from rigdesign.report.sections.section import gearbox_styles
 from tests.builders.report import make_result, thermal_and_expansion
 
 NOISE = re.compile(r"\d\.\d{5,}|\d{6,}\.\d|[0-9]e[-+]?\d")

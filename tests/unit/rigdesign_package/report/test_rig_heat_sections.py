@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from rigdesign.report.figures.rig_heat import rig_heat_figure
+from rigdesign.report.figures.heat import rig_heat_figure
 from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.rig_heat import HeatSource, RigHeat

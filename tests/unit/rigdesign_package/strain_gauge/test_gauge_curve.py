@@ -5,7 +5,7 @@ import pytest
 
 from dynamics.contact.root_course import RootCourse
 from rigdesign.base.errors import CaseError
-from rigdesign.report.figures.strain_gauges import strain_gauge_figure
+from rigdesign.report.figures.teeth import strain_gauge_figure
 from rigdesign.results.rows.teeth import gauge_stress_row
 from rigdesign.results.teeth import GaugeStress
 from rigdesign.strain_gauge.gauge_curve import gauge_curve

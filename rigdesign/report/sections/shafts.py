@@ -1,4 +1,4 @@
-"""Lateral vibration: modes with decrement and amplification, orbits in bearings and seals, whirl over speed."""
+"""Shafts and their bearings: lateral vibration; loads, friction, temperatures and life of rolling bearings."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ LEAST_MODES = 6
 
 
 def _values(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.figures.lateral import whirl_figure
+    from rigdesign.report.figures.vibration import whirl_figure
 
     lateral = result.lateral
     assert lateral is not None
@@ -76,4 +76,31 @@ def _modes(stage: dict[str, Any]) -> list[dict[str, Any]]:
 LATERAL = ReportSection(
     id="lateral", title="Lateral vibration", template="lateral.html.j2", values=_values,
     applies=lambda result: result.lateral is not None,
+)  # fmt: skip
+
+
+LOADS = (
+    "bearing", "stage", "designation", "radial_load_N", "axial_load_N", "minimum_load_N", "speed_rpm",
+    "speed_utilisation", "static_safety", "basic_life_h", "modified_life_h", "viscosity_ratio",
+)  # fmt: skip
+FRICTION = (
+    "bearing", "stage", "rolling_torque_Nm", "sliding_torque_Nm", "seal_torque_Nm", "drag_torque_Nm", "friction_W",
+    "heat_to_shaft_W", "heat_to_housing_W",
+)  # fmt: skip
+WARM = (
+    "bearing", "stage", "temperature_degC", "inner_ring_degC", "outer_ring_degC", "operating_clearance_um",
+    "radial_stiffness_N_um", "axial_stiffness_N_um", "tilting_stiffness_kNm_rad",
+)  # fmt: skip
+
+
+def _tables(result: RunResult, draw: Draw) -> Values:
+    return {
+        name: [{key: row[key] for key in keys} for row in result.rolling_bearings]
+        for name, keys in (("loads", LOADS), ("friction", FRICTION), ("warm", WARM))
+    }
+
+
+ROLLING_BEARINGS = ReportSection(
+    id="rolling_bearings", title="Rolling bearings", template="rolling_bearings.html.j2", values=_tables,
+    applies=lambda result: bool(result.rolling_bearings),
 )  # fmt: skip

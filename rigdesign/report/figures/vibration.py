@@ -1,4 +1,4 @@
-"""Campbell diagram of the closed loop: modes over speed, excitation orders, crossings."""
+"""Vibration over speed: Campbell diagram, speeds to avoid, torque by section, whirl of the shafts."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import finish, new_figure, words
-from rigdesign.report.numbers import NARROW_SPACE
-from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, stated_quantity, words
+from rigdesign.report.numbers import NARROW_SPACE, unit_text
+from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS, curve_style
 from rigdesign.results.vibration import sense_of_whirl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
 
 ORDER_STYLES: Mapping[str, dict[str, Any]] = {
     "mesh": {"color": SERIES[0], "linestyle": "-"},
@@ -168,3 +169,147 @@ def _some(value: float, position: float = 0.0) -> str:
     """Label of minor ticks: 2 and 5 of each decade."""
     lead = value / 10.0 ** np.floor(np.log10(value) + 1e-9)
     return _whole(value) if round(lead, 6) in (2.0, 5.0) else ""
+
+
+BAND_KINDS = {
+    "dynamic_factor": "dynamic part of the mesh torque, highest of the meshes",
+    "root_stress": "root stress, dynamic / quasi-static \N{MINUS SIGN} 1",
+    "shaft_torque": "half peak-to-peak torque of shafts and joints",
+}
+
+
+def dwell_figure(dwell: Mapping[str, Any]) -> "Figure":
+    """Highest share of every kind; grey where the rig should not dwell."""
+    figure = new_figure(2.9)
+    axes = figure.subplots()
+    high = dwell["highest"]
+    for number, (key, label) in enumerate(BAND_KINDS.items()):
+        if key in high:
+            axes.plot(high["speed_rpm"], high[key], **curve_style(number).drawn, linewidth=1.0, label=label)
+    for number, band in enumerate(dwell["bands"]):
+        axes.axvspan(
+            band["low_rpm"], min(band["high_rpm"], dwell["high_rpm"]), color="#e3e7eb", linewidth=0, zorder=0,
+            label="band to avoid" if number == 0 else None,
+        )  # fmt: skip
+    for number, limit in enumerate(dict.fromkeys((dwell["share_limit"], dwell["shaft_share_limit"]))):
+        axes.axhline(
+            limit, color=INK, linewidth=0.7, linestyle=(0, (6.0, 2.0)),
+            label=None if number else "from which a peak counts: meshes, shafts",
+        )  # fmt: skip
+    for stage in dwell["stages"]:
+        if stage["kind"] == "dwell":
+            colour = VERDICT_COLOURS["fail" if stage["band"] else "pass"]
+            axes.axvline(stage["speed_rpm"], color=colour, linewidth=1.1)
+            axes.annotate(
+                words(stage["stage"]), (stage["speed_rpm"], 1.0), xycoords=("data", "axes fraction"),
+                textcoords="offset points", xytext=(0, 3), ha="center", fontsize=8, color=colour,
+            )  # fmt: skip
+    axes.set_xlim(0, dwell["high_rpm"])
+    axes.set_ylim(bottom=0)
+    axes.tick_params(colors=MUTED)
+    finish(axes, "pinion speed n [rpm]", "dynamic share [–]")
+    legend_right(axes)
+    figure.subplots_adjust(left=0.075, right=0.65, top=0.92, bottom=0.16)
+    return figure
+
+
+PART_KINDS = {"mesh": "mesh", "coupling": "coupling", "spline": "seat of", "motor": "joint of the"}
+"""Words in front of the name of a joint."""
+
+
+def section_torque_figure(over_speed: Mapping[str, Any], held: Mapping[str, float]) -> "Figure":
+    """Half the peak-to-peak torque: meshes and joints above, the highest section of every shaft below.
+
+    held : pinion speed of every held stage [rpm]
+    """
+    joints = [place for place in over_speed["places"] if place["kind"] != "shaft"]
+    joints.sort(key=lambda place: list(PART_KINDS).index(place["kind"]))
+    shafts = highest_sections(over_speed["places"])
+    figure = new_figure(5.2)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    torque = stated_quantity(over_speed["torque"])
+    for axes, places, title in (
+        (upper, joints, f"Meshes, couplings and gear seats, torque of the curve {torque}"),
+        (lower, shafts, "Shafts, the section with the highest peak"),
+    ):
+        for number, place in enumerate(places):
+            axes.plot(
+                over_speed["speed_rpm"], place["half_peak_to_peak_Nm"], **curve_style(number).drawn,
+                linewidth=1.0, label=_label(place),
+            )  # fmt: skip
+        _held_lines(axes, held)
+        axes.set_xlim(0, 1.02 * over_speed["speed_rpm"][-1])
+        axes.set_ylim(bottom=0)
+        finish(axes, "", f"half peak-to-peak torque\n[{unit_text('Nm')}]", title)
+        legend_right(axes)
+    lower.set_xlabel("pinion speed n [rpm]")
+    figure.subplots_adjust(left=0.085, right=0.72, top=0.945, bottom=0.095, hspace=0.2)
+    return figure
+
+
+def highest_sections(places: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Of every shaft the section with the highest half peak-to-peak torque over speed."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for place in places:
+        if place["kind"] == "shaft":
+            before = found.get(place["part"])
+            if before is None or max(place["half_peak_to_peak_Nm"]) > max(before["half_peak_to_peak_Nm"]):
+                found[place["part"]] = place
+    return list(found.values())
+
+
+def _label(place: Mapping[str, Any]) -> str:
+    kind = place["kind"]
+    return words(place["place"] if kind == "shaft" else f"{PART_KINDS[kind]} {place['part']}")
+
+
+def _held_lines(axes: "Axes", held: Mapping[str, float]) -> None:
+    for speed in held.values():
+        axes.axvline(speed, color=MUTED, linewidth=0.9, linestyle=(0, (7.0, 1.6, 1.4, 1.6)))
+
+
+def whirl_figure(lateral: Mapping[str, Any], limit: float | None) -> "Figure":
+    """Orbit (larger half axis, all shaft lines) of every bearing over speed [um], a plot for each gearbox.
+
+    limit : most peak-to-peak motion over the diametral clearance
+    """
+    curve = lateral["curve"]
+    boxes: dict[str, list[Mapping[str, Any]]] = {}
+    for bearing in curve["bearings"]:
+        boxes.setdefault(bearing["bearing"].split(".")[0], []).append(bearing)
+    height = 0.5 + 2.4 * len(boxes)
+    figure = new_figure(height)
+    held = sorted({stage["speed_rpm"] for stage in lateral["stages"]})
+    for axes, (box, bearings) in zip(
+        figure.subplots(len(boxes), 1, squeeze=False)[:, 0], boxes.items(), strict=True
+    ):
+        _orbits(axes, curve["speed_rpm"], bearings)
+        _limit(axes, bearings, limit)
+        for speed in held:
+            axes.axvline(speed, color=MUTED, linewidth=0.8, linestyle=":")
+        finish(axes, "speed where the case counts it, n [rpm]", "orbit, 0-peak [µm]", f"Gearbox {words(box)}")
+        axes.set_xlim(0.0, curve["speed_rpm"][-1])
+        legend_right(axes)
+    figure.subplots_adjust(left=0.085, right=0.74, top=1 - 0.32 / height, bottom=0.47 / height, hspace=0.45)
+    return figure
+
+
+def _orbits(axes: "Axes", speeds: list[float], bearings: list[Mapping[str, Any]]) -> None:
+    axes.set_yscale("log")
+    for number, bearing in enumerate(bearings):
+        name = words(bearing["bearing"].split(".", 1)[1])
+        axes.plot(speeds, bearing["orbit_um"], **curve_style(number).drawn, label=name)
+
+
+def _limit(axes: "Axes", bearings: list[Mapping[str, Any]], limit: float | None) -> None:
+    """Half of the least clearance of a film, and what of it may be used."""
+    clearances = [bearing["clearance_um"] for bearing in bearings if bearing["clearance_um"]]
+    if not clearances:
+        return
+    radial = 0.5 * min(clearances)
+    axes.axhline(radial, color=VERDICT_COLOURS["fail"], linewidth=1.2, label="least radial clearance")
+    if limit is not None:
+        axes.axhline(
+            limit * radial, color=VERDICT_COLOURS["fail"], linewidth=1.0, linestyle="--",
+            label=f"{100.0 * limit:.0f} % of it, limit",
+        )  # fmt: skip
