@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from dynamics.elastic_rig.damped_modes import DampedModes, damped_modes, mode_character
 from dynamics.elastic_rig.freedoms import FAMILIES
-from dynamics.elastic_rig.orbits import Orbit, orbit
 from dynamics.elastic_rig.reduction import ReducedElasticRig
 from dynamics.elastic_rig.rotating_loads import line_loads
 from dynamics.elastic_rig.rotating_parts import SpeedPower
@@ -18,10 +17,32 @@ from dynamics.elastic_rig.running_state import RunningState
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
 AT_REST = 0.01
 """Share of the speed of the reference shaft below which a pole is no oscillation: a shaft that moves freely in the play
 of unloaded bearings, whose linear stiffness is zero."""
+LineLoads = Mapping[tuple[str, SpeedPower], Complex]
+"""Loads once a turn (n,) on the reduced coordinates, by line and power of its speed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Orbit:
+    """Ellipse of a lateral motion: half axes [m], the minor negative for backward whirl; angle of the major [rad]."""
+
+    major: float
+    minor: float
+    angle: float
+
+
+def orbit(across: complex, up: complex, sense: float = 1.0) -> Orbit:
+    """Ellipse of u_y = Re(across e^{iwt}), u_z = Re(up e^{iwt}) on a shaft that turns about ``sense`` x."""
+    forward = 0.5 * (across + 1j * sense * up)
+    backward = 0.5 * np.conj(across - 1j * sense * up)
+    angle = sense * 0.5 * (np.angle(forward) + np.angle(backward))
+    return Orbit(
+        major=float(abs(forward) + abs(backward)),
+        minor=float(abs(forward) - abs(backward)),
+        angle=float(angle),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,10 +121,6 @@ class LineWhirl:
     line: str
     frequency: float
     motion: Complex
-
-
-LineLoads = Mapping[tuple[str, SpeedPower], Complex]
-"""Loads once a turn (n,) on the reduced coordinates, by line and power of its speed."""
 
 
 def reduced_line_loads(rig: ReducedElasticRig) -> LineLoads:

@@ -15,18 +15,33 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from dynamics.drivetrain.loss_factor import SplineLoss, spline_losses
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.beam import DIRECTIONS
 from dynamics.elastic_rig.cross_joints import tilt_rows
 from dynamics.elastic_rig.real_modes import RealModes, real_modes
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
-from dynamics.elastic_rig.spline_losses import SplineDamper, spline_dampers
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
 DEPENDENT = 1e-6
 """Singular value, relative to the largest, below which a static shape is a combination of the others."""
+
+
+@dataclass(frozen=True)
+class SplineDamper:
+    """Damper on the twist row . q of a spline, row (n,); what it does is `SplineLoss`."""
+
+    row: Array
+    loss: SplineLoss
+
+
+def spline_dampers(model: ElasticModel) -> tuple[SplineDamper, ...]:
+    """Of every spline with a loss factor, rows on all freedoms of the model."""
+    return tuple(
+        SplineDamper(model.joint(loss.gear, "spline").row("turn"), loss)
+        for loss in spline_losses(model.rig.drivetrain)
+    )
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,100 @@ from pydantic import Field, model_validator
 
 from rigdesign.case.enclosures import EnclosureInput
 from rigdesign.case.faces import FaceSelection
-from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, Usual, fault
+from rigdesign.case.fields import (
+    Conductivity,
+    Gap,
+    HeatTransferCoefficient,
+    Length,
+    Name,
+    Offset,
+    Part,
+    Size,
+    Small,
+    Stress,
+    Text,
+    Usual,
+    fault,
+)
 from rigdesign.case.films import FilmFactor
 from rigdesign.case.housing_fluids import HousingLink, HousingStream, HousingVolume
-from rigdesign.case.joint import FootContact
-from rigdesign.case.mesh import HousingMesh
 from rigdesign.case.surface_conditions import Condition
+
+SMALLEST = 1e-3
+"""Least element size [m]; below it a gearbox has millions of nodes."""
+PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
+"""Keys of a housing with partitions: all of them or none."""
+
+
+class HousingMesh(Part):
+    """Element size by zone at standard fidelity; quick and reference keep their usual ratio to it.
+
+    A zone that is left out takes its size from that of the whole box. Bores and shafts are never divided into
+    fewer elements a turn than the fidelity asks for.
+    """
+
+    walls: Length | None = None
+    """Largest elements in the walls of the housing."""
+    field: Length | None = None
+    """Largest elements at the outer edges of the clamping field; under the foot the size of the walls holds."""
+    seals: Length | None = None
+    """Largest elements on bores and shafts of the seals."""
+    bearings: Length | None = None
+    """Largest elements on bearing bores, bosses and journals."""
+    gears: Length | None = None
+    """Largest elements on gears and their seats."""
+
+    @model_validator(mode="after")
+    def _feasible(self) -> "HousingMesh":
+        if small := [zone for zone, size in self.sizes().items() if size < SMALLEST]:
+            raise fault(
+                f"element size of {', '.join(small)} is below {1e3 * SMALLEST:g} mm",
+                "write a larger one; second-order elements need one layer in a wall",
+            )
+        return self
+
+    def sizes(self) -> dict[str, float]:
+        """Given sizes [m] by the zone's name in thermal.housing.solids.MeshSizes."""
+        zones = {"wall": self.walls, "field": self.field, "seal": self.seals, "bearing": self.bearings}
+        zones["gear"] = self.gears
+        return {zone: size for zone, size in zones.items() if size is not None}
+
+
+class PressedJoint(Part):
+    """Two rough metal faces under pressure (Cooper, Mikic, Yovanovich 1969)."""
+
+    pressure: Stress
+    """Mean contact pressure of the joint."""
+    roughness: Small
+    """Root of the sum of both squared rms roughnesses."""
+    slope: Annotated[float, Field(gt=0.0, le=1.0)]
+    """Root of the sum of both squared mean slopes of the asperities; 0.05 to 0.3 for machined faces."""
+    hardness: Stress
+    """Micro-hardness of the softer side."""
+    filling_conductivity: Conductivity | None = None
+    """Thermal conductivity of oil or grease between the faces; dry air when left out."""
+
+    @model_validator(mode="after")
+    def _rough(self) -> "PressedJoint":
+        if self.roughness == 0.0:
+            raise fault("roughness is zero", "write the rms roughness of both faces, e.g. 3 um")
+        return self
+
+
+class FootContact(Part):
+    """Foot and field as bodies that touch: a measured or assumed conductance, or the joint it follows from."""
+
+    conductance: HeatTransferCoefficient | None = None
+    """Heat flux per kelvin between foot and field."""
+    joint: PressedJoint | None = None
+    """Joint of two rough faces from which the conductance follows."""
+
+    @model_validator(mode="after")
+    def _one(self) -> "FootContact":
+        if (self.conductance is None) == (self.joint is None):
+            given = "neither" if self.conductance is None else "both"
+            raise fault(f"{given} of conductance and joint is given", "write one of the two")
+        return self
 
 
 class HousingShaft(Part):
@@ -45,10 +133,6 @@ class ClampingFieldInput(Part):
     """Height of the plate."""
     material: Name
     """Built-in material or a name under ``materials``."""
-
-
-PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
-"""Keys of a housing with partitions: all of them or none."""
 
 
 class Housing(Part):

@@ -12,8 +12,8 @@ from rigdesign.checks.rules import Comparison, hold, not_evaluated
 from rigdesign.checks.temperatures import WALLS
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.extremes import Extreme
 from rigdesign.results.rows.history import UNITS
+from rigdesign.results.transient import Extreme
 from rigdesign.results.units import HOUR, DisplayUnit
 from rigdesign.transient.warm_up import Soak
 

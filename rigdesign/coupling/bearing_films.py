@@ -11,7 +11,7 @@ from rigdesign.case.jets import injected_flow
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.bearing_seats import HOUSING, SHAFT, bearing_seats, seats_of
 from rigdesign.coupling.dip import splash_to_bearing
-from rigdesign.coupling.given_losses import given_power
+from rigdesign.coupling.point_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import OilFeed, bearing_feed

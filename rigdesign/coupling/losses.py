@@ -21,9 +21,9 @@ from rigdesign.coupling.bearing_heat import body_shares
 from rigdesign.coupling.braced_loop import first_torques
 from rigdesign.coupling.dip import churning
 from rigdesign.coupling.flank_heat import mesh_split
-from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.point_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed, gear_oil

@@ -19,9 +19,8 @@ from rigdesign.records.near_dwell import (
     root_shares,
     shaft_shares,
 )
-from rigdesign.records.ramp_steps import RampLimits, ramp_steps
+from rigdesign.records.ramp_steps import RampLimits, ramp_steps, speed_limit
 from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe, safe_windows
-from rigdesign.records.speed_limits import speed_limit
 from rigdesign.records.start_torque import StartResponse, start_torque, worst_start
 from rigdesign.records.torques_over_speed import is_around
 from rigdesign.results.loads import DynamicLoads

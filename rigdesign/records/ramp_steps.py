@@ -9,19 +9,21 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rigdesign.case.component_limits import shafts_of
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.resonance_bands import nearest_safe
-from rigdesign.records.speed_limits import SpeedLimit
-from rigdesign.records.start_torque import (
-    USUAL_SHARE,
-    StagePeak,
-    StartResponse,
-    first_speed,
-    start_torque,
-)
+from rigdesign.records.start_torque import USUAL_SHARE, StagePeak, StartResponse, first_speed, start_torque
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import AvoidedBand, NearResonance, RampStep
 from rigdesign.rig.model import Rig
+
+
+@dataclass(frozen=True)
+class SpeedLimit:
+    """Highest speed of the first pinion [rad/s], and the key that states it."""
+
+    speed: float
+    source: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,3 +255,17 @@ def _rpm(speed: float) -> str:
 
 def _span(band: AvoidedBand) -> str:
     return f"{band.low * RPM:.0f} to {band.high * RPM:.0f} rpm"
+
+
+def speed_limit(rig: Rig) -> SpeedLimit | None:
+    """The lowest of ``limits.bought_parts`` with quantity speed; None where the case states none."""
+    found = []
+    for name, part in rig.case.limits.bought_parts.items():
+        if part.quantity == "speed":
+            shafts = shafts_of(rig.case, part.part)
+            ratio = max((abs(rig.shaft_speed(shaft, 1.0)) for shaft in shafts), default=0.0)
+            if ratio > 0.0:
+                found.append(
+                    SpeedLimit(rig.pinion_speed(part.limit_si / ratio), f"limits.bought_parts.{name}")
+                )
+    return min(found, key=lambda one: one.speed, default=None)

@@ -19,13 +19,13 @@ from rigdesign.records.spline_capacity import spline_stresses
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
 from rigdesign.results.events import EventRecord
-from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow, MeshShift
 from rigdesign.results.seats import PressFitCapacity, SplineStress
 from rigdesign.results.teeth import ContactInLoop
+from rigdesign.results.transient import HistoryExtremes
 from rigdesign.results.vibration import HeldTorque
 from rigdesign.results.warm_gearbox import WarmGearbox
 from rigdesign.rig.model import Rig

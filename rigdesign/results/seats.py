@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
+SplineStressKind = Literal["flank pressure", "shear of the teeth", "shear of the shaft", "tension of the hub"]
+
 
 @dataclass(frozen=True, kw_only=True)
 class PressFitCapacity:
@@ -36,9 +38,6 @@ class PressFitCapacity:
     def safety(self) -> float | None:
         """Slip torque over peak torque [-]; None without torque."""
         return self.slip_torque / self.peak_torque if self.peak_torque > 0.0 else None
-
-
-SplineStressKind = Literal["flank pressure", "shear of the teeth", "shear of the shaft", "tension of the hub"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""Modes, torques, spectra and speeds to avoid: SI records."""
+"""Modes, torques, spectra and speeds to avoid: SI records. Speeds are those of the pinion of the first mesh."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -9,6 +9,9 @@ OrderKind = Literal["mesh", "shaft", "coupling"]
 Sense = Literal["forward", "backward", ""]
 CIRCLING = 0.1
 """Whirl, as area of an orbit over that of a circle of its size, from which it has a sense."""
+PlaceKind = Literal["shaft", "spline", "coupling", "motor", "mesh"]
+Row = tuple[float, ...]
+ResonanceKind = Literal["dynamic factor", "root stress", "shaft torque", "shaft order"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,9 +90,6 @@ def sense_of_whirl(whirl: Iterable[float | None]) -> Sense:
     if abs(clearest) < CIRCLING:
         return ""
     return "forward" if clearest > 0.0 else "backward"
-
-
-PlaceKind = Literal["shaft", "spline", "coupling", "motor", "mesh"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,9 +181,6 @@ class SectionTorqueRecord:
     """Of every section and joint in every stage."""
 
 
-Row = tuple[float, ...]
-
-
 @dataclass(frozen=True, kw_only=True)
 class Waterfall:
     """Amplitude of the torque of one mesh over frequency and speed in a run-up or run-down."""
@@ -221,9 +218,6 @@ class HeldSpectrum:
     """(h,) [N m]"""
     teeth: int
     """Of the pinion: order of the mesh frequency."""
-
-
-ResonanceKind = Literal["dynamic factor", "root stress", "shaft torque", "shaft order"]
 
 
 def nearer(peak: float, margin: float) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.joint import PressedJoint
+from rigdesign.case.housing import PressedJoint
 from rigdesign.rig.model import Rig
 from thermal.conditions.boundary import Film
 from thermal.conditions.contact import Contact

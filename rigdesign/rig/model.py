@@ -29,7 +29,6 @@ from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.housing_seats import housing_supports
 from rigdesign.rig.influence_store import Progress
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
-from rigdesign.rig.machine_speeds import refuse_uncovered_speeds
 from rigdesign.rig.resolution import (
     AS_RULED,
     Coarsening,
@@ -41,7 +40,7 @@ from rigdesign.rig.resolution import (
 from rigdesign.rig.rotating_parts import without_residual_unbalance
 from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, shaft_axes
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
-from rigdesign.rig.speeds import speed_ratios
+from rigdesign.rig.speeds import refuse_uncovered_speeds, speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
 from rigdesign.rig.tooth_influence import Count, ToothInfluence
 from rigdesign.rig.twisting_loop import TwistingLoop

@@ -36,13 +36,10 @@ from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.records.undamped import held_crossings, require_damping
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
-from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.events import event_row
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
 from rigdesign.results.rows.lateral import lateral_row
-from rigdesign.results.rows.oil_circuits import circuit_rows
-from rigdesign.results.rows.rig_heat import rig_heat_row
-from rigdesign.results.rows.rolling_bearings import rolling_bearing_row
+from rigdesign.results.rows.rig import circuit_rows, coupling_row, rig_heat_row, rolling_bearing_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count

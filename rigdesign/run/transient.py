@@ -9,18 +9,16 @@ from numpy.typing import NDArray
 from rigdesign.checks import all_checks
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check, Checks, overall
-from rigdesign.results.extremes import Extreme, HistoryExtremes
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.history import UNITS, worst_moment_row
-from rigdesign.results.transient import Settling, TransientCurve, TransientResult
+from rigdesign.results.transient import Extreme, HistoryExtremes, Settling, TransientCurve, TransientResult
 from rigdesign.results.units import MM, RPM, ZERO
 from rigdesign.rig.model import Rig
 from rigdesign.run.transient_alignment import misalignments, worst_misalignments
 from rigdesign.run.transient_oil import oil_power_curve, supplies_held, worst_powers
 from rigdesign.run.warnings import oil_at_room_temperature
-from rigdesign.transient.branch import Branch
+from rigdesign.transient.branch import Branch, clearance_limits, limited
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
-from rigdesign.transient.limits import clearance_limits, limited
 from rigdesign.transient.phases import SCHEDULE
 from rigdesign.transient.soak import hours
 from rigdesign.transient.thermal_history import TransientRun, run_transient

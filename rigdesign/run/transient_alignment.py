@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rigdesign.case.model import Case
 from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, coupling_places
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.extremes import Extreme
+from rigdesign.results.transient import Extreme
 from rigdesign.rig.model import Rig
 from rigdesign.transient.branch import Branch
 

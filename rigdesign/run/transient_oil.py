@@ -6,8 +6,7 @@ import numpy as np
 
 from rigdesign.case.model import Case
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.extremes import Extreme, SupplyHeld
-from rigdesign.results.transient import OilPowerCurve
+from rigdesign.results.transient import Extreme, OilPowerCurve, SupplyHeld
 from rigdesign.results.units import ZERO
 from rigdesign.transient.oil_power import OilPower
 

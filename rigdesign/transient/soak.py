@@ -7,8 +7,7 @@ while; a warm-up at standstill with the oil on brings the box along.
 from collections.abc import Callable, Sequence
 
 from rigdesign.case.model import Case
-from rigdesign.transient.branch import Branch
-from rigdesign.transient.limits import broken, clearance_limits
+from rigdesign.transient.branch import Branch, broken, clearance_limits
 from rigdesign.transient.warm_up import Soak
 
 TRIALS = 4

@@ -1,5 +1,6 @@
 """From readings to the numbers a prediction is held against: means over repeats, their noise, what is usable."""
 
+import cmath
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -10,9 +11,9 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import MeasurementError
 from rigdesign.measurement.data import Data
 from rigdesign.measurement.processing.repeats import pooled_noise, without_outliers
-from rigdesign.measurement.processing.transfer import gain
 from rigdesign.measurement.quality.checks import data_findings
 from rigdesign.measurement.quality.consistency import consistency_findings
+from rigdesign.measurement.reading.document import Transfer
 from rigdesign.measurement.reading.measurement_set import (
     DataFinding,
     MeasuredChannel,
@@ -20,11 +21,22 @@ from rigdesign.measurement.reading.measurement_set import (
     MeasurementSet,
 )
 from rigdesign.prediction.model import Feature, OperatingCondition, features_of
+from rigdesign.strain_gauge.low_pass import LowPass
 
 THERMAL = frozenset(("temperature", "warming_rate", "oil_outlet_temperature", "seal_gap"))
 """Quantities that mean nothing before temperatures are steady."""
 LEAST_GAIN = 0.1
 """What a sensor must let through of an order to be corrected for."""
+
+
+def gain(transfer: Transfer, angular_frequency: float) -> complex:
+    """Complex gain of a Butterworth low-pass and a delay at ``angular_frequency`` [rad/s].
+
+    With signals as Re(X exp(i omega t)).
+    """
+    low_pass = LowPass("butterworth", transfer.poles, transfer.frequency)
+    delay = cmath.exp(-1j * angular_frequency * transfer.delay)
+    return delay * complex(low_pass.gain(angular_frequency / (2.0 * math.pi)))
 
 
 def features(measurement: MeasurementSet) -> Data:

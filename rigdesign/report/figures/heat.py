@@ -16,6 +16,15 @@ if TYPE_CHECKING:
 
 SEPARATED: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.6}
 """Parts of a bar: an edge separates them without their colours."""
+SINKS = {
+    "oil_W": "into the oil",
+    "room_W": "to the room",
+    "water_W": "cooling water",
+    "stored_W": "stored",
+    "no_heat_W": "no heat (mesh damper)",
+}
+LEAST_SHARE = 1e-5
+"""Of all heat, from which a sink is drawn."""
 
 
 def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
@@ -152,18 +161,6 @@ def _residual_labels(key: str) -> tuple[str, str]:
     quantity, unit = split_key(key)
     quantity = " ".join(WORDS.get(word, word) for word in quantity.replace(" relative", "").split())
     return f"largest change [{unit or '–'}]", quantity.capitalize()
-
-
-SINKS = {
-    "oil_W": "into the oil",
-    "room_W": "to the room",
-    "water_W": "cooling water",
-    "stored_W": "stored",
-    "no_heat_W": "no heat (mesh damper)",
-}
-
-LEAST_SHARE = 1e-5
-"""Of all heat, from which a sink is drawn."""
 
 
 def rig_heat_figure(row: Mapping[str, Any]) -> "Figure":

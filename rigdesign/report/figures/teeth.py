@@ -21,6 +21,13 @@ EDGE = "#c0392b"
 """Places where a tip edge carries."""
 ROOM = 1.3
 """Top of a stress axis over the highest stress: the legend stands above the curves."""
+TURN = (0.0, 90.0, 180.0, 270.0, 360.0)
+HEIGHT = 2.3
+"""Of a row of gears [in]."""
+MARGIN = 0.3
+"""Shown on either side of what is strained, as a share of it."""
+STRAINED = 0.1
+"""Stress that counts as strained, as a share of the highest of all."""
 
 
 def tooth_contact_figure(contact: dict[str, Any], style: CurveStyle | None = None) -> "Figure":
@@ -112,11 +119,6 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
     )
     if first:
         axes.legend(loc="lower center", fontsize=8)
-
-
-TURN = (0.0, 90.0, 180.0, 270.0, 360.0)
-HEIGHT = 2.3
-"""Of a row of gears [in]."""
 
 
 def tooth_history_figure(histories: Sequence[ToothTurnHistory]) -> "Figure":
@@ -213,12 +215,6 @@ def _rate(axes: "Axes", rows: Rows, speeds: Sequence[float]) -> None:
 def place(row: Mapping[str, Any]) -> str:
     """Where on the root a curve holds."""
     return label({"name": row["gauge"]}) if row["gauge"] else "most stressed point"
-
-
-MARGIN = 0.3
-"""Shown on either side of what is strained, as a share of it."""
-STRAINED = 0.1
-"""Stress that counts as strained, as a share of the highest of all."""
 
 
 def strain_gauge_figure(contact: dict[str, Any]) -> "Figure":

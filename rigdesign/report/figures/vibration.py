@@ -35,6 +35,13 @@ LEADER = {"arrowstyle": "-", "color": MUTED, "linewidth": 0.5, "relpos": (0.0, 0
 """Line from a label to its mode."""
 LONGEST = 50
 """Characters of the name of a mode."""
+BAND_KINDS = {
+    "dynamic_factor": "dynamic part of the mesh torque, highest of the meshes",
+    "root_stress": "root stress, dynamic / quasi-static \N{MINUS SIGN} 1",
+    "shaft_torque": "half peak-to-peak torque of shafts and joints",
+}
+PART_KINDS = {"mesh": "mesh", "coupling": "coupling", "spline": "seat of", "motor": "joint of the"}
+"""Words in front of the name of a joint."""
 
 
 def campbell_diagram(campbell: Mapping[str, Any], held: Mapping[str, float]) -> "Figure":
@@ -171,13 +178,6 @@ def _some(value: float, position: float = 0.0) -> str:
     return _whole(value) if round(lead, 6) in (2.0, 5.0) else ""
 
 
-BAND_KINDS = {
-    "dynamic_factor": "dynamic part of the mesh torque, highest of the meshes",
-    "root_stress": "root stress, dynamic / quasi-static \N{MINUS SIGN} 1",
-    "shaft_torque": "half peak-to-peak torque of shafts and joints",
-}
-
-
 def dwell_figure(dwell: Mapping[str, Any]) -> "Figure":
     """Highest share of every kind; grey where the rig should not dwell."""
     figure = new_figure(2.9)
@@ -211,10 +211,6 @@ def dwell_figure(dwell: Mapping[str, Any]) -> "Figure":
     legend_right(axes)
     figure.subplots_adjust(left=0.075, right=0.65, top=0.92, bottom=0.16)
     return figure
-
-
-PART_KINDS = {"mesh": "mesh", "coupling": "coupling", "spline": "seat of", "motor": "joint of the"}
-"""Words in front of the name of a joint."""
 
 
 def section_torque_figure(over_speed: Mapping[str, Any], held: Mapping[str, float]) -> "Figure":

@@ -15,6 +15,8 @@ NEAREST = 5
 SCHEMATIC = "Schematic of the rig: gearboxes, shafts, couplings, motor, bracing and oil"
 NAMED = 4
 """Assumed inputs that the first page names."""
+LEAST_MOVE = 0.01
+"""Shift of the distance from which a pair of check and input has a line in the report; results.json has more."""
 
 
 def _decision(result: RunResult, draw: Draw) -> Values:
@@ -78,10 +80,6 @@ DRIVERS = ReportSection(
 CHECK_BASIS = ReportSection(
     id="basis", title="Basis of the checks", template="basis.html.j2", values=_basis, place="appendix"
 )
-
-
-LEAST_MOVE = 0.01
-"""Shift of the distance from which a pair of check and input has a line in the report; results.json has more."""
 
 
 def _details(result: RunResult, draw: Draw) -> Values:

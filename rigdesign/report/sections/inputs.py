@@ -7,6 +7,12 @@ from rigdesign.report.assumption_groups import assumption_groups, most_influenti
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
+STRONGEST = 8
+"""Lines in the body."""
+OVERRIDES = ReportSection(id="overrides", template="overrides.html.j2", within="assumptions")
+HAND_CHECKS = ReportSection(id="hand", title="Hand checks", template="hand.html.j2", place="appendix")
+WARNINGS = ReportSection(id="warnings", title="Warnings", template="warnings.html.j2", place="appendix")
+
 
 def _inputs(result: RunResult, draw: Draw) -> Values:
     return {"gears": input_sheets.gear_sheets(result), "oil": input_sheets.oil_sheet(result)}
@@ -33,10 +39,6 @@ DRIVETRAIN_INPUTS = ReportSection(
     id="drivetrain", title="Materials and drivetrain", template="sheets.html.j2", values=_drivetrain, applies=_stated,
     place="appendix",
 )  # fmt: skip
-
-
-STRONGEST = 8
-"""Lines in the body."""
 
 
 def _strongest(result: RunResult, draw: Draw) -> Values:
@@ -73,7 +75,6 @@ ALL_ASSUMPTIONS = ReportSection(
     values=_all,
     place="appendix",
 )
-OVERRIDES = ReportSection(id="overrides", template="overrides.html.j2", within="assumptions")
 
 
 def _convergence(result: RunResult, draw: Draw) -> Values:
@@ -95,8 +96,8 @@ def _topics(result: RunResult, draw: Draw) -> Values:
 NOT_MODELLED = ReportSection(
     id="limits", title="What is not modelled", template="limits.html.j2", values=_topics
 )
-HAND_CHECKS = ReportSection(id="hand", title="Hand checks", template="hand.html.j2", place="appendix")
-WARNINGS = ReportSection(id="warnings", title="Warnings", template="warnings.html.j2", place="appendix")
+
+
 PROVENANCE = ReportSection(
     id="provenance", title="Provenance", template="provenance.html.j2", values=_convergence, place="appendix"
 )

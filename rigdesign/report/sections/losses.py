@@ -10,6 +10,17 @@ from rigdesign.results.result import RunResult
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+POWERS = ("heater_W", "cooler_W", "pump_W", "machines_W", "room_W")
+COLUMNS = {
+    "power_W": "heat [W]",
+    "room_W": "to the room [W]",
+    "oil_W": "into the oil [W]",
+    "water_W": "cooling water [W]",
+    "stored_W": "stored [W]",
+    "no_heat_W": "no heat [W]",
+}
+ALWAYS = ("power_W", "room_W", "oil_W")
+
 
 def _losses(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import heat as figures
@@ -71,9 +82,6 @@ LOSS_DETAILS = ReportSection(
 )  # fmt: skip
 
 
-POWERS = ("heater_W", "cooler_W", "pump_W", "machines_W", "room_W")
-
-
 def _tables(result: RunResult, draw: Draw) -> Values:
     rows = result.oil_circuits
     return {
@@ -133,17 +141,6 @@ OIL_CIRCUITS = ReportSection(
     id="oil_circuits", title="Oil circuits", template="oil_circuits.html.j2", values=_tables,
     applies=lambda result: bool(result.oil_circuits),
 )  # fmt: skip
-
-
-COLUMNS = {
-    "power_W": "heat [W]",
-    "room_W": "to the room [W]",
-    "oil_W": "into the oil [W]",
-    "water_W": "cooling water [W]",
-    "stored_W": "stored [W]",
-    "no_heat_W": "no heat [W]",
-}
-ALWAYS = ("power_W", "room_W", "oil_W")
 
 
 def _heat(result: RunResult, draw: Draw) -> Values:

@@ -1,4 +1,4 @@
-"""What a section of the report is, and one style a gearbox in all of its figures."""
+"""What a section of the report is; one colour and line style a gearbox, the same in every figure of a report."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

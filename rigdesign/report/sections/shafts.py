@@ -8,6 +8,18 @@ from rigdesign.results.result import RunResult
 HIGHEST_RATIO = 3.0
 """Modes are shown up to this times the fastest shaft, at least the lowest few."""
 LEAST_MODES = 6
+LOADS = (
+    "bearing", "stage", "designation", "radial_load_N", "axial_load_N", "minimum_load_N", "speed_rpm",
+    "speed_utilisation", "static_safety", "basic_life_h", "modified_life_h", "viscosity_ratio",
+)  # fmt: skip
+FRICTION = (
+    "bearing", "stage", "rolling_torque_Nm", "sliding_torque_Nm", "seal_torque_Nm", "drag_torque_Nm", "friction_W",
+    "heat_to_shaft_W", "heat_to_housing_W",
+)  # fmt: skip
+WARM = (
+    "bearing", "stage", "temperature_degC", "inner_ring_degC", "outer_ring_degC", "operating_clearance_um",
+    "radial_stiffness_N_um", "axial_stiffness_N_um", "tilting_stiffness_kNm_rad",
+)  # fmt: skip
 
 
 def _values(result: RunResult, draw: Draw) -> Values:
@@ -76,20 +88,6 @@ def _modes(stage: dict[str, Any]) -> list[dict[str, Any]]:
 LATERAL = ReportSection(
     id="lateral", title="Lateral vibration", template="lateral.html.j2", values=_values,
     applies=lambda result: result.lateral is not None,
-)  # fmt: skip
-
-
-LOADS = (
-    "bearing", "stage", "designation", "radial_load_N", "axial_load_N", "minimum_load_N", "speed_rpm",
-    "speed_utilisation", "static_safety", "basic_life_h", "modified_life_h", "viscosity_ratio",
-)  # fmt: skip
-FRICTION = (
-    "bearing", "stage", "rolling_torque_Nm", "sliding_torque_Nm", "seal_torque_Nm", "drag_torque_Nm", "friction_W",
-    "heat_to_shaft_W", "heat_to_housing_W",
-)  # fmt: skip
-WARM = (
-    "bearing", "stage", "temperature_degC", "inner_ring_degC", "outer_ring_degC", "operating_clearance_um",
-    "radial_stiffness_N_um", "axial_stiffness_N_um", "tilting_stiffness_kNm_rad",
 )  # fmt: skip
 
 

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 
-from rigdesign.results.extremes import Extreme
-from rigdesign.results.transient import WorstMoment
+from rigdesign.results.transient import Extreme, WorstMoment
 from rigdesign.results.units import (
     DEGREE_CELSIUS,
     KILOWATT,

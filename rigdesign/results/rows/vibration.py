@@ -19,6 +19,9 @@ from rigdesign.results.vibration import (
     Waterfall,
 )
 
+DIGITS = 4
+"""Significant digits of the amplitudes of a waterfall: it is looked at, not computed with."""
+
 
 def campbell_row(record: CampbellRecord) -> dict[str, Any]:
     """Modes over speed, orders and crossings."""
@@ -116,10 +119,6 @@ def _columns(swings: Sequence[TorqueSwing]) -> dict[str, list[float]]:
         "half_peak_to_peak_Nm": [swing.half_peak_to_peak for swing in swings],
         "peak_Nm": [swing.peak for swing in swings],
     }
-
-
-DIGITS = 4
-"""Significant digits of the amplitudes of a waterfall: it is looked at, not computed with."""
 
 
 def waterfall_row(found: Waterfall) -> dict[str, Any]:

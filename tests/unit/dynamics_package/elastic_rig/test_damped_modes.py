@@ -9,9 +9,9 @@ from dynamics.drivetrain.shaft import DrivetrainError, Section
 from dynamics.drivetrain.tracked_modes import shaped_modes, tracked
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
+from dynamics.elastic_rig.lateral import orbit
 from dynamics.elastic_rig.location import unresisted
 from dynamics.elastic_rig.mesh_rows import approach_row
-from dynamics.elastic_rig.orbits import orbit
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import RowSpring, RunningState
 from dynamics.elastic_rig.seen_system import SeenRig

@@ -15,8 +15,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.rows.oil_circuits import circuit_rows
-from rigdesign.results.rows.rig_heat import rig_heat_row
+from rigdesign.results.rows.rig import circuit_rows, rig_heat_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig_heat.coupling_windage import CouplingRotor, coupling_windage
 from rigdesign.rig_heat.room import room_balance

@@ -8,8 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.lateral import line_whirls, reduced_line_loads, whirl_at
-from dynamics.elastic_rig.orbits import Orbit, orbit
+from dynamics.elastic_rig.lateral import Orbit, line_whirls, orbit, reduced_line_loads, whirl_at
 from dynamics.elastic_rig.running_state import RowSpring, RunningState, isotropic_bearing
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.braced_loop import LoadedCircuit

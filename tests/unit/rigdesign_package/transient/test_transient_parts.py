@@ -15,7 +15,7 @@ from rigdesign.checks.transient import checks as transient_checks
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.extremes import Extreme, HistoryExtremes
+from rigdesign.results.transient import Extreme, HistoryExtremes
 from rigdesign.rig.model import build_rig
 from rigdesign.transient.blend import blended
 from rigdesign.transient.phases import Phase, event_phases, running_phases, schedule_phases

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.case.mesh import HousingMesh
+from rigdesign.case.housing import HousingMesh
 from tests.builders.housing import PROTOTYPE
 from thermal.fe.mesh import NamedMesh
 from thermal.housing.gearbox import GeometryError, MeshSizes, build_gearbox, mesh_sizes
