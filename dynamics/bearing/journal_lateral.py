@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.bearing.journal_coefficients import CoefficientTable, coefficient_table
 from dynamics.bearing.journal_feed import Feed
@@ -27,8 +26,6 @@ from dynamics.bearing.journal_perturbation import FilmCoefficients
 from dynamics.bearing.lateral import LateralCoefficients, Regime, load_axes
 from dynamics.bearing.protocol import BearingError, LateralOperation
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

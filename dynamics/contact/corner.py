@@ -18,7 +18,6 @@ from dynamics.gear.pair import GearPair
 from dynamics.mesh.tip_contact import CornerMesh
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 CLOSED = 1e-14
 """Change at which the iteration of a gap ends [m]."""
 

@@ -33,7 +33,6 @@ from dynamics.kernels.loaded_contact import (
     press_points,
 )
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FIRST_REACH = 0.05

@@ -15,7 +15,6 @@ from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.layout import SEAT_DIRECTIONS
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)

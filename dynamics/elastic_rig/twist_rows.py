@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.drivetrain.shaft import Shaft
 from dynamics.drivetrain.twist_rows import (
@@ -18,8 +17,6 @@ from dynamics.drivetrain.twist_rows import (
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.beam import DIRECTIONS
 from dynamics.elastic_rig.seen_system import SeenRig
-
-Array = NDArray[np.float64]
 
 JOINTS: tuple[SectionKind, ...] = ("spline", "coupling", "motor")
 TURN = DIRECTIONS.index("turn")

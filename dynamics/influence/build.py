@@ -7,7 +7,6 @@ Source: gears.md e; Weber, Banaschek, Formaenderung und Profilruecknahme, 1953; 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.influence.elastic_segment import solve_segment
 from dynamics.influence.gear_body import TEETH
@@ -19,7 +18,6 @@ from dynamics.influence.section import gear_section
 from dynamics.influence.segment import GearSegment
 from dynamics.influence.strips import rows
 
-Array = NDArray[np.float64]
 SIDES = (1, -1)
 OFFSETS = range(-3, 4)
 """Teeth whose displacement is read; those beyond the neighbours are carried by the body."""

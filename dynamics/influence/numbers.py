@@ -2,14 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Side = Literal[1, -1]
-"""Fillet of a tooth: 1 under its loaded flank, -1 under the other."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

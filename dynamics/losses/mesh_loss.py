@@ -5,9 +5,6 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.friction import FrictionCoefficient
 from dynamics.mesh.sliding import PairStiffness, ToothPath, tooth_loss_factor
@@ -20,8 +17,6 @@ __all__ = [
     "squeeze_loss",
     "tooth_loss_factor",
 ]
-
-Array = NDArray[np.float64]
 
 
 class LossError(DynamicsInputError):

@@ -24,7 +24,6 @@ from dynamics.response.response_curve import CurvePoint
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 SAME_CLASS = 1e-7
 """Difference of two orders, in mesh orders, below which they are of one class."""

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
@@ -28,8 +27,6 @@ from dynamics.response.periodic_response import (
 )
 from dynamics.response.time_march import TimeMarch
 from dynamics.response.turning_loads import TurningLoads, acting
-
-Array = NDArray[np.float64]
 
 SAMPLE_RATE, SUBSTEPS = 80e3, 4
 """Samples of the channels per second, and internal steps in one."""

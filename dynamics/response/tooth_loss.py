@@ -7,13 +7,11 @@ law. Which teeth carry at an instant follows from the angle of the pinion.
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import tooth_forces
 from dynamics.mesh.law import MeshLaw, back_deviations
 
-Array = NDArray[np.float64]
 Member = Literal["pinion", "wheel"]
 
 GONE = 0.05

@@ -20,7 +20,6 @@ from thermal.films.law import FilmLaw
 
 STREAM, LINK, POWER = "stream", "link", "power"
 """Kinds of their rows in the heat balance: what flows in and out, links between volumes, given power."""
-AMBIENT = "ambient"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,9 +3,6 @@
 import math
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.response.event_channels import Watched
 from dynamics.response.event_march import (
@@ -26,8 +23,6 @@ from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.resonances import LEAST_GAIN
 from rigdesign.results.events import EventRecord
 from rigdesign.rig.model import Rig
-
-Array = NDArray[np.float64]
 
 OVERSPEED_TIME, OVERSPEED_TURNS = 0.02, 2.0
 """Time of the steady rotation at overspeed in which peaks are sought [s], and turns of the slowest shaft; the longer

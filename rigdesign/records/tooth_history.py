@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.contact.root_course import RootCourse
 from dynamics.contact.root_field import PairForces, Side
@@ -26,7 +25,6 @@ from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig
 
-Array = NDArray[np.float64]
 FIRST_MESH = 0.5 * math.pi
 """Rotation at which the tooth passes the pitch point of its first mesh [rad]: the turn begins where it is free."""
 

@@ -14,8 +14,6 @@ from rigdesign.results.result import CouplingHistory, RunResult
 WITHOUT_DYNAMICS: Mapping[str, Any] = {"gearboxes": {}}
 """What stands for the dynamics of a rig without drivetrain."""
 
-TAKES = "report takes a folder that `rigdesign check --out` wrote, or its results.json"
-
 
 def results_document(result: RunResult) -> dict[str, Any]:
     """Content of results.json as plain dicts, lists, strings and finite numbers.

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.elastic_rig.layout import HousingSupport
 from rigdesign.base.errors import CaseError, Fault
@@ -12,8 +11,6 @@ from rigdesign.properties.materials import Material
 from rigdesign.rig.shaft_axes import ShaftAxis
 from thermal.expansion.seat_condensation import condense_seats
 from thermal.housing.stations import GearboxModel
-
-Array = NDArray[np.float64]
 
 DAMPING_TIME = 1.6e-6
 """Damping over stiffness of a housing [s]: loss factor 0.01, that of a bolted steel housing, at 1 kHz."""

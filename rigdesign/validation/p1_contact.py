@@ -33,7 +33,6 @@ from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.rig.tooth_influence import gear_model
 from rigdesign.strain_gauge.gauge_curve import GaugeCurve
 
-Array = NDArray[np.float64]
 Divided = Callable[[GearModel], GearModel]
 """Model of a gear with the elements that are wanted."""
 CORNER = 0.25

@@ -5,4 +5,3 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
-BoolArray = NDArray[np.bool_]

@@ -6,7 +6,6 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case.model import Case
@@ -27,7 +26,6 @@ from rigdesign.strain_gauge.measuring_point import StrainRecord
 from rigdesign.strain_gauge.rolling_angle import RollingAngle, turns_until_same_teeth
 from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve, turn_average
 
-Array = NDArray[np.float64]
 MOST_POINTS = 1440
 """Points of the mean curve over a turn at most; the samples of a turn where they are fewer."""
 LEAST_POINTS = 12

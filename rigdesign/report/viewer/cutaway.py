@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 AZIMUTH, ELEVATION = -60.0, 40.0
 """Direction from which the picture is taken [deg]."""
-LEVELS = 12
 MM = 1e3
 
 

@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.contact.mesh_cycle import ContactPattern
 from dynamics.contact.root_course import RootCourse
@@ -23,7 +22,6 @@ from rigdesign.results.teeth import (
 )
 from rigdesign.results.units import MM, MPA, RPM, UM, ZERO
 
-Array = NDArray[np.float64]
 MICRO, MILLI = 1e6, 1e3
 GEARS = ("pinion", "wheel")
 
