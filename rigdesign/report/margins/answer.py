@@ -137,9 +137,9 @@ def _sentences(
 def _undecided(rest: MarginTable) -> str:
     """Which checks could not be judged, and at how many points nothing passes for that."""
     undecided, opens = rest.of(rest.undecided), rest.opens[rest.computed]
-    where = _share(int(opens.any(axis=1).sum()), len(opens))
-    verb = "is" if len(undecided.checks) == 1 else "are"
-    return f"Nothing passes at {where}: {_listed(undecided)} {verb} open there, not judged."
+    number, total = int(opens.any(axis=1).sum()), len(opens)
+    head = "No point passes" if number == total else f"{_share(number, total).capitalize()} do not pass"
+    return f"{head}: {_listed(undecided)} {'is' if len(undecided.checks) == 1 else 'are'} open, not judged."
 
 
 def _subject(selection: CheckSelection, always: MarginTable, rest: MarginTable) -> str:
