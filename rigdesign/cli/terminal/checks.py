@@ -67,6 +67,11 @@ def _print_summary(console: Console, result: RunResult) -> None:
             against = f"{value_text(check)}, limit {limit_text(check)}"
             hanging(console, Text("fail: ", STYLES["fail"]), f"{check.title}: {against}")
             hanging(console, Text(" " * 6), check.reason.partition("; ")[0])
+    unusual = [record.text for record in result.warnings if record.id == "unusual_input"]
+    for text in unusual[:MOST_GROUPS]:
+        hanging(console, Text("unusual: ", "yellow"), text)
+    if len(unusual) > MOST_GROUPS:
+        console.print(f"         {len(unusual) - MOST_GROUPS} more unusual inputs: --all")
     _print_reasons(console, result.checks)
     _print_nearest(console, result.checks)
     _print_not_applicable(console, result.checks)

@@ -12,10 +12,11 @@ from rigdesign.cli.application import print_json
 from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.cli.terminal.console import plain_streams, verbosity
 from rigdesign.cli.terminal.reason_groups import reason_groups
+from rigdesign.report.pages.report import report_html
 from rigdesign.results.check import Check
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.result import Finding, RunResult
-from tests.builders.report import make_check, small_result
+from tests.builders.report import make_check, make_result, small_result
 
 Printed = Callable[..., list[str]]
 NO_HOUSING = "walls of gearbox reference: it has no housing"
@@ -228,3 +229,12 @@ def test_json_stays_whole_in_a_stream_in_ascii(monkeypatch: pytest.MonkeyPatch) 
     print_json({"unit": "°C"})
     stream.flush()
     assert json.loads(stream.buffer.getvalue()) == {"unit": "°C"}  # type: ignore[attr-defined]
+
+
+def test_unusual_inputs_stand_on_the_screen_and_on_the_first_page(printed: Printed) -> None:
+    """A wrong power of ten on the permissive side is in no group of reasons that may be cut off."""
+    found = [Finding(id="unusual_input", text="ambient.temperature = 293 degC is outside of its usual range")]
+    result = make_result(warnings=found)
+    assert any(line.startswith("unusual: ambient.temperature = 293 degC") for line in printed(result))
+    page = report_html(result)
+    assert "ambient.temperature = 293" in page[: page.index("<h2>Why</h2>")]
