@@ -45,7 +45,8 @@ def done(tmp_path_factory):
         patch.setenv("RIGDESIGN_CACHE_DIR", str(run_cache()))
         patch.chdir(folder)
         for arguments in commands(README):
-            assert app(arguments, result_action="return_value") == 0, arguments
+            opened = arguments[0] == "check"  # at quick fidelity, which leaves loads and resonances open
+            assert app(arguments, result_action="return_value") == int(opened), arguments
         yield folder
 
 

@@ -253,7 +253,8 @@ def _disputed(found: Sequence[Evidence], fit: JointFit, agreement: Agreement) ->
 
 def _disagreement(one: Evidence, others: Sequence[Evidence], agreement: Agreement) -> str:
     companion = agreement.companion(one)
-    beside = [*others, *([] if companion is None or companion in others else [companion])]
+    names = {other.hypothesis.name for other in others}
+    beside = [*others, *([] if companion is None or companion.hypothesis.name in names else [companion])]
     return agreement.objection(one, beside, DISAGREEMENT, UNEQUAL)
 
 

@@ -218,7 +218,18 @@ def _unsupported(
             and _added(best, part, evidence, thresholds.share) < thresholds.share_loop * whole
         ):
             refused[part] = f"{part} explains too little in addition to the effects named before"
+        elif explained and _at_its_end(part, evidence):  # rather what the model answers wrongly to those
+            refused[part] = f"{part} fits best at the end of its range, beside the effects named before"
     return refused
+
+
+def _at_its_end(part: str, evidence: Sequence[Evidence]) -> bool:
+    """Whether an effect of one size fits best where its range ends; zero, where an effect begins, is no end."""
+    for one in evidence:
+        if one.hypothesis.parts == (part,) and len(one.coordinates) == 1:
+            (size,) = one.coordinates
+            return any(end and abs(size - end) <= 1e-6 * abs(end) for (end,) in one.hypothesis.bounds)
+    return False
 
 
 def _without(decision: Decision, refused: Mapping[str, str]) -> Decision:

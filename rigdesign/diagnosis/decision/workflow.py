@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigdesign.diagnosis.decision.claims import Refusal
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
@@ -189,7 +188,7 @@ def _wrong_data(
         return None
     wrong = [one for one in evidence if one.hypothesis.family == "input"]
     best = max(wrong, key=lambda one: weights.masses[one.hypothesis.name])
-    heat = residuals.of_heat
+    heat = np.flatnonzero(residuals.of_heat).tolist()
     of_heat = 0.5 * (
         _square(whole, whole.residual, heat) - _square(whole, whole.residual - best.answer, heat)
     )
@@ -210,7 +209,7 @@ def _wrong_data(
     )
 
 
-def _square(space: Whitened, white: Array, rows: NDArray[np.bool_]) -> float:
+def _square(space: Whitened, white: Array, rows: list[int]) -> float:
     """Square of some numbers of a residual, whitened by themselves."""
     own = space.covariance.matrix[np.ix_(rows, rows)]
     values = (space.covariance.lower @ white)[rows]
