@@ -351,7 +351,7 @@ GEARBOX_STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__losses="whether work of the mesh dampers heats the oil"
     ),
     "losses.bearing_drag": stations_at(coupling__bearing_films="drag torque of the bearings"),
-    "losses.given.*": stations_at(coupling__given_losses="loss in place of a computed one"),
+    "losses.given.*": stations_at(coupling__point_losses="loss in place of a computed one"),
     "losses.friction": stations_at(
         coupling__mesh_friction="friction coefficient of the teeth: drag in the loop and heat of the mesh"
     ),

@@ -69,7 +69,7 @@ HOUSING_STATIONS: Mapping[str, tuple[Station, ...]] = {
         case__geometry="plate the gearbox stands on: heat path and hold of the foot"
     ),
     "gearboxes.*.housing.mesh": stations_at(
-        case__mesh="element sizes of the temperature field: discretisation error"
+        rig__model="element sizes of the temperature field: discretisation error"
     ),
     "gearboxes.*.housing.shafts.*": stations_at(
         case__geometry="shaft in the temperature field, diameters of its seals"

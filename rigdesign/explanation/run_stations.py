@@ -48,7 +48,7 @@ RUN_STATIONS: Mapping[str, tuple[Station, ...]] = {
         case__limits="whether the standard set stands for limits that are left out"
     ),
     "limits.clearances": stations_at(
-        checks__clearances=_LIMIT, transient__limits="limit over the thermal history"
+        checks__clearances=_LIMIT, transient__branch="limit over the thermal history"
     ),
     "limits.alignment": stations_at(checks__alignment=_LIMIT),
     "limits.temperatures": stations_at(checks__temperatures=_LIMIT),

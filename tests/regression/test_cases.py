@@ -178,9 +178,9 @@ def test_given_losses_leave_the_checks_of_loads_open() -> None:
         if check.id.startswith(("dynamics.", "specimen.root_stress", "strength.", "flank."))
     ]
     assert {check.verdict for check in of_loads} == {"open", "not applicable"}
-    for check in of_loads:
-        if check.verdict == "open":
-            assert check.reason == "losses are given (losses.basis = input): there are no dynamic loads"
+    for one in of_loads:
+        if one.verdict == "open":
+            assert one.reason == "losses are given (losses.basis = input): there are no dynamic loads"
     assert result.losses and all(row.basis == "input" for row in result.losses)
 
 

@@ -43,7 +43,7 @@ def test_a_key_says_what_it_is_where_it_comes_from_and_what_it_moves(rigdesign: 
         "temperature in degC, K, degF; at least -60 degC and at most 600 degC",
         "140 degC (assumed: the prototype runs at the temperature of the main rig; range 90 degC to 140 degC)",
         "coupling/boundary: fluid of the films of wetted walls",
-        "of 95 depend on it",
+        "of 101 depend on it",
     ):
         assert said in words
 
