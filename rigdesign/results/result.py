@@ -101,11 +101,11 @@ class RunResult:
     apart."""
     lateral: dict[str, Any] | None = None
     """Shafts that bend: {stages: [{stage, torque, speed_rpm, modes: [{mode, family, shaft, frequency_Hz,
-    logarithmic_decrement, amplification, whirl, margin, required_margin}], bearings: [{bearing, shaft, orbit_um,
-    minor_um, clearance_um, share, force_N, static_load_N}], seals: [{seal, shaft, orbit_um}],
-    meshes: [{mesh, line, force_N, share}]}], curve: {speed_rpm,
-    bearings: [{bearing, orbit_um, clearance_um}]}}; orbits are the larger half axis, those of all lines added; torque
-    is held or lost; None for shafts that only twist."""
+    logarithmic_decrement, amplification, whirl, margin, required_margin, rigid_body}], bearings: [{bearing, shaft,
+    orbit_um, minor_um, clearance_um, share, force_N, static_load_N}], seals: [{seal, shaft, orbit_um}],
+    meshes: [{mesh, line, force_N, share}]}], seats: [{bearing, lateral_N_um, vertical_N_um, axial_N_um}],
+    curve: {speed_rpm, bearings: [{bearing, orbit_um, clearance_um}]}}; orbits are the larger half axis, those of all
+    lines added; torque is held or lost; seats are elastic ones; None for shafts that only twist."""
     rig_heat: list[dict[str, Any]] = field(default_factory=list)
     """Per held stage {stage, drive_power_W, mains_power_W, input_power_W, open_W, sources, room}; sources: {source,
     kind, power_W, room_W, oil_W, water_W, stored_W, no_heat_W}; room: {temperature_degC, limit_degC, heat_W, by_air_W,

@@ -13,7 +13,6 @@ from tests.builders.paths import ROOT
 
 LONGEST = (
     "regression/test_cases.py",
-    "verification/test_rolling_bearing_rig.py",
     "regression/test_frozen_sets.py",
     "unit/rigdesign_package/studies/test_study.py",
     "unit/rigdesign_package/studies/test_cluster.py",
@@ -32,7 +31,7 @@ LONGEST = (
     "verification/test_seat_condensation.py",
     "unit/rigdesign_package/validation/test_validation.py",
 )
-"""Files of the tests folder that take more than 20 s of a processor, the longest first but for the second."""
+"""Files of the tests folder that take more than 20 s of a processor, the longest first."""
 
 
 def longest_first(items: list[pytest.Item]) -> None:
