@@ -46,7 +46,11 @@ def prototype() -> RunResult:
     return shipped("uhcf_prototype")
 
 
-@pytest.mark.parametrize("name", NAMES)
+MARKED = {name: [pytest.mark.slow] if name == "fzg" else [] for name in NAMES}
+"""FZG at its default by hand: a minute and a half of a processor."""
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKED[name]) for name in NAMES])
 def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
     assert [check.id for check in shipped(name).checks] == list(EXPECTED[name]["checks"])
     assert shipped(name).verdict == EXPECTED[name]["verdict"]
@@ -54,7 +58,8 @@ def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "check_id"), [(name, key) for name in NAMES for key in EXPECTED[name]["checks"]]
+    ("name", "check_id"),
+    [pytest.param(name, key, marks=MARKED[name]) for name in NAMES for key in EXPECTED[name]["checks"]],
 )
 def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
     check, entry = shipped(name).checks[check_id], EXPECTED[name]["checks"][check_id]
