@@ -32,24 +32,30 @@ WIDEST_SENTENCE = 2000
 
 WIDEST_PLACE = 400
 """Characters of the path of a file."""
-CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
+_MARKS = r"\u200e\u200f\u2028-\u202e\u2066-\u2069"
+CONTROL = re.compile(rf"[\x00-\x08\x0b-\x1f\x7f-\x9f{_MARKS}\ufffe\uffff]")
 """What a terminal obeys, direction marks among it, and XML cannot hold; tabs and new lines are text."""
 MOST_FAULTS = 50
 """Faults that a message lists."""
 
 
-LAYOUT = re.compile("[\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
+LAYOUT = re.compile(rf"[\u061c{_MARKS}]")
 """Marks that turn the direction of what follows or break a line, unseen themselves."""
 
 
 def one_line(text: str) -> str:
     """A text of others for one line of an output: line breaks as blanks, control characters and marks as codes."""
-    return without_layout(CONTROL.sub(_code, " ".join(text.splitlines())))
+    return without_layout(spelled_out(" ".join(text.splitlines())))
 
 
 def without_layout(text: str) -> str:
     """A text of others in which no mark turns the direction of what stands beside it."""
     return LAYOUT.sub(_code, text)
+
+
+def spelled_out(text: str) -> str:
+    """A text with codes in place of its control characters."""
+    return CONTROL.sub(_code, text)
 
 
 def _code(found: re.Match[str]) -> str:
@@ -58,7 +64,7 @@ def _code(found: re.Match[str]) -> str:
 
 def shortened(text: str, width: int = WIDEST) -> str:
     """``text`` cut to ``width`` characters, with its length where it is longer; control characters are spelled out."""
-    cut = CONTROL.sub(_code, text[:width])
+    cut = spelled_out(text[:width])
     return cut if len(text) <= width else f"{cut}… ({len(text)} characters)"
 
 

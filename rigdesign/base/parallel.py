@@ -97,11 +97,7 @@ class BackgroundTasks(Generic[T]):
 
     def end(self) -> None:
         """Stop the copies that are left."""
-        for copy in self._copies:
-            copy.pipe.close()
-            with suppress(ProcessLookupError):
-                os.kill(copy.process, signal.SIGKILL)
-            _reap(copy)
+        _stop(self._copies)
         self._copies = []
 
     def results(self) -> list[T]:
@@ -125,6 +121,14 @@ class BackgroundTasks(Generic[T]):
         return results
 
 
+def _stop(copies: Sequence[_Copy]) -> None:
+    for copy in copies:
+        copy.pipe.close()
+        with suppress(ProcessLookupError):
+            os.kill(copy.process, signal.SIGKILL)
+        _reap(copy)
+
+
 def _reap(copy: _Copy) -> None:
     """Wait for the end of a copy; where SIGCHLD is ignored, the system has done it already."""
     with suppress(ChildProcessError):
@@ -137,9 +141,7 @@ def _forked(shares: Sequence[Sequence[Callable[[], object]]]) -> list[_Copy]:
     try:
         copies.extend(map(_fork, shares))
     except OSError:
-        for copy in copies:
-            os.kill(copy.process, signal.SIGKILL)
-            _reap(copy)
+        _stop(copies)
         return []
     return copies
 

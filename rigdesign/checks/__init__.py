@@ -1,7 +1,6 @@
 """Design checks: every registered rule held against the solved rig."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from fnmatch import fnmatchcase
 from typing import Any
 
 from rigdesign.case.model import Case
@@ -28,8 +27,8 @@ def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> lis
     """
     causes, case = list(disagreeing(hand)), solved.case
     checks = (_with_doubts(case, check, causes) for check in estimated_checks(solved))
-    unusual = unusual_inputs(case)
-    return [with_assumptions(case, _of_unusual(case, check, list(unusual))) for check in checks]
+    unusual = list(unusual_inputs(case))
+    return [with_assumptions(case, _of_unusual(case, check, unusual)) for check in checks]
 
 
 def estimated_checks(solved: SolvedRig) -> list[Check]:
@@ -51,7 +50,7 @@ def _with_doubts(case: Case, check: Check, causes: Sequence[tuple[tuple[str, ...
     if not (check.missed or "close" in check.flags):
         return check
     doubts = [REGISTRY.family_of(case, check).unconfirmed]
-    doubts += [text for patterns, text in causes if any(fnmatchcase(check.id, part) for part in patterns)]
+    doubts += [text for patterns, text in causes if check.is_one_of(patterns)]
     return with_doubt(check, joined(*doubts)) if any(doubts) else check
 
 
@@ -71,9 +70,7 @@ standard on the shipped rigs and two rigs of others (K_V 1.53 against 1.08, root
 
 def _out_of_range(check: Check, findings: Sequence[Finding]) -> Check:
     """A check that depends on what is outside of the range of its law: open if it held, doubtful if not."""
-    texts = [
-        finding.text for finding in findings if any(fnmatchcase(check.id, part) for part in finding.checks)
-    ]
+    texts = [finding.text for finding in findings if check.is_one_of(finding.checks)]
     if not texts or check.value is None:
         return check
     cause = joined(texts[0], f"{len(texts) - 1} more like it" if len(texts) > 1 else "")

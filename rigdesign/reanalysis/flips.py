@@ -99,8 +99,9 @@ def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
     """
     failing = [check for check in sorted(result.checks, key=_order) if check.status == "fail"]
     wanted = failing or [check for check in sorted(result.checks, key=_order) if _predicted(check)][:1]
-    by_loads = [check for check in wanted if _is(check, BY_LOADS)][:SHOWN]
-    by_heat = [check for check in wanted if _is(check, BY_HEAT)][:1]  # each solves the coupling loop again
+    by_loads = [check for check in wanted if check.is_one_of(BY_LOADS)][:SHOWN]
+    # each of heat solves the coupling loop again
+    by_heat = [check for check in wanted if check.is_one_of(BY_HEAT)][:1]
     targets = [check for check in wanted if check in (*by_loads, *by_heat)]
     others = tuple(check.id for check in wanted if check not in targets)
     if not targets:
@@ -186,10 +187,6 @@ def _used(check: Check) -> float | None:
     return max(shares, default=None)
 
 
-def _is(check: Check, patterns: Sequence[str]) -> bool:
-    return any(fnmatchcase(check.id, pattern) for pattern in patterns)
-
-
 def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iterator[Candidate]:
     """Inputs of the design that may move the checks; gears of one box with the same width move together."""
     written = solved.case.origin.value_of
@@ -219,7 +216,7 @@ def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[
             yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], True
             yield f"bearing oil inlet temperature of {name}", [f"{own}.bearing_oil.inlet_temperature"], True
             yield f"oil flow of {name}", [f"{own}.oil.flow"], False
-        if any(_is(target, BY_LOADS) and f".{name}." in target.id for target in targets):
+        if any(target.is_one_of(BY_LOADS) and f".{name}." in target.id for target in targets):
             yield f"face width of {name} ", [f"{own}.gears.{gear}.face_width" for gear in box.gears], False
 
 
@@ -309,7 +306,7 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
             topic for topic in REGISTRY.topics() if any(_follows(f.key, patterns) for f in topic.families)
         ]
         found = [check for topic in topics for check in topic.checks(solved)]
-    return {check.id: check for check in found if _is(check, patterns)}
+    return {check.id: check for check in found if check.is_one_of(patterns)}
 
 
 def _follows(key: str, patterns: Sequence[str]) -> bool:

@@ -1,8 +1,9 @@
 """Design rules held against a result: verdicts, flags, and the checks of a run."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from fnmatch import fnmatchcase
 from typing import Literal, SupportsIndex, get_args, overload
 
 Verdict = Literal["pass", "open", "fail", "not applicable"]
@@ -63,6 +64,10 @@ class Check:
     def missed(self) -> bool:
         """Whether the value misses the limit, whatever the verdict."""
         return self.margin is not None and self.margin < 0.0
+
+    def is_one_of(self, patterns: Iterable[str]) -> bool:
+        """Whether its id fits one of the patterns, ``temperature.*`` say."""
+        return any(fnmatchcase(self.id, pattern) for pattern in patterns)
 
 
 def status(verdict: Verdict, flags: Collection[str]) -> Status:

@@ -3,7 +3,7 @@
 import re
 from typing import NoReturn
 
-from rigdesign.base.errors import CONTROL, Fault, RexsError
+from rigdesign.base.errors import Fault, RexsError, spelled_out
 
 MOST_FAULTS = 20
 """Faults after which the rest of a file is not looked at."""
@@ -13,8 +13,7 @@ _INTEGER = re.compile(r"\s*-?[0-9]{1,9}\s*")
 
 def printable(text: str) -> str:
     """``text`` as a terminal and a file can take it: control characters spelled out, half characters replaced."""
-    whole = text.encode("utf-8", "replace").decode("utf-8")
-    return CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", whole)
+    return spelled_out(text.encode("utf-8", "replace").decode("utf-8"))
 
 
 class FaultList:

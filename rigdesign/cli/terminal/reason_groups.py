@@ -3,9 +3,10 @@
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import get_args
 
 from rigdesign.checks.rules import CLOSE
-from rigdesign.results.check import Check
+from rigdesign.results.check import Check, Flag
 
 OF_GEARBOX = re.compile(r"\bgearbox (\w+)\b")
 DECIDED = "decided by assumption "
@@ -60,7 +61,7 @@ WORDS = {
 """Causes without further words, of one check and of several."""
 VERBS = ("leave", "has ", "have ", "miss", "is ", "are ")
 """Beginnings of reasons that follow their subject."""
-FLAGS = {"advisory": "advisory", "close": "close", "doubt": "doubt"}
+FLAGS: tuple[Flag, ...] = get_args(Flag)
 """Causes that are flags; all others make a check open."""
 
 
@@ -79,7 +80,11 @@ def reason_groups(checks: Iterable[Check]) -> list[ReasonGroup]:
         together.setdefault(key, []).extend(cause for cause, _ in entries)
         members[key] = tuple(own.values())
     groups = [
-        ReasonGroup(FLAGS.get(causes[0].kind, "open"), _reason(causes, len(members[key])), members[key])
+        ReasonGroup(
+            head=kind if (kind := causes[0].kind) in FLAGS else "open",
+            reason=_reason(causes, len(members[key])),
+            checks=members[key],
+        )
         for key, causes in together.items()
     ]
     return sorted(groups, key=lambda group: (group.head != "open", -len(group.checks)))
