@@ -224,6 +224,7 @@ def test_a_machine_without_room_for_processes_computes_in_this_one(monkeypatch):
 def test_a_process_that_dies_while_it_waits_is_replaced():
     with ProcessWorkers(1) as workers:
         ((_, first),) = workers.compute(process_number, [None])
+        assert first != os.getpid(), workers.remark
         os.kill(first, signal.SIGKILL)
         time.sleep(0.5)
         workers.open(process_number, [None])
@@ -240,6 +241,7 @@ def test_processes_that_no_longer_start_make_no_result(monkeypatch):
     """A task whose process died is only to blame if the next one would start."""
     with ProcessWorkers(1) as workers:
         workers.open(dies, [None])
+        assert not workers.remark  # else this process would compute it, and die
         monkeypatch.setattr(worker_pool, "_ProcessPool", no_pool)
         with pytest.raises(LostWorkersError, match="no room"):
             list(workers.compute(dies, [None]))
