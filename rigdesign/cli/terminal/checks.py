@@ -102,9 +102,10 @@ def _print_nearest(console: Console, checks: Sequence[Check]) -> None:
     nearest = sorted(predicted, key=lambda check: check.distance or 0.0)[:NEAREST]
     if not nearest:
         return
-    table = _table("nearest margins", "margin", "distance")
+    table = _table("nearest margins", "distance")
     for check in nearest:
-        table.add_row(Text(check.id), *map(Text, _numbers(check)))
+        value, limit, _, distance = map(Text, _numbers(check))
+        table.add_row(Text(check.id), value, limit, distance)
     console.print(table)
     if stated:
         number = "1 check" if stated == 1 else f"{stated} checks"
