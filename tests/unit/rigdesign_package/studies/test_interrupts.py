@@ -33,7 +33,7 @@ if __name__ == "__main__":
 
 
 AT_WORK = """
-import ctypes, os, sys, time
+import ctypes, faulthandler, os, sys, time
 sys.path.insert(0, {root!r})
 from functools import partial
 from pathlib import Path
@@ -60,6 +60,7 @@ def works(_):
         list(pool.compute(compiled, [folder, folder]))
 
 if __name__ == "__main__":
+    faulthandler.register(12)  # SIGUSR2: says where a command is that does not end
     command.run = works
     command.main()
 """
@@ -143,7 +144,14 @@ def test_no_process_outlives_a_command(
         while len(list(tmp_path.glob("begun-*"))) < 4 and time.monotonic() < until:
             time.sleep(0.01)
         command.send_signal(getattr(signal, number))
-        _, reported = command.communicate(timeout=10)
+        try:
+            _, reported = command.communicate(timeout=30)
+        except subprocess.TimeoutExpired:
+            left = living(command.pid)
+            command.send_signal(signal.SIGUSR2)
+            time.sleep(0.5)
+            os.killpg(command.pid, signal.SIGKILL)
+            pytest.fail(f"{command.poll()} {left} {command.communicate()[1]}")
         assert command.returncode == status
         assert reported.strip() == said or number == "SIGKILL"  # Python counts what a killed process leaves
         until = time.monotonic() + 1.0
