@@ -5,13 +5,14 @@ rigid displacements leave the state, only their velocity stays, so the state mat
 any strength are real poles of it. Nothing is truncated here.
 """
 
-from collections import OrderedDict
 from dataclasses import dataclass
 from hashlib import sha256
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eig, eigh, solve_triangular
+
+from thermal.fe.kept_results import kept_as
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -98,21 +99,12 @@ def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -
     )
 
 
-_MET: "OrderedDict[bytes, ModalForm]" = OrderedDict()
-"""Forms by their matrices, the one met last at the end."""
-MOST_MET = 600
-"""Forms kept: of systems that differ in one bearing or shaft all branches but one are the same."""
-
-
 def known_modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -> ModalForm:
-    """As `modal_form`; matrices met before are not solved again."""
+    """As `modal_form`; matrices met before are not solved again: of systems that differ in one bearing or shaft all
+    branches but one are the same."""
     matrices = (inertia, damping, stiffness, rigid)
-    key = sha256(b"".join(repr(one.shape).encode() + one.tobytes() for one in matrices)).digest()
-    found = _MET.pop(key, None) or modal_form(*matrices)
-    _MET[key] = found
-    if len(_MET) > MOST_MET:
-        _MET.popitem(last=False)
-    return found
+    content = sha256(b"".join(repr(one.shape).encode() + one.tobytes() for one in matrices)).digest()
+    return kept_as((modal_form, content), lambda: modal_form(*matrices))
 
 
 @dataclass(frozen=True, kw_only=True)

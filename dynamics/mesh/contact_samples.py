@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings, slice_sums
-from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.law import MeshLaw, law_content
 from dynamics.mesh.path_filter import TAIL, PathFilter
 from dynamics.mesh.slice_springs import slice_springs
 from thermal.fe.kept_results import kept_as
@@ -74,7 +74,7 @@ def flank_samples(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankSamp
     pitch = law.base_pitch
     beyond = ceil(4.0 * TAIL * abs(grid.path_filter.step) / pitch) * grid.per_pitch // 4 if grid.pairs else 0
     key = (
-        _sums, tuple(value.tobytes() if isinstance(value, np.ndarray) else value for value in law),
+        _sums, law_content(law),
         grid.sign, grid.pairs, grid.per_pitch, grid.depths.tobytes(), grid.tilts.tobytes(), beyond, node_law.path_speed,
         node_law.sharpness.tobytes(),
     )  # fmt: skip

@@ -24,9 +24,10 @@ from dynamics.kernels.contact_nodes import NodeLaw
 from dynamics.kernels.contact_table import ContactTables
 from dynamics.mesh.contact_flank import FlankTable, flank_table, splines
 from dynamics.mesh.contact_samples import FlankGrid
-from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
+from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law, law_content
 from dynamics.mesh.path_filter import RESOLVED, PathFilter
 from dynamics.mesh.tables import has_individual_teeth
+from thermal.fe.kept_results import kept_as
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -39,9 +40,6 @@ LEVELS = 8
 """Sharpnesses of the reversal of sliding at which friction is tabulated."""
 SHARPEST, BLUNTER = 1.5, 2.2
 """Cells over which friction reverses at the highest of them, and their ratio."""
-MOST_TABULATED = 24
-"""Tables that are kept; the oldest is forgotten when one more comes."""
-_tabulated: dict[object, ContactTables] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,21 +133,13 @@ def contact_tables(
     ValueError
         If a law is impossible (see ``check_mesh_law``), as DynamicsInputError if it knows no face positions for tilt.
     """
-    content = tuple(
-        tuple((value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value for value in law)
-        for law in laws
-    )
-    key = (content, grid, march, derivative_torques)
-    if key not in _tabulated:
-        if len(_tabulated) >= MOST_TABULATED:
-            del _tabulated[next(iter(_tabulated))]
-        tables = _tables(laws, grid, march)
-        tables.values[:, layout.V_DERIVATIVE] = derivative_torques
-        _tabulated[key] = tables
-    return _tabulated[key]
+    key = (_tables, tuple(map(law_content, laws)), grid, march, derivative_torques)
+    return kept_as(key, lambda: _tables(laws, grid, march, derivative_torques))
 
 
-def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -> ContactTables:
+def _tables(
+    laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None, derivative_torques: bool
+) -> ContactTables:
     counts = np.zeros((len(laws), layout.N_TABLE_COUNTS), np.int64)
     values = np.zeros((len(laws), layout.N_TABLE_VALUES))
     parts: list[_MeshTables] = []
@@ -186,6 +176,7 @@ def _tables(laws: Sequence[MeshLaw], grid: TableGrid, march: MarchStep | None) -
         _fill_counts(counts[mesh], law, flanks, own, part)
         _fill_values(values[mesh], law, flanks, own, depths)
         parts.append(part)
+    values[:, layout.V_DERIVATIVE] = derivative_torques
     return ContactTables(
         values=values,
         counts=counts,

@@ -136,6 +136,11 @@ def in_parallel(law: MeshLaw, count: int) -> MeshLaw:
     )
 
 
+def law_content(law: MeshLaw) -> tuple[object, ...]:
+    """All numbers of a law, hashable: what results that follow from it are kept by."""
+    return tuple((value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value for value in law)
+
+
 def check_mesh_law(law: MeshLaw) -> None:
     """Raise ``ValueError`` naming value, limit and remedy if the tables do not describe a possible mesh."""
     n_slices, n_path = law.stiffness.shape

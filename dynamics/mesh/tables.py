@@ -18,14 +18,11 @@ from scipy.interpolate import PchipInterpolator
 from dynamics import kernels
 from dynamics.kernels import PackedMeshes
 from dynamics.kernels.mesh_tables import DAMP_TIME
-from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
+from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law, law_content
+from thermal.fe.kept_results import kept_as
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-MOST_PACKED = 128
-"""Tables that are kept; all are forgotten when one more comes."""
-_packed: dict[object, PackedMeshes] = {}
 
 
 def pack_meshes(
@@ -44,17 +41,8 @@ def pack_meshes(
     ValueError
         If a law is impossible (see ``check_mesh_law``).
     """
-    key = (tuple(map(_content, laws)), derivative_torques, over_phase)
-    if key not in _packed:
-        if len(_packed) >= MOST_PACKED:
-            _packed.clear()
-        _packed[key] = _tables(laws, derivative_torques, over_phase)
-    return _packed[key]
-
-
-def _content(law: MeshLaw) -> tuple[object, ...]:
-    """All numbers of a law, to be known by."""
-    return tuple((value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value for value in law)
+    key = (_tables, tuple(map(law_content, laws)), derivative_torques, over_phase)
+    return kept_as(key, lambda: _tables(laws, derivative_torques, over_phase))
 
 
 def _tables(laws: Sequence[MeshLaw], derivative_torques: bool, over_phase: bool) -> PackedMeshes:
