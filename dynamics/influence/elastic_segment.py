@@ -38,7 +38,7 @@ def solve_segment(
     if plane_strain:
         free[:, 2] = False
     moving = np.flatnonzero(free)
-    factor = DirectFactor(sparse.csr_array(stiffness[moving][:, moving]))
+    factor = DirectFactor(sparse.csr_array(stiffness[moving][:, moving]), segment.straight[free.any(axis=1)])
     found = np.zeros((3 * n, loads.shape[0]))
     found[moving] = factor(loads.T.tocsr()[moving].toarray())
     return found

@@ -101,6 +101,12 @@ class GearSegment:
         held = np.flatnonzero((places >= -slack) & (places <= 1.0 + slack))
         return [(int(layer), float(np.clip(places[layer], 0.0, 1.0))) for layer in held]
 
+    @property
+    def straight(self) -> Array:
+        """(n, 3) points as if the gear had no helix: its planes do not turn [m]."""
+        height = self.points[:, 2]
+        return np.column_stack([turned(self.points[:, :2], -self.lead * height), height])
+
     @cached_property
     def bore(self) -> IndexArray:
         """Nodes on the bore, where the shaft holds the gear."""

@@ -94,8 +94,8 @@ class FullField:
         problem = ConductionProblem(setup, conditions)
         self._start = problem.start(near)
         linear = problem.linearise(self._start)
-        small = problem.n_nodes <= MOST_NODES
-        made = DirectFactor(linear.matrix) if small else problem.multigrid(linear, self._start)
+        points, small = setup.elements.mesh.points, problem.n_nodes <= MOST_NODES
+        made = DirectFactor(linear.matrix, points) if small else problem.multigrid(linear, self._start)
         made.set_low_rank(linear.low_rank)
         self._factor = _Kept(made)
 

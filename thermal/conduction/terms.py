@@ -348,7 +348,7 @@ class ConductionProblem:
         """For the system of a Newton step and those near it; factors for time steps on a small mesh."""
         made: Preconditioner
         if self.storage is not None and self.n_nodes <= MOST_NODES:
-            made = DirectFactor(linear.matrix)
+            made = DirectFactor(linear.matrix, self.elements.mesh.points)
         else:
             made = self.multigrid(linear, field)
         made.set_low_rank(linear.low_rank)

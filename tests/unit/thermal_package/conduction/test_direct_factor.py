@@ -28,7 +28,7 @@ def test_woodbury_inverts_the_small_rank_part() -> None:
     a = rng.normal(size=(30, 30))
     matrix = a @ a.T + 30.0 * np.eye(30)
     left, right = rng.normal(size=(2, 30, 3))
-    factor = DirectFactor(sparse.csr_array(matrix))
+    factor = DirectFactor(sparse.csr_array(matrix), rng.normal(size=(30, 3)))
     load = rng.normal(size=30)
     assert factor(load) == pytest.approx(np.linalg.solve(matrix, load), rel=1e-10)
     factor.set_low_rank(LowRank(sparse.csc_array(left), sparse.csc_array(right)))
