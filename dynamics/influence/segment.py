@@ -107,6 +107,25 @@ class GearSegment:
         height = self.points[:, 2]
         return np.column_stack([turned(self.points[:, :2], -self.lead * height), height])
 
+    @property
+    def slack(self) -> float:
+        """Length below which heights are the same [m]."""
+        return 1e-9 * float(self.heights[-1] - self.heights[0])
+
+    @cached_property
+    def mirror(self) -> IndexArray | None:
+        """(n,) node on the other side of mid-face; None where the halves differ or no plane parts them."""
+        even = len(self.heights) % 2 == 0 or np.abs(self.heights + self.heights[::-1]).max() > self.slack
+        if even or self.lead != 0.0:
+            return None
+        found = np.empty(len(self.points), dtype=np.int32)
+        for nodes in (self.planes, self.middles):
+            there = nodes != NOWHERE
+            if (there != there[::-1]).any():
+                return None
+            found[nodes[there]] = nodes[::-1][there]
+        return found
+
     @cached_property
     def bore(self) -> IndexArray:
         """Nodes on the bore, where the shaft holds the gear."""

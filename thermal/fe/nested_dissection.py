@@ -22,10 +22,10 @@ LEAF = 80
 """Nodes of a set that is not cut any more."""
 CUTS = (0.26, 0.38, 0.5, 0.62, 0.74)
 """Shares of the nodes on one side at which cuts are tried."""
+SMALL = 600
+"""Nodes of a set that is cut in the middle only: what a better cut would save is little."""
 LEAST_SHARE = 0.2
 """Of the nodes on the smaller side of a cut; planes of nodes make sides other than asked."""
-SHORT = 0.3
-"""Length of an axis, per longest one of a set, below which no cut across it is tried."""
 
 
 @dataclass(frozen=True)
@@ -84,11 +84,10 @@ def _best_cut(graph: sparse.csr_array, points: FloatArray) -> tuple[BoolArray, B
 
 def _halves(points: FloatArray) -> Iterator[BoolArray]:
     """Which points lie below the planes that are tried."""
-    lengths = np.ptp(points, axis=0)
-    for axis in np.flatnonzero(lengths >= SHORT * lengths.max()):
-        along = np.sort(points[:, axis])
-        for share in CUTS:
-            low = points[:, axis] < along[int(share * len(along))]
+    for heights in points.T:
+        along = np.sort(heights)
+        for share in CUTS if len(points) > SMALL else (0.5,):
+            low = heights < along[int(share * len(along))]
             if LEAST_SHARE <= np.mean(low) <= 1.0 - LEAST_SHARE:
                 yield low
 

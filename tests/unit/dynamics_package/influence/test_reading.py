@@ -1,9 +1,11 @@
 """Loads on a segment and what is read on it: exact for rigid bodies and for known strains, one newton, reciprocal."""
 
+from dataclasses import replace
 from math import atan
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from dynamics.influence.elastic_segment import solve_segment
 from dynamics.influence.gear_body import TEETH
@@ -175,3 +177,25 @@ def test_surface_compliance_is_reciprocal(read):
     assert np.linalg.eigvalsh(0.5 * (surface + surface.T)).min() > 0.0
     # what carries a force is what moves: no displacement where the shaft holds
     assert np.abs(moved.reshape(-1, 3, len(surface))[read.segment.bore]).max() == 0.0
+
+
+@pytest.mark.parametrize("web", [None, 0.6])
+def test_halves_of_a_spur_gear_give_what_the_whole_gives(monkeypatch, web):
+    model = small_model(0.0, n_face=5)
+    body = model.body if web is None else replace(model.body, web_thickness=web * 20e-3, rim_thickness=8e-3)
+    section = gear_section(model.form, body, model.division)
+    segment = GearSegment.of(section, model.face, 0.0, body)
+    loads = np.random.default_rng(3).normal(size=(4, segment.points.size))
+    assert segment.mirror is not None
+    halves = solve_segment(segment, STEEL, sparse.csr_array(loads))
+    monkeypatch.setattr(GearSegment, "mirror", None)
+    whole = solve_segment(segment, STEEL, sparse.csr_array(loads))
+    assert halves == pytest.approx(whole, abs=1e-9 * np.abs(whole).max())
+
+
+def test_a_helical_gear_and_an_even_number_of_positions_have_no_halves():
+    model = small_model(0.0)
+    section = gear_section(model.form, model.body, model.division)
+    assert GearSegment.of(section, model.face, 3.0).mirror is None
+    assert GearSegment.of(section, np.linspace(-1e-2, 1e-2, 4)).mirror is None
+    assert GearSegment.of(section, np.linspace(-1e-2, 2e-2, 5)).mirror is None

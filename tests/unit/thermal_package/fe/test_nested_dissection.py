@@ -47,7 +47,7 @@ def test_separators_part_the_whole_and_hold_every_node_once() -> None:
 def test_several_loads_are_solved_to_rounding(unknowns: int) -> None:
     matrix, points = lattice((11, 6, 5), unknowns)
     loads = np.random.default_rng(1).normal(size=(matrix.shape[0], 4))
-    factor = DirectFactor(matrix, points)
+    factor = DirectFactor(matrix, points, np.arange(0, len(loads), unknowns))
     assert factor(loads) == pytest.approx(splu(sparse.csc_array(matrix)).solve(loads), rel=1e-9, abs=1e-9)
     assert factor(loads[:, 2]) == pytest.approx(factor(loads)[:, 2], rel=1e-12)
 
@@ -62,3 +62,5 @@ def test_a_matrix_that_is_not_positive_definite_is_refused() -> None:
     matrix, points = lattice((6, 6, 6), 1)
     with pytest.raises(LinAlgError, match="not positive definite"):
         DirectFactor(sparse.csr_array(matrix - 2.0 * sparse.eye_array(len(points))), points)
+    with pytest.raises(ValueError, match="10 points for 216 nodes"):
+        DirectFactor(matrix, points[:10])
