@@ -29,7 +29,7 @@ class Numerics(Part):
     """Most iterations of the coupling loop."""
     sample_rate: Frequency
     """Rate at which the time run is stored; it integrates ``internal_steps`` times as fast."""
-    internal_steps: Annotated[int, Field(ge=4, le=256)] = 8
+    internal_steps: Annotated[int, Field(ge=4, le=256)] = 4
     """Integration steps per sample."""
     slices_spur: Annotated[int, Field(ge=1, le=101)] | None = None
     """Slices over the face of spur gears; by what their faces need when left out: 1 if flat, else 8."""
