@@ -22,8 +22,13 @@ LIMIT = 150_000_000
 _SHARED = (type, ModuleType, FunctionType, BuiltinFunctionType)
 """What belongs to the program and not to a result."""
 
+LEFT = 0.8
+"""Share of the limit that is left when it is exceeded: what two results share is counted over all of them then only."""
+
 _results: OrderedDict[Hashable, Any] = OrderedDict()
 """By function and arguments, what was used last at the end."""
+_held = 0
+"""Bytes of all results, those that two share counted for each that came since the last count over all."""
 
 
 def kept(function: Callable[P, T]) -> Callable[P, T]:
@@ -44,18 +49,24 @@ def kept_as(key: Hashable, make: Callable[[], T]) -> T:
         return cast(T, _results[key])
     made = make()
     _results[key] = made
-    _forget_oldest()
+    global _held
+    _held += _bytes([key, made], set())
+    if _held > LIMIT:
+        _held = _forget_oldest()
     return made
 
 
-def _forget_oldest() -> None:
-    """Drop what lies beyond the limit, counted from the result that was used last; what two share counts once."""
+def _forget_oldest() -> int:
+    """Drop what lies beyond the share that is left, counted from the result that was used last; bytes of the others."""
     seen: set[int] = set()
     total = 0
     for number, (key, found) in enumerate(reversed(list(_results.items()))):
-        total += _bytes([key, found], seen)
-        if total > LIMIT and number > 0:
+        size = _bytes([key, found], seen)
+        if total + size > LEFT * LIMIT and number > 0:
             _results.pop(key, None)
+        else:
+            total += size
+    return total
 
 
 def _bytes(values: list[Any], seen: set[int]) -> int:
