@@ -58,7 +58,7 @@ class ToothInfluence:
         # what another process computes comes last: it is read then
         missing.sort(key=self.store.in_progress)
         whole, at_once = len(missing), min(_at_once(), cores())
-        say(f"influence numbers of gears not yet known: {whole}, half a minute each; then kept")
+        say(f"influence numbers of gears not yet known: {whole}, 5 to 10 s each; then kept")
         count = count or (
             lambda done, whole, last: say(f"{done} of {whole} gears, last {last}") if done else None
         )

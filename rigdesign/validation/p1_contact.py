@@ -47,7 +47,7 @@ FACE_POSITIONS = 25
 
 
 def standard(model: GearModel) -> GearModel:
-    """As in a check: influence numbers of half a minute a gear, kept in the store."""
+    """As in a check: influence numbers of 5 to 10 s a gear, kept in the store."""
     return model
 
 
