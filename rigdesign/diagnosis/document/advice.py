@@ -60,8 +60,21 @@ class NextStep:
         return None if self.expected_evidence is None else min(exp(self.expected_evidence), LARGEST_ODDS)
 
 
+DOUBTFUL_READINGS = ("swapped_channels", "unit", "thousands")
+"""Findings of the data, beside those that are named, that the verdict of a set in which nothing is named has to say."""
+NOTHING_NAMED = ("within_noise", "too_small", "unknown_located", "data_insufficient")
+
+
 def headline(outcome: Outcome) -> str:
-    """The verdict in a sentence or two."""
+    """The verdict in a sentence or two, and readings in doubt where nothing is named."""
+    texts = [_verdict(outcome)]
+    if outcome.verdict in NOTHING_NAMED:
+        doubtful = [one for one in outcome.result.data.findings if one.id in DOUBTFUL_READINGS]
+        texts += [f"Readings in doubt: {one.text}." for one in doubtful if one.weight == "suspect"]
+    return " ".join(texts)
+
+
+def _verdict(outcome: Outcome) -> str:
     found = outcome.result.diagnosis
     match outcome.verdict:
         case "named":

@@ -28,6 +28,7 @@ from rigdesign.diagnosis.library.candidates import SPARE
 from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
+from rigdesign.measurement.reading.measurement_set import DataFinding
 from tests.builders.diagnosis import library, story, the_case
 from tests.builders.effects_page import effects_page
 from tests.builders.paths import CASES
@@ -224,6 +225,19 @@ def test_refusals_say_why_and_what_to_do() -> None:
     healthy = document("healthy")
     assert healthy["patch"]["case"] is None and healthy["unexplained"]["groups"] == []
     assert "residual is within that of a healthy rig" in healthy["headline"]
+
+
+def test_a_set_in_which_nothing_is_named_tells_what_a_comparison_suspects() -> None:
+    """Before, a healthy verdict stood above exchanged channels that `compare` names."""
+    told_ = outcome(story("healthy"))
+    text = "T_gear and T_bearing: exchanged, they leave 3.0% of their squared residual"
+    finding = DataFinding(
+        id="swapped_channels", weight="suspect", channels=("T_gear", "T_bearing"), text=text
+    )
+    data = replace(told_.result.data, findings=(*told_.result.data.findings, finding))
+    assert headline(replace(told_, result=replace(told_.result, data=data))).endswith(
+        f"is within that of a healthy rig. Readings in doubt: {text}."
+    )
 
 
 def test_exchanged_channels_are_put_right_in_the_measurement() -> None:
