@@ -3,7 +3,7 @@
     ThermalError
     ├── ThermalInputError       an input that cannot be computed; also a ValueError
     │   ├── MeshError, GeometryError, ConditionError, EnclosureError, FilmError, AirRangeError
-    │   └── DirectError, ElasticError
+    │   └── ElasticError
     └── ThermalNotConverged            an iteration that did not reach its tolerance; also a RuntimeError
 
 A message states name, value, limit and remedy. Anything else that leaves the package is a defect of it.

@@ -33,15 +33,15 @@ from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.residual.baseline import Drift
-from rigdesign.diagnosis.residual.calibration import calibrate as fit_all
-from rigdesign.diagnosis.residual.calibration import calibrate_drift
-from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.run import diagnose_measurement, read_residuals
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
+from tests.blind.calibration import calibrate as fit_all
+from tests.blind.calibration import calibrate_drift
 from tests.blind.comparators import COMPARATORS, comparators
+from tests.blind.covariance_inflation import inflate_drift
 from tests.blind.metrics import SIZES, Row, canonical, compared, table
 from tests.blind.splits import RIGS, SENSORS, Spec, specs
 from tests.builders.paths import ROOT

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from tests.builders.direct_solution import solve_direct
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, NamedMesh
-from thermal.fe.solver import constrain, solve_direct
+from thermal.fe.solver import constrain
 
 
 def solved(

@@ -10,13 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.builders.direct_solution import solve_direct
 from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, SurfaceSource
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
-from thermal.fe.solver import constrain, solve_direct
+from thermal.fe.solver import constrain
 
 CELLS = ("tetra10", "hexahedron20", "hexahedron27")
 K, H = 20.0, 35.0

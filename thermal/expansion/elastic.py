@@ -12,12 +12,14 @@ from difflib import get_close_matches
 from typing import NamedTuple
 
 import numpy as np
+from scipy import sparse
+from scipy.linalg import LinAlgError
 
 from thermal.errors import ThermalNotConverged
 from thermal.expansion.supports import ElasticError, FreePieces, check_held, three_two_one
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.curved import linear_stiffness
-from thermal.fe.direct import solve_direct
+from thermal.fe.direct_factor import DirectFactor
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
 from thermal.fe.solver import (
@@ -154,8 +156,12 @@ class ElasticSetup:
             if len(load) > DIRECT:
                 raise
             held = self._held | self.free.pins.ravel()
-            right = np.where(held, 0.0, load)
-            values = solve_direct(constrain(self.matrix, held), right)
+            matrix = sparse.csr_array(constrain(self.matrix, held))
+            try:
+                factor = DirectFactor(matrix, self.elements.mesh.points, np.arange(0, len(load), 3))
+            except LinAlgError:
+                raise stalled from None
+            values = factor(np.where(held, 0.0, load))
             left = float(np.linalg.norm(load - self.matrix @ values) / np.linalg.norm(load))
             return LinearSolution(values, (*stalled.residuals, left))
 

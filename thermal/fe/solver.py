@@ -13,7 +13,6 @@ from scipy import sparse
 from thermal.errors import ThermalNotConverged
 from thermal.fe import kernels
 from thermal.fe.arrays import FloatArray
-from thermal.fe.direct import solve_direct
 from thermal.fe.multigrid import HeldMatrix, LinearSpace, TwoLevelMultigrid
 from thermal.fe.products import BoolArray, LowRank, Matrix, Product
 
@@ -30,7 +29,6 @@ __all__ = [
     "conjugate_gradient",
     "constrain",
     "gmres",
-    "solve_direct",
 ]
 
 M = TypeVar("M", sparse.csr_array, sparse.bsr_array)

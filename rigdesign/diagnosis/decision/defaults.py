@@ -1,6 +1,6 @@
 """What calibration froze: amplitudes, inflation, thresholds and signature errors, with their origin.
 
-Fitted by `rigdesign.diagnosis.residual.calibration` to 108 healthy sets of the virtual rig, 36 of each of three rigs;
+Fitted by `tests.blind.calibration` to 108 healthy sets of the virtual rig, 36 of each of three rigs;
 the amplitudes to those 76 with up to 700 numbers (36 of the prototype, 24 of the 1:1 loop, 16 of the loop with a
 hunting ratio), the inflation to all. Dimensionless, so that they serve rigs that nobody has simulated. Thresholds come
 from the development split and from what healthy sets reach.

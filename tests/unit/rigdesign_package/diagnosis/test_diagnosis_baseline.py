@@ -7,11 +7,11 @@ import pytest
 
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.baseline import SHARES, Change, Drift, differenced
-from rigdesign.diagnosis.residual.calibration import calibrate_drift
-from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition
+from tests.blind.calibration import calibrate_drift
+from tests.blind.covariance_inflation import inflate_drift
 from tests.builders.diagnosis import story
 
 STEP = 0.01

@@ -9,7 +9,6 @@ from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
 from rigdesign.diagnosis.catalogue.families import FILM
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual import residual_problem as problems
-from rigdesign.diagnosis.residual.covariance_inflation import INFLATE_ABOVE, LARGEST, inflate
 from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
@@ -17,6 +16,7 @@ from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesi
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.support import support
 from rigdesign.prediction.model import Channel, OperatingCondition, features_of
+from tests.blind.covariance_inflation import INFLATE_ABOVE, LARGEST, inflate
 from tests.builders.diagnosis import DESIGN, story
 
 SETTINGS = tuple(

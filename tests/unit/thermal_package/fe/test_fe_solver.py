@@ -8,11 +8,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy import sparse
 from scipy.spatial import Delaunay
 
+from tests.builders.direct_solution import solve_direct
 from tests.builders.scikit_fem_mesh import second_order
 from thermal.errors import ThermalNotConverged
-from thermal.fe import direct
 from thermal.fe.aggregation import rigid_modes
-from thermal.fe.direct import Backend, DirectError, available_backend
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
 from thermal.fe.smoothing import Scaling
@@ -23,7 +22,6 @@ from thermal.fe.solver import (
     conjugate_gradient,
     constrain,
     gmres,
-    solve_direct,
 )
 
 
@@ -237,24 +235,6 @@ def test_solutions_are_the_same_bits_every_time() -> None:
     first, second = (heat_problem(4) for _ in range(2))
     results = [conjugate_gradient(m, b, g).values.tobytes() for _, m, b, g in (first, second)]
     assert results[0] == results[1]
-
-
-@pytest.mark.parametrize("backend", ["pardiso", "superlu"])
-def test_direct_solutions_are_exact_to_rounding(backend: Backend) -> None:
-    if backend == "pardiso" and available_backend() != "pardiso":
-        pytest.skip("pypardiso is not installed")
-    for matrix, load in (heat_problem(3)[1:3], elastic_problem(2)[:2]):
-        solution = solve_direct(matrix, load, backend)
-        assert np.linalg.norm(matrix @ solution - load) < 1e-11 * np.linalg.norm(load)
-
-
-def test_a_backend_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(direct, "find_spec", lambda name: None)
-    _, matrix, load, _ = heat_problem(2)
-    assert available_backend() == "superlu"
-    assert solve_direct(matrix, load).shape == load.shape
-    with pytest.raises(DirectError, match="needs the package pypardiso"):
-        solve_direct(matrix, load, "pardiso")
 
 
 @pytest.mark.parametrize("small", [1, 2])
