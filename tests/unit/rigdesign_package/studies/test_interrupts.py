@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.base.file_lock import FileLock
+from rigdesign.base.parallel import STOPS
 from rigdesign.cli import ending
 from rigdesign.studies.ledger import read_points
 from rigdesign.studies.shards import LEDGER_NAME, LOCK_NAME
@@ -40,6 +41,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from rigdesign.base import parallel
 from rigdesign.base.file_lock import FileLock
+from rigdesign.base.parallel import STOPS
 from rigdesign.base.worker_pool import ProcessWorkers
 from rigdesign.cli import main as command
 
@@ -71,10 +73,11 @@ def begun(folder: Path, count: int) -> bool:
 
 
 def started(command: list[str]) -> subprocess.Popen[str]:
-    """In a session of its own, as from a terminal: a test run in the background hands on that it ignores Ctrl-C."""
+    """In a session of its own, as from a terminal: a test run in the background or under nohup hands on that it ignores
+    Ctrl-C or the end of its terminal."""
     return subprocess.Popen(
         [sys.executable, *command], stderr=subprocess.PIPE, text=True, start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=lambda: [signal.signal(number, signal.SIG_DFL) for number in STOPS],
     )  # fmt: skip
 
 
