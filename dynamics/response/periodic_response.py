@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.periodic_load import within_period
-from dynamics.errors import DynamicsInputError
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
@@ -49,6 +49,8 @@ LEAST_WATCHED = 4
 """Times that a motion repeats at least while it is watched for a slow swing; longer periods are not."""
 LEAST_STEPS = 64
 """Internal steps per period at least."""
+MOST_STEPS = 2_000_000
+"""Steps of one period up to which a march is tried: at creep speed the motion is quasi-static."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -228,7 +230,7 @@ class TimeIntegration:
         DynamicsInputError
             For impossible input, see ``wound_state``.
         DynamicsNotConverged
-            If the initial state is not found or the march leaves the finite numbers.
+            If the initial state is not found, the march leaves the finite numbers, or a period has over `MOST_STEPS`.
         """
         if not speed > 0.0:
             raise DynamicsInputError(
@@ -236,6 +238,12 @@ class TimeIntegration:
             )
         drags = dict(drag_torques or {})
         period = self._period(speed)
+        if period.steps > MOST_STEPS:
+            raise DynamicsNotConverged(
+                f"speed = {speed:.4g} rad/s: a period of {period.length:.4g} s takes {period.steps} steps, limit "
+                f"{MOST_STEPS}; the motion is quasi-static there, give a speed of at least "
+                f"{speed * period.steps / MOST_STEPS:.3g} rad/s"
+            )
         wound = wound_state(self.system, self.laws, speed, load, drags)
         if start is not None:
             state = _restarted(start, speed, self._ratios, wound.state if load.twist is not None else None)

@@ -15,6 +15,7 @@ from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.static_loop import port_model
+from dynamics.errors import DynamicsNotConverged
 from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_continuation import CRAWLING, BranchTrace, SpeedProblem
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
@@ -217,3 +218,11 @@ def test_maps_keep_stable_states_alone_and_say_where_there_are_none() -> None:
     full = {point.speed: point for point in light(speeds, "harmonic_balance").points}
     for point in curve.points:
         assert point.dynamic_factor == pytest.approx(full[point.speed].dynamic_factor, rel=1e-3)
+
+
+def test_a_march_at_creep_speed_is_refused_before_it_takes_the_memory() -> None:
+    """A stage from 0.01 rpm asked for 100 GiB."""
+    with pytest.raises(
+        DynamicsNotConverged, match=r"limit 2000000; the motion is quasi-static there, give a speed"
+    ):
+        periodic_by_time(assemble(prototype()), prototype_laws(), 0.01 * RPM, LoopLoad(torque=10.0))
