@@ -51,7 +51,8 @@ def solve_segment(
         systems.append((moves, share))
     alike, opposite = _solved(segment, material, upper, systems)
     moved = alike + opposite
-    moved[~upper] = (turned_over * (alike - opposite))[mirror[~upper]]
+    source = mirror[~upper]
+    moved[~upper] = turned_over * (alike[source] - opposite[source])
     return moved.reshape(3 * n, -1)
 
 
@@ -70,13 +71,14 @@ def _solved(
     level = Level.of(segment.points[kept], cells, HEXAHEDRON_20)
     blocks = level.elasticity(np.full(len(cells), material.young), np.full(len(cells), material.poisson))
     stiffness = sparse.csr_array(level.block_matrix(blocks).tocsr())
-    found = []
+    straight = segment.straight[kept]
+    solutions = []
     for moves, forces in systems:
         moving = np.flatnonzero(moves[kept])
         _, first = np.unique(moving // 3, return_index=True)
-        points = segment.straight[kept][moving[first] // 3]
-        factor = DirectFactor(sparse.csr_array(stiffness[moving][:, moving]), points, first)
+        reduced = sparse.csr_array(stiffness[moving][:, moving])
+        factor = DirectFactor(reduced, straight[moving[first] // 3], first)
         moved = np.zeros(forces.shape)
         moved[kept[:, None] & moves] = factor(forces[kept[:, None] & moves])
-        found.append(moved)
-    return found
+        solutions.append(moved)
+    return solutions

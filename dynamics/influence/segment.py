@@ -95,9 +95,8 @@ class GearSegment:
 
     def layers_at(self, position: float) -> list[tuple[int, float]]:
         """Layers that hold a position over the face and the place in each, 0 to 1; both that meet in a plane."""
-        span = float(self.heights[-1] - self.heights[0])
         places = (position - self.heights[:-1]) / np.diff(self.heights)
-        slack = 1e-9 * span / np.diff(self.heights)
+        slack = self.slack / np.diff(self.heights)
         held = np.flatnonzero((places >= -slack) & (places <= 1.0 + slack))
         return [(int(layer), float(np.clip(places[layer], 0.0, 1.0))) for layer in held]
 
@@ -118,13 +117,13 @@ class GearSegment:
         even = len(self.heights) % 2 == 0 or np.abs(self.heights + self.heights[::-1]).max() > self.slack
         if even or self.lead != 0.0:
             return None
-        found = np.empty(len(self.points), dtype=np.int32)
+        mirrored = np.empty(len(self.points), dtype=np.int32)
         for nodes in (self.planes, self.middles):
             there = nodes != NOWHERE
             if (there != there[::-1]).any():
                 return None
-            found[nodes[there]] = nodes[::-1][there]
-        return found
+            mirrored[nodes[there]] = nodes[::-1][there]
+        return mirrored
 
     @cached_property
     def bore(self) -> IndexArray:

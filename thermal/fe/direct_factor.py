@@ -96,12 +96,12 @@ class DirectFactor:
         for front in reversed(self._fronts):
             own = x[front.first : front.end] - front.below.T @ x[front.rows]
             x[front.first : front.end] = dtrsm(1.0, front.diagonal, own, lower=1, trans_a=1)
-        found = np.empty_like(x)
-        found[self._order] = x
+        solution = np.empty_like(x)
+        solution[self._order] = x
         if self._correction is not None:
             solved, inner = self._correction
-            found -= solved @ (inner @ found)
-        return found.reshape(residual.shape)
+            solution -= solved @ (inner @ solution)
+        return solution.reshape(residual.shape)
 
 
 def _eliminated(

@@ -52,10 +52,10 @@ def _dissect(order: list[Separator], nodes: Indices, graph: sparse.csr_array, po
 
     graph : between the nodes; points : of all nodes
     """
-    found = None if len(nodes) <= LEAF else _best_cut(graph, points[nodes])
+    cut = None if len(nodes) <= LEAF else _best_cut(graph, points[nodes])
     parts, own = list[int](), nodes
-    if found is not None:
-        separator, low = found
+    if cut is not None:
+        separator, low = cut
         own = nodes[separator]
         for side in (low & ~separator, ~low & ~separator):
             if side.any():
@@ -66,7 +66,7 @@ def _dissect(order: list[Separator], nodes: Indices, graph: sparse.csr_array, po
 
 def _best_cut(graph: sparse.csr_array, points: FloatArray) -> tuple[BoolArray, BoolArray] | None:
     """Which nodes separate and which lie below the cut, for the fewest in proportion to the sides they part."""
-    best, found = np.inf, None
+    least, cut = np.inf, None
     for low in _halves(points):
         across = graph[low][:, ~low]
         rows, columns = np.flatnonzero(np.diff(across.indptr)), np.unique(across.indices)
@@ -74,12 +74,12 @@ def _best_cut(graph: sparse.csr_array, points: FloatArray) -> tuple[BoolArray, B
         count = np.count_nonzero(chosen_rows) + np.count_nonzero(chosen_columns)
         below = np.count_nonzero(low)
         cost = count / np.sqrt(below * (len(points) - below))
-        if cost < best:
+        if cost < least:
             separator = np.zeros(len(points), bool)
             separator[np.flatnonzero(low)[rows[chosen_rows]]] = True
             separator[np.flatnonzero(~low)[columns[chosen_columns]]] = True
-            best, found = cost, (separator, low)
-    return found
+            least, cut = cost, (separator, low)
+    return cut
 
 
 def _halves(points: FloatArray) -> Iterator[BoolArray]:

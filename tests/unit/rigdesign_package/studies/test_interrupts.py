@@ -34,7 +34,7 @@ if __name__ == "__main__":
 
 
 AT_WORK = """
-import ctypes, faulthandler, os, sys, time
+import ctypes, faulthandler, os, signal, sys, time
 sys.path.insert(0, {root!r})
 from functools import partial
 from pathlib import Path
@@ -62,7 +62,7 @@ def works(_):
         list(pool.compute(compiled, [folder, folder]))
 
 if __name__ == "__main__":
-    faulthandler.register(12)  # SIGUSR2: says where a command is that does not end
+    faulthandler.register(signal.SIGUSR2)  # says where a command is that does not end
     command.run = works
     command.main()
 """
