@@ -30,9 +30,9 @@ class FlankCompliance(Protocol):
         """Roll length at the end of the flank, at the tip edge [m]."""
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
-        """Return (n, n) displacement of point i along its flank normal per newton of normal force on point j [m/N].
+        """Return (..., n, n) displacement of point i along its flank normal per normal force on point j [m/N].
 
-        roll : (n,) roll lengths [m], held at the ends of the flank; face : (n,) from mid-face [m]; tooth : (n,)
+        roll : (..., n) roll lengths [m], held at the ends of the flank; face : (n,) from mid-face [m]; tooth : (n,)
         """
 
     def depth(self, roll: Array) -> Array:
@@ -175,20 +175,26 @@ class InterpolatedCompliance:
         return hats
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
-        """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""
-        shapes = self.shapes(roll, face)
-        result = np.full((len(roll), len(roll)), self.beyond)
-        teeth = np.unique(tooth)
-        rows = {int(one): np.flatnonzero(tooth == one) for one in teeth}
+        """Compliance (..., n, n) between points, see `FlankCompliance` [m/N]."""
+        along = self._profile_shapes(np.clip(roll, self.profile[0], self.profile[-1]))
+        along = along.reshape(-1, *along.shape[-2:])
+        across = self._hats(face)
+        (places, n, n_p), n_f = along.shape, len(self.face)
+        result = np.full((places, n, n), self.beyond)
+        rows = {int(one): np.flatnonzero(tooth == one) for one in np.unique(tooth)}
         for loaded, columns in rows.items():
-            for offset in range(min(self.deflection), max(self.deflection) + 1):
+            for offset, numbers in self._symmetric.items():
                 moved = rows.get(loaded + offset)
-                if moved is None or offset < 0 or offset not in self._symmetric:
+                if moved is None or offset < 0:
                     continue
-                block = shapes[moved] @ self._symmetric[offset] @ shapes[columns].T
-                result[np.ix_(moved, columns)] = block
-                result[np.ix_(columns, moved)] = block.T
-        return result
+                at_face = np.tensordot(numbers.reshape(n_p, n_f, n_p, n_f), across[columns], (3, 1))
+                at_faces = np.tensordot(across[moved], at_face, (1, 1)).swapaxes(2, 3)  # (i, n_p, j, n_p)
+                half = along[:, moved].swapaxes(0, 1) @ at_faces.reshape(len(moved), n_p, -1)
+                half = half.reshape(len(moved), places, len(columns), n_p)
+                block = np.einsum("ikjb,kjb->kij", half, along[:, columns])
+                result[:, moved[:, None], columns] = block
+                result[:, columns[:, None], moved] = block.swapaxes(1, 2)
+        return result.reshape(*np.shape(roll)[:-1], n, n)
 
     def depth(self, roll: Array) -> Array:
         """Depth to which the local approach counts, shape of ``roll`` [m]."""

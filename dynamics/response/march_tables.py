@@ -16,7 +16,7 @@ from dynamics.mesh.path_filter import RESOLVED
 
 Array = NDArray[np.float64]
 
-RUNG = 0.25
+RUNG = 0.6
 """Ratio of the speeds of neighbouring tables, less one."""
 CLOSING_RUNG = 0.05
 """Change of a speed after which dampers on the closing rate, which work as the speed, are tabulated anew [-]."""
