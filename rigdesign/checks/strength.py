@@ -18,7 +18,7 @@ from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
 from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
 from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.records.tooth_history import GearInMesh
+from rigdesign.records.tooth_history import GearInMesh, gear_meshes
 from rigdesign.results.check import Check
 from rigdesign.results.dynamics import FROM_INFLUENCE
 from rigdesign.results.loads import RootStressPath
@@ -246,9 +246,10 @@ def _reversed_bending(
 ) -> ReversedBending | None:
     """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3."""
     gear, place = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index], GearInMesh(mesh, index)
-    history = None if solved.loads is None else solved.loads.teeth.get(gear)
-    if method is PATH and history is not None and solved.label(mesh) in history.meshes:
-        return of_history(solved.rig, place, history)
+    if method is PATH and solved.loads is not None and len(gear_meshes(solved.rig)[gear]) > 1:
+        history = solved.loads.teeth.get(gear)
+        if history is not None and solved.label(mesh) in history.meshes:
+            return of_history(solved.rig, place, history)
     return by_standard(solved.rig, place, stress, solved.test.point.speed)
 
 

@@ -25,7 +25,7 @@ from rigdesign.coupling.iteration import PointProblem, solve_loads
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import held_points
 from rigdesign.reanalysis.modified_rig import coupled_again, with_records
-from rigdesign.records.dynamics import DynamicRun, dynamic_loads
+from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.flips import Flip, FlipSearch
@@ -300,8 +300,7 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
         run = None
         if stated.run is not None:
             run = DynamicRun(points=tuple(points), curves=stated.run.curves, ramp=stated.run.ramp)
-        loads = None if run is None else dynamic_loads(rig, run, checks_only=True)
-        solved = with_records(rig, points, run, loads)
+        solved = with_records(rig, points, run)
         topics = [
             topic for topic in REGISTRY.topics() if any(_follows(f.key, patterns) for f in topic.families)
         ]

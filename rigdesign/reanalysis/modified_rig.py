@@ -12,7 +12,7 @@ from rigdesign.reanalysis.affected_parts import PARTS, Part, Reanalysis
 from rigdesign.reanalysis.motor_torque import Array, shifted_drive
 from rigdesign.reanalysis.shifted_run import shifted_run
 from rigdesign.records.curves import Curves, solve_curves
-from rigdesign.records.dynamics import DynamicRun, dynamic_loads, stage_bracing
+from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.housing import housing_temperatures
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.loads import DynamicLoads
@@ -41,15 +41,13 @@ def modified_rig(
         parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
     run, loads = stated.run, stated.loads
     if run is None:
-        return with_records(rig, points, None, None), tuple(part for part in parts if part == "coupling")
+        return with_records(rig, points, None), tuple(part for part in parts if part == "coupling")
     test = governing_point(points)
     curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
     ramp, solved = _time_run(rig, test, replace(again, parts=parts), (run, curves), motor_losses)
     run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
-    if "curves" in parts or "time run" in parts:
-        loads = dynamic_loads(rig, run, checks_only=True)
-    elif loads is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
-        loads = replace(loads, bracing=tuple(stage_bracing(rig, point) for point in points))
+    if "curves" in parts or "time run" in parts or ("coupling" in parts and _asks_for(case, ACTUATOR)):
+        loads = None
     # events are not marched again: checks based on them keep their value
     return replace(with_records(rig, points, run, loads), events=stated.events), solved
 
@@ -122,8 +120,8 @@ def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:
 
 
 def with_records(
-    rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, loads: DynamicLoads | None
+    rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, loads: DynamicLoads | None = None
 ) -> SolvedRig:
-    """The records of solved points; nothing is solved to compare."""
+    """The records of solved points, with the loads of the run where none are given; nothing is solved to compare."""
     temperatures = [housing_temperatures(rig, *found) for found in housing_fields(points)]
     return solved_rig(rig, points, temperatures, run=run, loads=loads)

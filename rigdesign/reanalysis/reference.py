@@ -22,7 +22,6 @@ from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventRecord
-from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig, build_rig
@@ -41,7 +40,6 @@ class Reference:
     ramp: TimeResponse | None
     motor_losses: Array | None
     """Torque of all losses at the motor over ``ramp`` [N m], (n,)."""
-    loads: DynamicLoads | None
     events: tuple[EventRecord, ...]
     discretisation: tuple[DiscretisationRow, ...]
     law_spreads: tuple[LawSpread, ...]
@@ -77,7 +75,6 @@ def solve_reference(
         curves=None if run is None else run.curves,
         ramp=ramp,
         motor_losses=losses,
-        loads=solved.loads,
         events=tuple(solved.events),
         discretisation=tuple(solved.discretisation),
         law_spreads=tuple(solved.law_spreads),
@@ -130,7 +127,7 @@ def _restored(reference: Reference) -> SolvedRig:
     run = None
     if reference.curves is not None and reference.ramp is not None:
         run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
-    solved = with_records(rig, points, run, reference.loads)
+    solved = with_records(rig, points, run)
     return replace(_with_errors(solved, reference), events=reference.events)
 
 

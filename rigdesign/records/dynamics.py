@@ -1,13 +1,14 @@
 """Dynamic loads of the solved rig: modes, loads of the meshes, root stress, resonances, bracing."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from dynamics.contact.root_field import PairForces
 from dynamics.drivetrain.bracing import BracingDrift, LoopBracing, drift
 from dynamics.drivetrain.loop_crossings import loop_crossings
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modes import LoopMode, damping_audit
+from dynamics.drivetrain.modes import DampingRecord, LoopMode, damping_audit
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.braced_loop import shifted_gear, signed_torque
@@ -20,15 +21,19 @@ from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.resonances import HARMONICS, LEAST_GAIN, mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
 from rigdesign.records.tooth_history import tooth_histories
+from rigdesign.results.check import Role
 from rigdesign.results.loads import (
-    DynamicLoads,
+    ContactLoss,
     MeshLoads,
+    MeshResonance,
     ModeCrossing,
     RootStressPath,
     RootStressRatio,
     StageBracing,
+    StageLoad,
     UnsolvedSpeed,
 )
+from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig
 
 HIGHEST_MODE = 25e3
@@ -49,26 +54,116 @@ class DynamicRun:
         return governing_point(self.points)
 
 
-def dynamic_loads(rig: Rig, run: DynamicRun, *, checks_only: bool = False) -> DynamicLoads:
-    """All of them as SI records.
+@dataclass(frozen=True)
+class SolvedLoads:
+    """Dynamic loads of a run as SI records, each solved when it is first asked for; see `DynamicLoads`."""
 
-    checks_only : without what no check asks for, the ratio of dynamic to quasi-static root stress over speed and the
-        tooth histories of gears that are no idlers
-    """
-    assert rig.drivetrain is not None
-    laws = laws_of(run.test.last.models)
-    modes = held_modes(rig, run.test)
-    return DynamicLoads(
-        meshes={
-            rig.mesh_labels[name]: mesh_loads(rig, run, mesh, modes, checks_only=checks_only)
-            for mesh, name in enumerate(rig.mesh_names)
-        },
-        modes=tuple(modes),
-        loop_crossings=tuple(mode_crossings(rig, modes, max(run.curves.response.speeds))),
-        damping=tuple(damping_audit(rig.twisting.parts(run.test.point.speed), laws)),
-        bracing=tuple(stage_bracing(rig, point) for point in run.points),
-        teeth={found.gear: found for found in tooth_histories(rig, run.test, 2 if checks_only else 1)},
-    )
+    rig: Rig
+    run: DynamicRun
+
+    @cached_property
+    def meshes(self) -> Mapping[str, MeshLoads]:
+        """By the label of the mesh."""
+        names = enumerate(self.rig.mesh_names)
+        return {self.rig.mesh_labels[name]: _SolvedMesh(self, mesh) for mesh, name in names}
+
+    @cached_property
+    def modes(self) -> tuple[LoopMode, ...]:
+        """Of the closed loop, meshes at their mean stiffness."""
+        return tuple(held_modes(self.rig, self.run.test))
+
+    @cached_property
+    def loop_crossings(self) -> tuple[ModeCrossing, ...]:
+        """Up to the highest speed of the curves."""
+        return tuple(mode_crossings(self.rig, self.modes, max(self.run.curves.response.speeds)))
+
+    @cached_property
+    def damping(self) -> tuple[DampingRecord, ...]:
+        """Of springs and dampers at the governing held stage."""
+        test = self.run.test
+        return tuple(damping_audit(self.rig.twisting.parts(test.point.speed), laws_of(test.last.models)))
+
+    @cached_property
+    def bracing(self) -> tuple[StageBracing, ...]:
+        """Of every held stage."""
+        return tuple(
+            StageBracing(stage=point.point.stage, drift=bracing_drift(self.rig, point))
+            for point in self.run.points
+        )
+
+    @cached_property
+    def teeth(self) -> Mapping[str, ToothHistory]:
+        """Of every loaded gear ``gearbox.gear``."""
+        return {found.gear: found for found in tooth_histories(self.rig, self.run.test)}
+
+
+@dataclass(frozen=True)
+class _SolvedMesh:
+    """Loads of one mesh, by its number; see `MeshLoads`."""
+
+    loads: SolvedLoads
+    mesh: int
+
+    @property
+    def role(self) -> Role:
+        rig = self.loads.rig
+        return rig.mesh(rig.mesh_names[self.mesh])[0].role
+
+    @cached_property
+    def torque_peak(self) -> float:
+        run = self.loads.run
+        return max(
+            torque_peak(run.ramp.windows, self.mesh),
+            *(float(p.last.response.maximum[self.mesh]) for p in run.points if p.last.response is not None),
+        )
+
+    @cached_property
+    def stage_loads(self) -> tuple[StageLoad, ...]:
+        return tuple(stage_loads(self.loads.rig, self.loads.run.ramp, self.mesh))
+
+    @cached_property
+    def contact_losses(self) -> tuple[ContactLoss, ...]:
+        return tuple(contact_losses(self.loads.rig, self.loads.run.ramp, self.mesh))
+
+    @cached_property
+    def resonances(self) -> tuple[MeshResonance, ...]:
+        return tuple(mesh_resonances(self.loads.rig, self.loads.run.curves, self.mesh, self.loads.modes))
+
+    @cached_property
+    def unsolved(self) -> tuple[UnsolvedSpeed, ...]:
+        return tuple(unsolved(self.loads.rig, self.loads.run, self.mesh))
+
+    @cached_property
+    def root_stress(self) -> tuple[RootStressPath, ...]:
+        rig, mesh = self.loads.rig, self.mesh
+        names = rig.mesh_gears(rig.mesh_names[mesh])
+        radii = self.loads.run.test.last.models[mesh].pair.base_radii
+        paths = []
+        for gear in (0, 1):
+            stage = max(self._held, key=lambda held: root.peak(self._held[held].dynamic[gear]))
+            found = self._held[stage]
+            own = root.StressedGear(names[gear].split(".")[1], stage, radii[gear], found.roots.source)
+            paths.append(root.over_path(own, found.dynamic[gear], found.static[gear]))
+        return tuple(paths)
+
+    @cached_property
+    def root_stress_ratios(self) -> tuple[RootStressRatio, ...]:
+        """At every speed of the governing curve."""
+        rig, run, mesh = self.loads.rig, self.loads.run, self.mesh
+        test = self._held[run.test.point.stage]
+        model, points = run.test.last.models[mesh], run.curves.response.points
+        roots, ratios = test.roots.at_highest(test.forces), []
+        for response, forces in zip(points, root.dynamic_forces(model, points, mesh)):
+            stresses = roots.highest(forces)
+            pinion, wheel = (root.peak(stresses[gear]) / root.peak(test.static[gear]) for gear in (0, 1))
+            speed = own_ratio(rig, mesh) * response.speed
+            ratios.append(RootStressRatio(speed=speed, pinion=pinion, wheel=wheel))
+        return tuple(ratios)
+
+    @cached_property
+    def _held(self) -> "Mapping[str, _HeldRoots]":
+        """Root stress at every held stage."""
+        return {p.point.stage: _stresses(self.loads.rig, p, self.mesh) for p in self.loads.run.points}
 
 
 def numbered(modes: Sequence[LoopMode]) -> list[tuple[int, LoopMode]]:
@@ -98,45 +193,6 @@ def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[
         )
 
 
-def mesh_loads(
-    rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode], *, checks_only: bool
-) -> MeshLoads:
-    """Loads of one mesh, by its number."""
-    paths, ratios = root_stresses(rig, run, mesh, checks_only=checks_only)
-    return MeshLoads(
-        role=rig.mesh(rig.mesh_names[mesh])[0].role,
-        torque_peak=max(
-            torque_peak(run.ramp.windows, mesh),
-            *(float(p.last.response.maximum[mesh]) for p in run.points if p.last.response is not None),
-        ),
-        stage_loads=tuple(stage_loads(rig, run.ramp, mesh)),
-        contact_losses=tuple(contact_losses(rig, run.ramp, mesh)),
-        resonances=tuple(mesh_resonances(rig, run.curves, mesh, modes)),
-        unsolved=tuple(unsolved(rig, run, mesh)),
-        root_stress=paths,
-        root_stress_ratios=ratios,
-    )
-
-
-def root_stresses(
-    rig: Rig, run: DynamicRun, mesh: int, *, checks_only: bool
-) -> tuple[tuple[RootStressPath, ...], tuple[RootStressRatio, ...]]:
-    """Root stress of pinion and wheel at the held stage that stresses them most, and its ratio over speed.
-
-    The ratio of the highest dynamic to the highest quasi-static stress belongs to the governing held stage.
-    """
-    of_point = {point.point.stage: _stresses(rig, point, mesh) for point in run.points}
-    names, radii = rig.mesh_gears(rig.mesh_names[mesh]), run.test.last.models[mesh].pair.base_radii
-    paths = []
-    for gear in (0, 1):
-        stage = max(of_point, key=lambda held: root.peak(of_point[held].dynamic[gear]))
-        found = of_point[stage]
-        own = root.StressedGear(names[gear].split(".")[1], stage, radii[gear], found.roots.source)
-        paths.append(root.over_path(own, found.dynamic[gear], found.static[gear]))
-    test = of_point[run.test.point.stage]
-    return tuple(paths), tuple(_over_speed(rig, run, mesh, test)) if not checks_only else ()
-
-
 @dataclass(frozen=True)
 class _HeldRoots:
     """Root stress of pinion and wheel at a held point, and the static forces behind it."""
@@ -145,17 +201,6 @@ class _HeldRoots:
     dynamic: root.Pair
     static: root.Pair
     forces: PairForces
-
-
-def _over_speed(rig: Rig, run: DynamicRun, mesh: int, test: _HeldRoots) -> Iterator[RootStressRatio]:
-    """Highest dynamic over highest quasi-static root stress at every speed of the governing curve."""
-    model, points = run.test.last.models[mesh], run.curves.response.points
-    roots = test.roots.at_highest(test.forces)
-    for response, forces in zip(points, root.dynamic_forces(model, points, mesh)):
-        stresses = roots.highest(forces)
-        pinion, wheel = (root.peak(stresses[gear]) / root.peak(test.static[gear]) for gear in (0, 1))
-        speed = own_ratio(rig, mesh) * response.speed
-        yield RootStressRatio(speed=speed, pinion=pinion, wheel=wheel)
 
 
 def _stresses(rig: Rig, point: PointResult, mesh: int) -> _HeldRoots:
@@ -174,11 +219,6 @@ def unsolved(rig: Rig, run: DynamicRun, mesh: int) -> Iterator[UnsolvedSpeed]:
     for name, (_, curve) in run.curves.named.items():
         for speed, reason in curve.failed:
             yield UnsolvedSpeed(curve=name, speed=own_ratio(rig, mesh) * speed, reason=reason)
-
-
-def stage_bracing(rig: Rig, point: PointResult) -> StageBracing:
-    """Bracing of one held stage."""
-    return StageBracing(stage=point.point.stage, drift=bracing_drift(rig, point))
 
 
 def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:

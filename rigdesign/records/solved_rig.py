@@ -8,7 +8,7 @@ from rigdesign.base.finite import finite
 from rigdesign.case.model import Case
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField
-from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.dynamics import DynamicRun, SolvedLoads
 from rigdesign.records.held_torques import held_torques
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
@@ -173,16 +173,16 @@ def solved_rig(
     run: DynamicRun | None = None,
     loads: DynamicLoads | None = None,
 ) -> SolvedRig:
-    """The records of solved points.
+    """The records of solved points; loads are those of the run where they are not given.
 
     temperatures : of every housing at every point (`housing_fields`), with or without what is solved to compare
-    run, loads : of the dynamic solvers; None where losses are given or nothing is asked of the loads
+    run : of the dynamic solvers; None where losses are given
     """
     return SolvedRig(
         rig=rig,
         points=points,
         run=run,
-        loads=loads,
+        loads=SolvedLoads(rig, run) if loads is None and run is not None else loads,
         temperatures=temperatures,
         warm=[warm_gearbox(rig, point, name) for point in points for name in point.last.expansion],
         cooling=[cooling_balance(rig, point.last) for point in points],

@@ -37,11 +37,9 @@ class GearInMesh:
     index: int
 
 
-def tooth_histories(rig: Rig, point: PointResult, least_meshes: int = 1) -> Iterator[ToothHistory]:
-    """Of every gear that carries load at a held point and is in at least so many meshes."""
+def tooth_histories(rig: Rig, point: PointResult) -> Iterator[ToothHistory]:
+    """Of every gear that carries load at a held point."""
     for gear, places in gear_meshes(rig).items():
-        if len(places) < least_meshes:
-            continue
         found = tooth_history(rig, point, gear, places)
         if found is not None:
             yield found

@@ -2,8 +2,8 @@
 carries."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass
+from typing import Literal, Protocol
 
 from dynamics.drivetrain.bracing import BracingDrift
 from dynamics.drivetrain.modes import DampingRecord, LoopMode
@@ -128,21 +128,40 @@ class RootStressRatio:
     wheel: float
 
 
-@dataclass(frozen=True, kw_only=True)
-class MeshLoads:
+class MeshLoads(Protocol):
     """Dynamic loads of one mesh."""
 
-    role: Role
-    torque_peak: float
-    """Highest of the time run and the periodic responses of the held stages [N m]."""
-    stage_loads: tuple[StageLoad, ...] = ()
-    """Of every stage that turns under torque."""
-    contact_losses: tuple[ContactLoss, ...] = ()
-    resonances: tuple[MeshResonance, ...] = ()
-    unsolved: tuple[UnsolvedSpeed, ...] = ()
-    root_stress: tuple[RootStressPath, ...] = ()
-    """Of pinion and wheel."""
-    root_stress_ratios: tuple[RootStressRatio, ...] = ()
+    @property
+    def role(self) -> Role:
+        """Of its gearbox."""
+
+    @property
+    def torque_peak(self) -> float:
+        """Highest of the time run and the periodic responses of the held stages [N m]."""
+
+    @property
+    def stage_loads(self) -> tuple[StageLoad, ...]:
+        """Of every stage that turns under torque."""
+
+    @property
+    def contact_losses(self) -> tuple[ContactLoss, ...]:
+        """Of the time run."""
+
+    @property
+    def resonances(self) -> tuple[MeshResonance, ...]:
+        """Peaks of all curves."""
+
+    @property
+    def unsolved(self) -> tuple[UnsolvedSpeed, ...]:
+        """Speeds at which a curve has no point."""
+
+    @property
+    def root_stress(self) -> tuple[RootStressPath, ...]:
+        """Of pinion and wheel."""
+
+    @property
+    def root_stress_ratios(self) -> tuple[RootStressRatio, ...]:
+        """Over the speeds of the governing curve."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,16 +172,29 @@ class StageBracing:
     drift: BracingDrift
 
 
-@dataclass(frozen=True, kw_only=True)
-class DynamicLoads:
+class DynamicLoads(Protocol):
     """What the drivetrain says of its loads."""
 
-    meshes: Mapping[str, MeshLoads]
-    """By the label of the mesh."""
-    modes: tuple[LoopMode, ...] = ()
-    """Of the closed loop, meshes at their mean stiffness."""
-    loop_crossings: tuple[ModeCrossing, ...] = ()
-    damping: tuple[DampingRecord, ...] = ()
-    bracing: tuple[StageBracing, ...] = ()
-    teeth: Mapping[str, ToothHistory] = field(default_factory=dict)
-    """Of every loaded gear ``gearbox.gear``."""
+    @property
+    def meshes(self) -> Mapping[str, MeshLoads]:
+        """By the label of the mesh."""
+
+    @property
+    def modes(self) -> tuple[LoopMode, ...]:
+        """Of the closed loop, meshes at their mean stiffness."""
+
+    @property
+    def loop_crossings(self) -> tuple[ModeCrossing, ...]:
+        """Up to the highest speed of the curves."""
+
+    @property
+    def damping(self) -> tuple[DampingRecord, ...]:
+        """Of springs and dampers."""
+
+    @property
+    def bracing(self) -> tuple[StageBracing, ...]:
+        """Of every held stage."""
+
+    @property
+    def teeth(self) -> Mapping[str, ToothHistory]:
+        """Of every loaded gear ``gearbox.gear``."""

@@ -26,7 +26,6 @@ from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, schedule_of
 from rigdesign.records.contact_in_loop import contact_in_loop
-from rigdesign.records.dynamics import dynamic_loads
 from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.events import solve_events
 from rigdesign.records.hand import hand_checks
@@ -134,9 +133,8 @@ def solve_case(
             lap("alternatives")
         run = dynamics.result()
         lap("dynamics")
-    loads = None if run is None else dynamic_loads(wanted, run)
     solved = replace(
-        solved_rig(wanted, points, temperatures, run=run, loads=loads),
+        solved_rig(wanted, points, temperatures, run=run),
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
         law_spreads=spreads,

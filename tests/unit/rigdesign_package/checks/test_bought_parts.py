@@ -17,9 +17,10 @@ from rigdesign.checks.component_limits import checks
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.loads import DynamicLoads, MeshLoads, StageBracing
+from rigdesign.results.loads import StageBracing
 from rigdesign.rig.model import build_rig
 from tests.builders.idler_case import idler_case
+from tests.builders.loads import StatedLoads, StatedMeshLoads
 from tests.builders.made_run import made_ramp
 from tests.builders.paths import CASES
 
@@ -39,7 +40,7 @@ def solved_rig_of(case: Case) -> SolvedRig:
     """A rig whose run is made up: 15 N m at the motor at 12,000 rpm of the first pinion."""
     rig = build_rig(case, "quick")
     meshes = {
-        label: MeshLoads(role="rig", torque_peak=PEAKS[label.split(".")[0]])
+        label: StatedMeshLoads(role="rig", torque_peak=PEAKS[label.split(".")[0]])
         for label in rig.mesh_labels.values()
     }
     drift: Any = SimpleNamespace(
@@ -57,7 +58,7 @@ def solved_rig_of(case: Case) -> SolvedRig:
     )  # fmt: skip
     return SolvedRig(
         rig=rig, points=(point,), run=SimpleNamespace(ramp=ramp, points=(point,)),  # type: ignore[arg-type]
-        loads=DynamicLoads(meshes=meshes, bracing=(StageBracing(stage="test", drift=drift),)),
+        loads=StatedLoads(meshes=meshes, bracing=(StageBracing(stage="test", drift=drift),)),
     )  # fmt: skip
 
 

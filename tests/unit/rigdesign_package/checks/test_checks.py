@@ -17,12 +17,12 @@ from rigdesign.records.near_dwell import NearDwell, mesh_resonances
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.loads import ContactLoss, DynamicLoads, MeshResonance, StageLoad, UnsolvedSpeed
+from rigdesign.results.loads import ContactLoss, MeshResonance, StageLoad, UnsolvedSpeed
 from rigdesign.results.rig_heat import HeatSource, RigHeat
 from rigdesign.results.vibration import AvoidedResonance, nearer
 from rigdesign.results.warm_gearbox import SealClearance, WarmGearbox
 from rigdesign.rig.model import Rig, build_rig
-from tests.builders.loads import mesh_loads
+from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
 
 RPM = np.pi / 30.0
@@ -69,7 +69,7 @@ def solved(points: Any = None, **changes: Any) -> SolvedRig:
     curves = SimpleNamespace(named={"180 Nm": (180.0, bare), "90 Nm": (90.0, bare)})
     run: Any = SimpleNamespace(curves=curves, ramp=SimpleNamespace(cut=""))
     held_points = points or [held("test", (1.1, 1.2))]
-    loads = DynamicLoads(meshes={"test": mesh, "reference": mesh})
+    loads = StatedLoads(meshes={"test": mesh, "reference": mesh})
     return SolvedRig(rig=rig(), points=held_points, run=run, loads=loads)
 
 

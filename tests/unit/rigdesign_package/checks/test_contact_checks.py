@@ -17,11 +17,10 @@ from rigdesign.checks import contact
 from rigdesign.checks.registry import RuleFamily
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.teeth import LoadedContact
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.loaded_mesh import influence_of
-from tests.builders.loads import mesh_loads
+from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
 
 LIMITS = "limits.flanks."
@@ -71,7 +70,7 @@ def solved(case: Case) -> SolvedRig:
     ]
     meshes = {rig.mesh_labels[name]: mesh_loads() for name in rig.mesh_names}
     run: Any = SimpleNamespace()
-    return SolvedRig(rig=rig, points=points, run=run, loads=DynamicLoads(meshes=meshes))
+    return SolvedRig(rig=rig, points=points, run=run, loads=StatedLoads(meshes=meshes))
 
 
 @pytest.fixture

@@ -16,10 +16,9 @@ from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.gear_loads import rated_cycles, rated_loads
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.rows.teeth import flank_rating_row
 from rigdesign.rig.model import Rig, build_rig
-from tests.builders.loads import mesh_loads
+from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
 
 OUTLETS = {"test.gear_oil": 405.0, "reference.gear_oil": 315.0}
@@ -57,7 +56,7 @@ def held(rig: Rig, *, torque: float = 180.0, loss: float = 500.0, response: bool
             response=periodic if response else None, coupling_state=state, fields={}, losses=losses
         ),
     )
-    loads = DynamicLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), mesh_loads()))
+    loads = StatedLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), mesh_loads()))
     run: Any = SimpleNamespace()
     return SolvedRig(rig=rig, points=[point], run=run, loads=loads if response else None)
 

@@ -17,10 +17,9 @@ from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.tooth_history import GearInMesh, mean_stress, sensitivity
 from rigdesign.results.dynamics import FROM_FACTORS, StressSource
-from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig, build_rig
-from tests.builders.loads import mesh_loads
+from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
 
 
@@ -76,7 +75,7 @@ def rated(rig: Rig, meshes: int, source: StressSource = FROM_FACTORS) -> SolvedR
     )
     made = mesh_loads()
     made = replace(made, root_stress=tuple(replace(path, source=source) for path in made.root_stress))
-    loads = DynamicLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), made))
+    loads = StatedLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), made))
     run: Any = SimpleNamespace()
     return SolvedRig(rig=rig, points=[point], run=run, loads=loads)
 
