@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import cos
 from typing import Protocol
 
@@ -30,9 +31,9 @@ class FlankCompliance(Protocol):
         """Roll length at the end of the flank, at the tip edge [m]."""
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
-        """Return (..., n, n) displacement of point i along its flank normal per normal force on point j [m/N].
+        """Return (n, n) displacement of point i along its flank normal per newton of normal force on point j [m/N].
 
-        roll : (..., n) roll lengths [m], held at the ends of the flank; face : (n,) from mid-face [m]; tooth : (n,)
+        roll : (n,) roll lengths [m], held at the ends of the flank; face : (n,) from mid-face [m]; tooth : (n,)
         """
 
     def depth(self, roll: Array) -> Array:
@@ -175,26 +176,19 @@ class InterpolatedCompliance:
         return hats
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
-        """Compliance (..., n, n) between points, see `FlankCompliance` [m/N]."""
-        along = self._profile_shapes(np.clip(roll, self.profile[0], self.profile[-1]))
-        along = along.reshape(-1, *along.shape[-2:])
-        across = self._hats(face)
-        (places, n, n_p), n_f = along.shape, len(self.face)
-        result = np.full((places, n, n), self.beyond)
-        rows = {int(one): np.flatnonzero(tooth == one) for one in np.unique(tooth)}
-        for loaded, columns in rows.items():
-            for offset, numbers in self._symmetric.items():
-                moved = rows.get(loaded + offset)
-                if moved is None or offset < 0:
-                    continue
-                at_face = np.tensordot(numbers.reshape(n_p, n_f, n_p, n_f), across[columns], (3, 1))
-                at_faces = np.tensordot(across[moved], at_face, (1, 1)).swapaxes(2, 3)  # (i, n_p, j, n_p)
-                half = along[:, moved].swapaxes(0, 1) @ at_faces.reshape(len(moved), n_p, -1)
-                half = half.reshape(len(moved), places, len(columns), n_p)
-                block = np.einsum("ikjb,kjb->kij", half, along[:, columns])
-                result[:, moved[:, None], columns] = block
-                result[:, columns[:, None], moved] = block.swapaxes(1, 2)
-        return result.reshape(*np.shape(roll)[:-1], n, n)
+        """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""
+        shapes = self.shapes(roll, face)
+        result = np.full((len(roll), len(roll)), self.beyond)
+        ends = np.flatnonzero(np.diff(tooth, prepend=tooth[:1] - 1, append=tooth[-1:] + 1)).tolist()
+        runs = [(int(tooth[first]), slice(first, last)) for first, last in pairwise(ends)]
+        for i, (loaded, columns) in enumerate(runs):
+            bent = shapes[columns].T
+            for moved, rows in runs[i:]:
+                numbers = self._symmetric.get(moved - loaded)
+                if numbers is not None:
+                    result[rows, columns] = shapes[rows] @ (numbers @ bent)
+                    result[columns, rows] = result[rows, columns].T
+        return result
 
     def depth(self, roll: Array) -> Array:
         """Depth to which the local approach counts, shape of ``roll`` [m]."""

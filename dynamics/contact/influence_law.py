@@ -28,9 +28,8 @@ from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.corner import ContactPlace, contact_places, tip_ends
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import modified_gap
-from dynamics.contact.loaded_mesh import points_compliance
 from dynamics.contact.local_approach import SOFT_EDGES, LocalModel
-from dynamics.contact.points import contact_points
+from dynamics.contact.points import ContactPoints, contact_points
 from dynamics.contact.touching import Profiles, settled
 from dynamics.errors import DynamicsInputError
 from dynamics.flank.microgeometry import Microgeometry
@@ -194,10 +193,7 @@ class ContactLines:
                 'drivetrain.mesh_stiffness = "iso_6336_scaled"'
             )
         # displacement of every slice by every other, and of those of one pair by each other
-        weight = 1.0 / points.weight.reshape(CYCLE, -1)
-        n = weight.shape[1] // within
-        by_points = weight[:, :, None] * points_compliance(gears, points) * weight[:, None, :]
-        self.all = by_points.reshape(CYCLE, n, within, n, within).mean(axis=(2, 4))
+        self.all = np.stack([_sliced(gears, points, k, within) for k in range(CYCLE)])
         blocks = self.all.reshape(CYCLE, *shape[1:], *shape[1:])
         self.of_pair = np.einsum("kpipj->kpij", blocks).copy()
         self.no_later = opening[:, :, None, :] <= opening[:, :, :, None] + ALIKE
@@ -244,6 +240,20 @@ class ContactLines:
     def _by_pair(self, force: Array) -> Array:
         """Displacement of every slice by the forces on its own pair [m]."""
         return np.asarray((self.of_pair @ force[..., None])[..., 0])
+
+
+def _sliced(
+    gears: tuple[InterpolatedCompliance, InterpolatedCompliance], points: ContactPoints, k: int, within: int
+) -> Array:
+    """Displacement of slices by forces spread over slices at position k, along the transverse line of action [m/N]."""
+    shape = points.path.shape[1:]
+    number, face = np.repeat(points.pairs, shape[1]), np.tile(points.grid.position, shape[0])
+    first, second = (roll[k].ravel() for roll in points.place.roll)
+    matrix = gears[0].matrix(first, face, -number) + gears[1].matrix(second, face, number)
+    weight = 1.0 / points.weight[k].ravel()
+    n = number.size // within
+    spread = (weight[:, None] * matrix * weight).reshape(n, within, n, within)
+    return np.asarray(spread.mean(axis=(1, 3)))
 
 
 def _springs(elastic: ElasticPair, grid: _Grid, tooth: Array, body: float, line_load: float) -> PairSprings:

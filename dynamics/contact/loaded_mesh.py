@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.contact.compliance import FlankCompliance
 from dynamics.contact.corner import TipEnd
 from dynamics.contact.face import FaceGrid
-from dynamics.contact.local_approach import SOFT_EDGES, EdgeModel, LocalModel
+from dynamics.contact.local_approach import SOFT_EDGES, EdgeModel, LocalContact, LocalModel
 from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.contact.points import ContactPoints, FlankGap, contact_points, no_gap
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
@@ -33,7 +33,7 @@ from dynamics.kernels.loaded_contact import (
     press_points,
 )
 
-Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 FIRST_REACH = 0.05
 """Approach that is looked for first, in normal modules."""
@@ -117,16 +117,9 @@ class LoadedMesh:
         forces, closing = np.zeros(shape), np.full(shape, -np.inf)
         approach, tangent = np.empty(shape[0]), np.empty(shape[0])
         near = np.zeros(shape[1:])
-        compliance = points_compliance(self.gears, points)
         for k in range(shape[0]):
             within = np.isfinite(points.gap[k])
-            weight, among = points.weight[k][within], np.flatnonzero(within)
-            problem = ContactProblem(
-                compliance[k][np.ix_(among, among)],
-                weight * points.gap[k][within],
-                weight,
-                np.ascontiguousarray(local.law[k][within]),
-            )
+            problem = self._problem(points, local, k, within)
             start = near[within]
             solution = press_points(problem, force, nan if k == 0 else approach[k - 1], start)
             if solution.status != CONVERGED:
@@ -146,6 +139,22 @@ class LoadedMesh:
             tangent_stiffness=tangent,
         )
 
+    def _problem(self, points: ContactPoints, local: LocalContact, k: int, within: Flags) -> ContactProblem:
+        """Contact problem of the points within reach at position k."""
+        rows, columns = np.nonzero(within)
+        face, number = self.grid.position[columns], points.pairs[rows]
+        place = points.place
+        # pinion teeth that come later stand behind the loaded flank, wheel teeth before it
+        compliance = self.gears[0].matrix(place.roll[0][k][within], face, -number)
+        compliance = compliance + self.gears[1].matrix(place.roll[1][k][within], face, number)
+        weight = points.weight[k][within]
+        return ContactProblem(
+            np.ascontiguousarray(compliance),
+            weight * points.gap[k][within],
+            weight,
+            np.ascontiguousarray(local.law[k][within]),
+        )
+
     def _require(self, solution: ContactSolution, points: ContactPoints, k: int, force: float) -> None:
         if solution.status != CONVERGED:
             raise DynamicsNotConverged(
@@ -153,13 +162,3 @@ class LoadedMesh:
                 f"{force:.4g} N: residual {solution.residual:.1e} after {solution.steps} steps, limit 1e-12: "
                 + FAILURES.get(solution.status, "no point can take the force; check gap and reach")
             )
-
-
-def points_compliance(gears: tuple[FlankCompliance, FlankCompliance], points: ContactPoints) -> Array:
-    """Normal displacement of both flanks at every point per normal force on every other, (n_positions, n, n) of the n
-    points of a position, face running faster [m/N]."""
-    rows, columns = points.path.shape[1:]
-    number, face = np.repeat(points.pairs, columns), np.tile(points.grid.position, rows)
-    first, second = (roll.reshape(len(points.path), -1) for roll in points.place.roll)
-    # pinion teeth that come later stand behind the loaded flank, wheel teeth before it
-    return gears[0].matrix(first, face, -number) + gears[1].matrix(second, face, number)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from dynamics.contact.loaded_mesh import LoadedMesh, points_compliance
+from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.local_approach import LocalModel
 from dynamics.contact.points import ContactPoints
 from dynamics.errors import DynamicsInputError
@@ -83,18 +83,26 @@ def phase_table(mesh: LoadedMesh, force: float, reach: float, phases: int = PHAS
 
 def _places(mesh: LoadedMesh, points: ContactPoints, force: float) -> _Places:
     """At every place of the points."""
-    count = len(points.position)
+    count, shape = len(points.position), points.path.shape[1:]
     local = _local(mesh, points, force)
     first, last = path_reach(mesh.pair, points.reach)
     beyond = np.maximum(first - points.path, 0.0) + np.maximum(points.path - last, 0.0)
     gap = np.where(np.isfinite(points.gap), points.gap, points.reach + STEEPNESS * beyond)
+    face, number = np.tile(points.grid.position, shape[0]), np.repeat(points.pairs, shape[1])
+    compliance = np.stack(
+        [
+            mesh.gears[0].matrix(points.place.roll[0][k].ravel(), face, -number)
+            + mesh.gears[1].matrix(points.place.roll[1][k].ravel(), face, number)
+            for k in range(count)
+        ]
+    )
     return _Places(
         gap=gap.reshape(count, -1),
         weight=points.weight.reshape(count, -1),
         local=local[..., 0].reshape(count, -1),
         local_log=np.ascontiguousarray(local[0, ..., 1].ravel()),
         reach=(points.place.reach[0].reshape(count, -1), points.place.reach[1].reshape(count, -1)),
-        compliance=points_compliance(mesh.gears, points),
+        compliance=compliance,
     )
 
 

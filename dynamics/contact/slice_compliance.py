@@ -76,7 +76,7 @@ class SliceCompliance:
         return np.asarray(0.5 * (inverse + inverse.T))
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
-        """Compliance (..., n, n) between points, see `FlankCompliance` [m/N]."""
+        """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""
         grid = self.grid.position
         at = np.argmin(np.abs(face[:, None] - grid), axis=1)
         if np.any(np.abs(face - grid[at]) > 1e-9 * self.grid.face_width):
@@ -85,8 +85,8 @@ class SliceCompliance:
             )
         table, compliance, _ = self._table
         root = np.sqrt(np.interp(roll, table, compliance) * cos(self.pair.base_helix_angle))
-        of_tooth = np.where(tooth[:, None] == tooth, self._spread[np.ix_(at, at)], 0.0)
-        return np.asarray(root[..., None] * root[..., None, :] * of_tooth)
+        same_tooth = tooth[:, None] == tooth
+        return np.asarray(np.where(same_tooth, np.outer(root, root) * self._spread[np.ix_(at, at)], 0.0))
 
     def depth(self, roll: Array) -> Array:
         """Depth of the tooth axis under the flank, shape of ``roll`` [m]."""

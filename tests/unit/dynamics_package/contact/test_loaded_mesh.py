@@ -8,7 +8,7 @@ import pytest
 
 from dynamics.contact.contact_ratio import unloaded_contact_ratio
 from dynamics.contact.face import FaceGrid
-from dynamics.contact.loaded_mesh import LoadedMesh, points_compliance
+from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.local_approach import EdgeModel
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.flank.microgeometry import Microgeometry
@@ -55,11 +55,10 @@ def test_no_point_overlaps_and_none_pulls():
     mesh = interpolated_mesh(HELICAL)
     cycle = mesh.cycle(FORCE)
     points = cycle.points
-    compliance = points_compliance(mesh.gears, points)
     for k in (0, 17, 40):
         within = np.isfinite(points.gap[k])
-        bent = (compliance[k] @ cycle.force[k].ravel()).reshape(within.shape)
-        left = (points.weight[k] * (cycle.approach[k] - points.gap[k]) - bent)[within]
+        problem = mesh._problem(points, cycle.local, k, within)
+        left = problem.weight * cycle.approach[k] - problem.gap - problem.compliance @ cycle.force[k][within]
         on = cycle.force[k][within] > 0.0
         assert np.all(left[~on] <= 1e-12) and np.all(left[on] > 0.0)
         assert left == pytest.approx(cycle.closing[k][within], abs=1e-15)
@@ -268,7 +267,7 @@ def test_neighbours_stand_behind_the_pinion_flank_and_before_the_wheel_flank():
     k = int(np.argmax((cycle.closing.max(axis=2) > 0.0).sum(axis=1)))
     within = np.isfinite(points.gap[k])
     rows, columns = np.nonzero(within)
-    compliance = points_compliance(gears, points)[k][np.ix_(np.flatnonzero(within), np.flatnonzero(within))]
+    compliance = mesh._problem(points, cycle.local, k, within).compliance
     first, second = sorted(set(points.pairs[rows]))[:2]
     i = int(np.flatnonzero((points.pairs[rows] == first) & (columns == 5))[0])
     j = int(np.flatnonzero((points.pairs[rows] == second) & (columns == 5))[0])
