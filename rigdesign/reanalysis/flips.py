@@ -299,7 +299,7 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
         points = [point(rig, stated, number) for number in range(len(stated.points))]
         run = None
         if stated.run is not None:
-            run = DynamicRun(points=tuple(points), curves=stated.run.curves, ramp=stated.run.ramp)
+            run = DynamicRun(tuple(points), stated.run.curves, stated.run.ramp)
         solved = with_records(rig, points, run)
         topics = [
             topic for topic in REGISTRY.topics() if any(_follows(f.key, patterns) for f in topic.families)

@@ -45,7 +45,7 @@ def modified_rig(
     test = governing_point(points)
     curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
     ramp, solved = _time_run(rig, test, replace(again, parts=parts), (run, curves), motor_losses)
-    run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
+    run = DynamicRun(tuple(points), curves, ramp)
     if "curves" in parts or "time run" in parts or ("coupling" in parts and _asks_for(case, ACTUATOR)):
         loads = None
     # events are not marched again: checks based on them keep their value

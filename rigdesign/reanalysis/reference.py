@@ -126,7 +126,7 @@ def _restored(reference: Reference) -> SolvedRig:
     ]
     run = None
     if reference.curves is not None and reference.ramp is not None:
-        run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
+        run = DynamicRun(tuple(points), reference.curves, reference.ramp)
     solved = with_records(rig, points, run)
     return replace(_with_errors(solved, reference), events=reference.events)
 

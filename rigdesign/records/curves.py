@@ -12,6 +12,7 @@ from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
@@ -52,32 +53,14 @@ class Curves:
         return {f"{abs(torque):g} Nm": (torque, curve) for torque, curve in found.items()}
 
 
-@dataclass(frozen=True)
-class CurvePlan:
-    """What `Curves` are made of: computations that need nothing of each other."""
-
-    torque: float
-    works: Mapping[float, Callable[[], ResponseCurve]]
-    """By torque."""
-
-    def curves(self, solved: Sequence[ResponseCurve]) -> Curves:
-        """The results of the works, in their order."""
-        found = dict(zip(self.works, solved, strict=True))
-        return Curves(response=found.pop(self.torque), others=found, torque=self.torque)
-
-
-def plan_curves(rig: Rig, warm: IterationResult) -> CurvePlan:
-    """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
-    works = {
-        torque: partial(curve_at, rig, warm, torque, limits) for torque, limits in speed_ranges(rig).items()
-    }
-    return CurvePlan(torque=torque_key(signed_torque(rig, warm.point)), works=works)
-
-
 def solve_curves(rig: Rig, warm: IterationResult) -> Curves:
-    """The curves of `plan_curves`, one after the other."""
-    plan = plan_curves(rig, warm)
-    return plan.curves([work() for work in plan.works.values()])
+    """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
+    ranges = speed_ranges(rig)
+    works = [partial(curve_at, rig, warm, torque, limits) for torque, limits in ranges.items()]
+    with BackgroundTasks(works) as tasks:
+        found = dict(zip(ranges, tasks.results(), strict=True))
+    torque = torque_key(signed_torque(rig, warm.point))
+    return Curves(response=found.pop(torque), others=found, torque=torque)
 
 
 def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:

@@ -1,16 +1,13 @@
 """At which speeds the rig may dwell: bands of the response to avoid, stages in them, the ramp that follows."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from rigdesign.case.schedule import StageValues
-from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import dwell_stages
 from rigdesign.records.near_dwell import (
     SHAFT_SHARE,
-    Bounds,
     NearDwell,
     bounds_of,
     mesh_resonances,
@@ -21,9 +18,9 @@ from rigdesign.records.near_dwell import (
 )
 from rigdesign.records.ramp_steps import RampLimits, ramp_steps, speed_limit
 from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe, safe_windows
-from rigdesign.records.start_torque import StartResponse, start_torque, worst_start
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.start_torque import start_torque, worst_start
 from rigdesign.records.torques_over_speed import is_around
-from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.vibration import (
     AvoidedResonance,
     CampbellRecord,
@@ -35,37 +32,32 @@ from rigdesign.results.vibration import (
 from rigdesign.rig.model import Rig
 
 
-@dataclass(frozen=True, kw_only=True)
-class DwellSources:
-    """What the advice follows from, all of the same run; start : None where it is not computed."""
-
-    loads: DynamicLoads
-    torques: SectionTorqueRecord
-    diagram: CampbellRecord
-    start: StartResponse | None
-    near: Mapping[float, NearDwell]
-    """By the speed of the first pinion [rad/s]."""
-
-
-def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
-    """Bands over all speeds of the governing curve; speeds above the limit of the rig are none to dwell at."""
+def dwell_record(solved: SolvedRig, torques: SectionTorqueRecord) -> DwellRecord:
+    """Bands over all speeds of the governing curve of a rig with loads; speeds above the limit of the rig are none to
+    dwell at."""
+    rig, run, loads, vibration = solved.rig, solved.run, solved.loads, solved.vibration
+    assert run is not None and loads is not None and vibration is not None
     bounds, limit = bounds_of(rig), speed_limit(rig)
-    speeds = found.torques.speeds
-    others = [*root_shares(rig, found.loads), *shaft_shares(rig, speeds, found.torques.curves)]
+    speeds = torques.speeds
+    others = [*root_shares(rig, loads), *shaft_shares(rig, speeds, torques.curves)]
     low, high = speeds[0], speeds[-1]
     avoided = bands(
-        [*mesh_resonances(rig, run, found.loads), *bounds.resonances(others), *_orders(found, bounds)]
+        [
+            *mesh_resonances(rig, run, loads),
+            *bounds.resonances(others),
+            *_orders(vibration.campbell, solved.near_dwells, bounds.margin),
+        ]
     )
     safe = safe_windows(avoided, low, high if limit is None else min(high, limit.speed))
     limits = RampLimits(
         run=run,
         bands=avoided,
         safe=safe,
-        near={speed: one.nearest for speed, one in found.near.items()},
+        near={speed: one.nearest for speed, one in solved.near_dwells.items()},
         limit=limit,
-        start=found.start,
-        up=worst_start(rig, found.loads, 1),
-        down=worst_start(rig, found.loads, -1),
+        start=vibration.start,
+        up=worst_start(rig, loads, 1),
+        down=worst_start(rig, loads, -1),
     )
     return DwellRecord(
         share_limit=bounds.share,
@@ -84,15 +76,17 @@ def dwell_record(rig: Rig, run: DynamicRun, found: DwellSources) -> DwellRecord:
     )
 
 
-def _orders(found: DwellSources, bounds: Bounds) -> Iterator[AvoidedResonance]:
+def _orders(
+    diagram: CampbellRecord, nearby: Mapping[float, NearDwell], margin: float
+) -> Iterator[AvoidedResonance]:
     """Crossings of shaft orders over speed; around a dwell speed those with the modes at the nearest one."""
-    names = {mode.number: mode.name for mode in found.diagram.modes}
-    for one in order_resonances(found.diagram.crossings, names, bounds.margin):
-        if _around(one.speed, found.near) is None:
+    names = {mode.number: mode.name for mode in diagram.modes}
+    for one in order_resonances(diagram.crossings, names, margin):
+        if _around(one.speed, nearby) is None:
             yield one
-    for dwell, near in found.near.items():
+    for dwell, near in nearby.items():
         for one in near.orders:
-            if _around(one.speed, found.near) == dwell:
+            if _around(one.speed, nearby) == dwell:
                 yield one
 
 

@@ -1,6 +1,6 @@
 """Dynamic loads of the solved rig: modes, loads of the meshes, root stress, resonances, bracing."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,7 +46,13 @@ class DynamicRun:
 
     points: tuple[PointResult, ...]
     curves: Curves
-    ramp: TimeResponse
+    time_run: TimeResponse | Callable[[], TimeResponse]
+    """Over the whole schedule, or what waits for it."""
+
+    @cached_property
+    def ramp(self) -> TimeResponse:
+        """The time run."""
+        return self.time_run() if callable(self.time_run) else self.time_run
 
     @property
     def test(self) -> PointResult:

@@ -9,15 +9,16 @@ from dynamics.drivetrain.modes import sampling_audit
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.contact_in_motion import pair_shares
 from rigdesign.records.curves import factor_points, iso_factor
+from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.loaded_contact import loaded_contact
 from rigdesign.records.reversed_bending import bent_both_ways
+from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.spectra import held_spectra, waterfalls
 from rigdesign.records.time_run import ramp_history
-from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
@@ -48,7 +49,9 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
-    vibration = loop_vibration(solved)
+    vibration = solved.vibration
+    assert vibration is not None
+    torques = section_torque_record(solved, *vibration.torques)
     return DynamicsResult(
         gearboxes={
             rig.mesh_labels[name]: _mesh_section(solved, run, mesh, loads.meshes[rig.mesh_labels[name]])
@@ -71,8 +74,8 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         ],
         loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
         campbell=campbell_row(vibration.campbell),
-        section_torques=section_torque_rows(vibration.torques),
-        dwell=dwell_row(vibration.dwell),
+        section_torques=section_torque_rows(torques),
+        dwell=dwell_row(dwell_record(solved, torques)),
         contact_in_loop=[contact_in_loop_row(found) for found in solved.contact_in_loop.meshes],
         press_fits=[press_fit_row(found) for found in solved.press_fits],
         splines=[spline_stress_row(found) for found in solved.splines],

@@ -16,6 +16,7 @@ from rigdesign.records.near_dwell import NearDwell, near_dwells
 from rigdesign.records.part_torques import PartTorque, part_torques
 from rigdesign.records.press_fits import press_fits
 from rigdesign.records.spline_capacity import spline_stresses
+from rigdesign.records.vibration import LoopVibration
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
 from rigdesign.results.events import EventRecord
@@ -94,6 +95,20 @@ class SolvedRig:
         """What lies near every dwell whose response is computed, by the speed of the first pinion [rad/s]; empty
         without a dynamic run."""
         return {} if self.run is None or self.loads is None else near_dwells(self.rig, self.run, self.loads)
+
+    @cached_property
+    def vibration(self) -> LoopVibration | None:
+        """Of the loop over speed; None without a dynamic run."""
+        if self.run is None or self.loads is None:
+            return None
+        return LoopVibration(self.rig, self.run, self.loads)
+
+    def before_time_run(self) -> None:
+        """Solve what needs no time run and takes long."""
+        _ = self.lateral, self.seal_amplitudes
+        if self.vibration is not None:
+            _ = self.near_dwells, self.held_torques, self.vibration.torques
+            _ = self.vibration.campbell, self.vibration.start
 
     @cached_property
     def part_torques(self) -> tuple[PartTorque, ...]:

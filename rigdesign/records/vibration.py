@@ -1,48 +1,82 @@
-"""Modes over speed and dynamic torques of the warm loop, on two cores where there are two."""
+"""Modes over speed and dynamic torques of the warm loop."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property
 
-from rigdesign.base.parallel import BackgroundTasks
+import numpy as np
+
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.records.campbell import campbell
-from rigdesign.records.dwell_speeds import DwellSources, dwell_record
-from rigdesign.records.loop_states import loop_states
-from rigdesign.records.section_torques import section_torque_record
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.curves import resolved, response_solver
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.loop_states import LoopState, dwell_speeds, loop_states
 from rigdesign.records.start_torque import StartResponse, start_response
-from rigdesign.results.vibration import CampbellRecord, DwellRecord, SectionTorqueRecord
+from rigdesign.records.torques_over_speed import LoopOverSpeed, Solve, is_around, torques_over_speed
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.vibration import CampbellRecord, TorqueOverSpeed
+from rigdesign.rig.model import Rig
+
+MOST_SPEEDS = 150
+"""Speeds of the curves at most, but for those around the dwell speeds and at peaks of the torques of meshes and
+sections, which are always among them."""
 
 
 @dataclass(frozen=True)
 class LoopVibration:
-    """What the warm loop does over speed."""
+    """What the warm loop does over speed, each part solved when it is first asked for; none needs the time run."""
 
-    campbell: CampbellRecord
-    torques: SectionTorqueRecord
-    dwell: DwellRecord
+    rig: Rig
+    run: DynamicRun
+    loads: DynamicLoads
+
+    @cached_property
+    def campbell(self) -> CampbellRecord:
+        """Campbell diagram."""
+        return campbell(self.rig, self.run.test, self._states, self.loads.modes)
+
+    @cached_property
+    def start(self) -> StartResponse | None:
+        """Response under the start torque; None where narrow resonances are not resolved."""
+        return start_response(self.rig, self.run)
+
+    @cached_property
+    def torques(self) -> tuple[tuple[CurvePoint, ...], tuple[TorqueOverSpeed, ...]]:
+        """Points of the governing curve, and the torque of every section and joint at each."""
+        dwells = [self.rig.pinion_speed(speed) for speed in dwell_speeds(self.rig)]
+        return torques_over_speed(
+            LoopOverSpeed(self.rig, self.run.test.last, self._states),
+            chosen(self.run.curves.response.points, MOST_SPEEDS, dwells),
+            more_speeds(self.rig, self.run),
+        )
+
+    @cached_property
+    def _states(self) -> Sequence[LoopState]:
+        top = max(self.run.curves.response.speeds) / self.rig.pinion_speed(1.0)
+        return loop_states(self.rig, self.run.test, float(top))
 
 
-def loop_vibration(solved: SolvedRig) -> LoopVibration:
-    """Campbell diagram, torques of every section, speeds at which the rig may dwell, of a rig with loads."""
-    rig, run, loads = solved.rig, solved.run, solved.loads
-    assert run is not None and loads is not None
-    top = max(run.curves.response.speeds) / rig.pinion_speed(1.0)
-    states = loop_states(rig, run.test, float(top))
-    works: list[Callable[[], CampbellRecord | StartResponse | None]] = [
-        partial(campbell, rig, run.test, states, loads.modes),
-        partial(start_response, rig, run),
-    ]
-    with BackgroundTasks(works) as tasks:
-        torques = section_torque_record(solved, states)
-        diagram, start = tasks.results()
-    assert isinstance(diagram, CampbellRecord)
-    assert start is None or isinstance(start, StartResponse)
-    sources = DwellSources(
-        loads=loads, torques=torques, diagram=diagram, start=start, near=solved.near_dwells
-    )
-    return LoopVibration(
-        campbell=diagram,
-        torques=torques,
-        dwell=dwell_record(rig, run, sources),
-    )
+def chosen(points: Sequence[CurvePoint], most: int, dwells: Sequence[float] = ()) -> list[CurvePoint]:
+    """At most so many points of a curve, evenly by their number, with all at which the torque of a mesh peaks; on top
+    all around a dwell speed [rad/s] (`is_around`), where shafts peak between the meshes."""
+    if len(points) <= most:
+        return list(points)
+    swing = np.array([point.dynamic_factor_half_peak_to_peak for point in points])
+    inner = (swing[1:-1] >= swing[:-2]) & (swing[1:-1] >= swing[2:])
+    peaks = set((np.flatnonzero(inner.any(axis=1)) + 1).tolist())
+    rest = max(2, most - len(peaks))
+    even = set(np.linspace(0, len(points) - 1, rest).round().astype(int).tolist())
+    near = {i for i, point in enumerate(points) if any(is_around(point.speed, dwell) for dwell in dwells)}
+    return [points[i] for i in sorted(peaks | even | near)]
+
+
+def more_speeds(rig: Rig, run: DynamicRun) -> Solve | None:
+    """Finds stable responses of the governing curve at more speeds, where the curves are to show every resonance.
+
+    Where only a march finds the motion, meshes lose contact and no resonance of a shaft is narrow.
+    """
+    if not resolved(rig):
+        return None
+    speeds = run.curves.response.speeds
+    limits = (float(min(speeds)), float(max(speeds)))
+    return response_solver(rig, run.test.last, run.curves.torque, limits, stable_only=True)

@@ -12,6 +12,7 @@ from types import MappingProxyType
 
 from threadpoolctl import threadpool_limits
 
+from dynamics.response.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
 from rigdesign.base.parallel import BackgroundTasks
@@ -24,8 +25,10 @@ from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.coupling.time_run import held_points, schedule_of
+from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
 from rigdesign.records.contact_in_loop import contact_in_loop
+from rigdesign.records.curves import solve_curves
+from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.events import solve_events
 from rigdesign.records.hand import hand_checks
@@ -42,7 +45,6 @@ from rigdesign.results.rows.rig import circuit_rows, coupling_row, rig_heat_row,
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
-from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
 from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
@@ -116,29 +118,33 @@ def solve_case(
     if rig.drivetrain is not None:
         require_damping(rig, held_crossings(rig, governing_point(converged)))
     say("response over speed, time run over the schedule")
-    with DynamicWork(rig, converged) as dynamics:
+    with BackgroundTasks(_time_runs(rig, converged)) as time_run, one_thread():
         points = converged
         if wanted is not rig:
             say(f"last iteration on the {fidelity} mesh")
-            with dynamics.sharing():
-                points = [on_mesh(wanted, point, rig) for point in converged]
+            points = [on_mesh(wanted, point, rig) for point in converged]
             lap("last_pass")
-            dynamics.result()
-            lap("dynamics")
-        with dynamics.sharing():
-            meshes = discretisation(rigs, rig, converged, points)
-            lap("discretisation")
-            temperatures = [compared_temperatures(wanted, *found) for found in housing_fields(points)]
-            spreads = tuple(law_spreads(wanted, points))
-            lap("alternatives")
-        run = dynamics.result()
-        lap("dynamics")
-    solved = replace(
-        solved_rig(wanted, points, temperatures, run=run),
-        discretisation=meshes.rows,
-        mesh_shifts=meshes.shifts,
-        law_spreads=spreads,
-    )
+        meshes = discretisation(rigs, rig, converged, points)
+        lap("discretisation")
+        temperatures = [compared_temperatures(wanted, *found) for found in housing_fields(points)]
+        spreads = tuple(law_spreads(wanted, points))
+        lap("alternatives")
+        run = None
+        if rig.drivetrain is not None:
+            curves = solve_curves(rig, governing_point(converged).last)
+            lap("curves")
+            run = DynamicRun(tuple(converged), curves, lambda: time_run.results()[0])
+        solved = replace(
+            solved_rig(wanted, points, temperatures, run=run),
+            discretisation=meshes.rows,
+            mesh_shifts=meshes.shifts,
+            law_spreads=spreads,
+        )
+        solved.before_time_run()
+        lap("over_speed")
+        if run is not None:
+            _ = run.ramp
+            lap("time_run")
     if run is not None and wanted.case.events:
         say("events: " + ", ".join(wanted.case.events))
         solved = replace(solved, events=solve_events(wanted, run))
@@ -152,6 +158,15 @@ def solve_case(
     lap("load_errors")
     say("assembling the result")
     return solved
+
+
+def _time_runs(rig: Rig, converged: Sequence[PointResult]) -> list[Callable[[], TimeResponse]]:
+    """The time run, which needs no more of the points than their warm gears; none without a drivetrain."""
+    if rig.drivetrain is None:
+        return []
+    test = governing_point(converged)
+    assert test.setting is not None
+    return [partial(run_ramp, rig, test.last, test.setting, test.last.coupling_state)]
 
 
 def _converged(rig: Rig, say: Progress) -> list[PointResult]:

@@ -41,4 +41,4 @@ def made_ramp(rig: Rig, sections: tuple[TorqueSection, ...] | None, torques: Tor
 
 def made_run(rig: Rig, points: Any, ramp: Any, curves: Curves | None = None) -> DynamicRun:
     """Of held points, a ramp and, where they are asked for, curves."""
-    return DynamicRun(points=tuple(points), curves=curves, ramp=ramp)  # type: ignore[arg-type]
+    return DynamicRun(tuple(points), curves, ramp)  # type: ignore[arg-type]

@@ -109,17 +109,20 @@ def inline_svg(figure: "Figure", name: str, description: str) -> str:
 
 
 class NumberedFigures:
-    """Turns the figures of one page into inline SVG and numbers them, so that ids stay unique on the page."""
+    """Turns the figures of one page into inline SVG and numbers them, so that ids stay unique on the page.
 
-    def __init__(self) -> None:
-        self._count = 0
+    prefix : of the numbers, one for each part of a page that numbers its own
+    """
+
+    def __init__(self, prefix: str = "f") -> None:
+        self._prefix, self._count = prefix, 0
 
     def __call__(self, figure: "Figure", description: str) -> "Markup":
         """The figure as an <svg> element; ``description`` is read to those who cannot see it."""
         from markupsafe import Markup
 
         self._count += 1
-        return Markup(inline_svg(figure, f"f{self._count}", description))
+        return Markup(inline_svg(figure, f"{self._prefix}{self._count}", description))
 
 
 def _leaner(picture: str) -> str:

@@ -3,17 +3,18 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import without_layout
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.base.version import __version__
 from rigdesign.report import numbers, palette, views
 from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.sections import SECTIONS
-from rigdesign.report.sections.section import Draw, ReportSection
+from rigdesign.report.sections.section import ReportSection
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ class _Page:
 
     result: RunResult
     issue: Issue
-    draw: Draw
     number_of: Mapping[str, str]
 
 
@@ -50,13 +50,9 @@ def report_html(result: RunResult, issue: Issue | None = None) -> str:
     unless ``issue`` says otherwise, which stands in the element ``issued`` and nowhere else.
     """
     shown = [section for section in SECTIONS if section.applies(result)]
-    page = _Page(result, issue or Issue(), NumberedFigures(), _numbers(shown))
-    with drawing_style():
-        parts = {
-            "first_page": _rendered(page, shown, "first page"),
-            "body": _rendered(page, shown, "body"),
-            "appendix": _rendered(page, shown, "appendix"),
-        }
+    page = _Page(result, issue or Issue(), _numbers(shown))
+    with drawing_style(), BackgroundTasks([partial(_body, section, page) for section in shown]) as tasks:
+        bodies = dict(zip(shown, tasks.results(), strict=True))
     return (
         environment()
         .get_template("report.html.j2")
@@ -65,7 +61,9 @@ def report_html(result: RunResult, issue: Issue | None = None) -> str:
             issue=page.issue,
             tool_version=__version__,
             running_title=running_title(result),
-            **parts,
+            first_page=_rendered(page, bodies, "first page"),
+            body=_rendered(page, bodies, "body"),
+            appendix=_rendered(page, bodies, "appendix"),
         )
     )
 
@@ -84,7 +82,7 @@ def _numbers(shown: Sequence[ReportSection]) -> dict[str, str]:
     }
 
 
-def _rendered(page: _Page, shown: Sequence[ReportSection], place: str) -> list[_Rendered]:
+def _rendered(page: _Page, bodies: Mapping[ReportSection, "Markup"], place: str) -> list[_Rendered]:
     """The sections of one place in their order, each followed by what stands within it."""
     from markupsafe import Markup
 
@@ -93,9 +91,9 @@ def _rendered(page: _Page, shown: Sequence[ReportSection], place: str) -> list[_
             section.id,
             section.title,
             page.number_of.get(section.id, ""),
-            _body(section, page) + Markup("").join(_body(s, page) for s in shown if s.within == section.id),
+            body + Markup("").join(part for other, part in bodies.items() if other.within == section.id),
         )
-        for section in shown
+        for section, body in bodies.items()
         if section.place == place and not section.within
     ]
 
@@ -163,7 +161,7 @@ def _body(section: ReportSection, page: _Page) -> "Markup":
             issue=page.issue,
             tool_version=__version__,
             number_of=page.number_of,
-            **section.values(page.result, page.draw),
+            **section.values(page.result, NumberedFigures(f"{section.id}-")),
         )
     )
     return Markup(text)

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from rigdesign.records.dwell_speeds import _orders
-from rigdesign.records.near_dwell import Bounds, NearDwell
+from rigdesign.records.near_dwell import NearDwell
 from rigdesign.results.vibration import AvoidedResonance, CampbellCrossing
 
 
@@ -26,10 +26,9 @@ def test_every_dwell_has_the_orders_of_its_own_modes() -> None:
         100.0: NearDwell(100.0, 0.1, (), (order(105.0, "at 100"), order(290.0, "at 100"))),
         300.0: NearDwell(300.0, 0.1, (), (order(95.0, "at 300"), order(310.0, "at 300"))),
     }
-    diagram = SimpleNamespace(
+    diagram: Any = SimpleNamespace(
         modes=[SimpleNamespace(number=1, name="bow")], crossings=[tracked(98.0), tracked(200.0)]
     )
-    sources: Any = SimpleNamespace(near=near, diagram=diagram)
-    found = list(_orders(sources, Bounds(share=0.2, margin=0.1)))
+    found = list(_orders(diagram, near, 0.1))
     assert [one.speed for one in found] == [200.0, 105.0, 310.0]
     assert "(bow)" in found[0].where

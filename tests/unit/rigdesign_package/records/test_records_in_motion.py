@@ -11,10 +11,12 @@ import pytest
 from rigdesign.checks import dynamics
 from rigdesign.checks.dwell_speeds import checks
 from rigdesign.records.contact_in_motion import pair_shares
+from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.near_dwell import near_dwells
+from rigdesign.records.section_torques import section_torque_record
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.spectra import held_spectra, waterfalls
-from rigdesign.records.vibration import loop_vibration
 from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord
 from rigdesign.results.vibration import DwellRecord, Waterfall
 from tests.builders.solved_loop import solved
@@ -137,8 +139,12 @@ def test_mesh_orders_of_the_time_run_are_those_of_the_periodic_response() -> Non
 
 @cache
 def advice() -> DwellRecord:
-    found = solved()
-    return loop_vibration(found).dwell
+    return dwell_of(solved())
+
+
+def dwell_of(found: SolvedRig) -> DwellRecord:
+    assert found.vibration is not None
+    return dwell_record(found, section_torque_record(found, *found.vibration.torques))
 
 
 BY_DISTANCE = ("resonances by strength", "peaks of the periodic response")
@@ -157,12 +163,12 @@ def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
     own = replace(found, rig=rig)
     held = [check for check in (*dynamics.checks(own), *checks(own)) if check.source.endswith(BY_DISTANCE)]
     check = min(held, key=lambda check: check.value or 0.0)
-    vibration = loop_vibration(replace(found, rig=rig))
-    (stage,) = vibration.dwell.stages
+    dwelling = dwell_of(replace(found, rig=rig))
+    (stage,) = dwelling.stages
     assert stage.band is not None and stage.near is not None
     assert check.value == stage.near.distance == near.distance
     assert f"{near.resonance.speed * RPM:.0f} rpm" in check.reason
-    dwell = next(step for step in vibration.dwell.ramp if step.action == "dwell")
+    dwell = next(step for step in dwelling.ramp if step.action == "dwell")
     assert f"peaks at {near.resonance.speed * RPM:.0f} rpm, " in dwell.reason
     assert dwell.speed == stage.nearest_safe or stage.nearest_safe is None
 

@@ -10,9 +10,9 @@ import pytest
 
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.curves import Curves, curve_at
-from rigdesign.records.loop_states import loop_states
-from rigdesign.records.section_torques import chosen, section_torque_record
+from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.vibration import chosen
 from rigdesign.results.vibration import SectionTorqueRecord
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.warm_prototype import base
@@ -42,7 +42,8 @@ def record() -> SectionTorqueRecord:
         }
     )
     solved = SolvedRig(rig=rig, points=(point,), run=made_run(rig, [point], ramp, curves()), loads=loads)
-    return section_torque_record(solved, loop_states(rig, point, 12500.0 * RPM))
+    assert solved.vibration is not None
+    return section_torque_record(solved, *solved.vibration.torques)
 
 
 def test_held_torques_carry_the_peaks_of_the_run_in_their_stage() -> None:
