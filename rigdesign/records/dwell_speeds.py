@@ -36,7 +36,7 @@ def dwell_record(solved: SolvedRig, torques: SectionTorqueRecord) -> DwellRecord
     """Bands over all speeds of the governing curve of a rig with loads; speeds above the limit of the rig are none to
     dwell at."""
     rig, run, loads, vibration = solved.rig, solved.run, solved.loads, solved.vibration
-    assert run is not None and loads is not None and vibration is not None
+    assert run is not None and loads is not None
     bounds, limit = bounds_of(rig), speed_limit(rig)
     speeds = torques.speeds
     others = [*root_shares(rig, loads), *shaft_shares(rig, speeds, torques.curves)]

@@ -50,7 +50,6 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
     vibration = solved.vibration
-    assert vibration is not None
     torques = section_torque_record(solved, *vibration.torques)
     return DynamicsResult(
         gearboxes={

@@ -9,10 +9,8 @@ from rigdesign.case.model import Case
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun, SolvedLoads
-from rigdesign.records.held_torques import held_torques
 from rigdesign.records.housing import cooling_balance
-from rigdesign.records.lateral import lateral_vibration, seal_whirls
-from rigdesign.records.near_dwell import NearDwell, near_dwells
+from rigdesign.records.near_dwell import NearDwell
 from rigdesign.records.part_torques import PartTorque, part_torques
 from rigdesign.records.press_fits import press_fits
 from rigdesign.records.spline_capacity import spline_stresses
@@ -63,52 +61,40 @@ class SolvedRig:
     """None where no thermal history was asked for."""
     events: Sequence[EventRecord] = ()
     """Of a rig with a drivetrain."""
+    loop: LoopVibration | None = None
+    """What is known of ``vibration``, of the same points and run."""
     contact_in_loop: ContactInLoop = field(default_factory=ContactInLoop)
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
     law_spreads: Sequence[LawSpread] = ()
 
     @cached_property
+    def vibration(self) -> LoopVibration:
+        """What the warm loop does at its held stages and over speed."""
+        own = LoopVibration(self.rig, tuple(self.points), self.run, self.loads)
+        return self.loop if self.loop is not None and self.loop.is_of(own) else own
+
+    @property
     def lateral(self) -> LateralVibration | None:
         """Lateral vibration; None for shafts that only twist."""
-        return lateral_vibration(self.rig, self.points)
+        return self.vibration.lateral
 
-    @cached_property
+    @property
     def seal_amplitudes(self) -> Mapping[tuple[str, str], float]:
         """Motion once a turn of the shaft in every seal without contact by stage and seal [m]; empty for shafts that
         only twist."""
-        return {
-            (point.point.stage, seal.seal): seal.amplitude
-            for point in self.points
-            for seal in seal_whirls(self.rig, point)
-        }
+        return self.vibration.seal_amplitudes
 
-    @cached_property
+    @property
     def held_torques(self) -> tuple[HeldTorque, ...]:
-        """Torque of every section and joint in the periodic responses of the held stages, with the teeth that these
-        were found with: those of ``points`` are warmed on the final mesh and stand at another approach."""
-        points = self.points if self.run is None else self.run.points
-        return tuple(torque for point in points for torque in held_torques(self.rig, point))
+        """Torque of every section and joint in the periodic responses of the held stages."""
+        return self.vibration.held_torques
 
-    @cached_property
+    @property
     def near_dwells(self) -> Mapping[float, NearDwell]:
         """What lies near every dwell whose response is computed, by the speed of the first pinion [rad/s]; empty
         without a dynamic run."""
-        return {} if self.run is None or self.loads is None else near_dwells(self.rig, self.run, self.loads)
-
-    @cached_property
-    def vibration(self) -> LoopVibration | None:
-        """Of the loop over speed; None without a dynamic run."""
-        if self.run is None or self.loads is None:
-            return None
-        return LoopVibration(self.rig, self.run, self.loads)
-
-    def before_time_run(self) -> None:
-        """Solve what needs no time run and takes long."""
-        _ = self.lateral, self.seal_amplitudes
-        if self.vibration is not None:
-            _ = self.near_dwells, self.held_torques, self.vibration.torques
-            _ = self.vibration.campbell, self.vibration.start
+        return self.vibration.near_dwells
 
     @cached_property
     def part_torques(self) -> tuple[PartTorque, ...]:
@@ -193,11 +179,13 @@ def solved_rig(
     temperatures : of every housing at every point (`housing_fields`), with or without what is solved to compare
     run : of the dynamic solvers; None where losses are given
     """
+    loads = SolvedLoads(rig, run) if loads is None and run is not None else loads
     return SolvedRig(
         rig=rig,
         points=points,
         run=run,
-        loads=SolvedLoads(rig, run) if loads is None and run is not None else loads,
+        loads=loads,
+        loop=LoopVibration(rig, tuple(points), run, loads),
         temperatures=temperatures,
         warm=[warm_gearbox(rig, point, name) for point in points for name in point.last.expansion],
         cooling=[cooling_balance(rig, point.last) for point in points],

@@ -140,7 +140,7 @@ def solve_case(
             mesh_shifts=meshes.shifts,
             law_spreads=spreads,
         )
-        solved.before_time_run()
+        solved.vibration.before_time_run()
         lap("over_speed")
         if run is not None:
             _ = run.ramp

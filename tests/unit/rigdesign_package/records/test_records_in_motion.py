@@ -143,7 +143,6 @@ def advice() -> DwellRecord:
 
 
 def dwell_of(found: SolvedRig) -> DwellRecord:
-    assert found.vibration is not None
     return dwell_record(found, section_torque_record(found, *found.vibration.torques))
 
 
