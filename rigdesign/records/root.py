@@ -128,21 +128,23 @@ def field_of(rig: Rig, model: MeshModel, gear: Literal[0, 1], side: Side = 1) ->
     return field.within(numbers.fillet.tangent >= ROOT)
 
 
-def dynamic_forces(model: MeshModel, points: Sequence[CurvePoint], mesh: int) -> list[PairForces]:
-    """Forces on the teeth of a mesh, by its number, at periodic points.
+def dynamic_forces(
+    model: MeshModel, points: Sequence[CurvePoint], mesh: int, every: int = 1
+) -> list[PairForces]:
+    """Forces on the teeth of a mesh, by its number, at every so many instants of periodic points.
 
     One mesh period holds every tooth at another place: put together by path they are one tooth's whole contact. All
     points together, as the tables of the law are made once.
     """
     states = np.concatenate(
         [
-            (p.wave.angle[mesh], p.wave.approach[mesh], p.wave.omega_1[mesh], p.wave.omega_2[mesh])
+            [row[mesh, ::every] for row in (p.wave.angle, p.wave.approach, p.wave.omega_1, p.wave.omega_2)]
             for p in points
         ],
         axis=1,
     )
     forces = tooth_forces(model.law, *states)
-    ends = np.cumsum([0, *(point.wave.angle[mesh].size for point in points)])
+    ends = np.cumsum([0, *(point.wave.angle[mesh, ::every].size for point in points)])
     return [
         PairForces.of(forces, slice(a, b), front=bool(point.flank[mesh] > 0))
         for point, a, b in zip(points, ends[:-1], ends[1:])
