@@ -16,6 +16,8 @@ from dynamics.errors import DynamicsInputError
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+LEAST_SPLINE = 4
+"""Positions over the face from which on it is interpolated by cubic splines."""
 RECIPROCITY = 1e-6
 """Largest difference of two influence numbers that reciprocity makes equal, relative to the largest [-]."""
 
@@ -77,7 +79,7 @@ class InfluenceNumbers(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class InterpolatedCompliance:
-    """Compliance between any points from influence numbers on a grid: W G W^T, cubic in roll, linear in face.
+    """Compliance between any points from influence numbers on a grid: W G W^T, cubic in roll and face.
 
     profile : (n_p,) roll lengths, growing, at least four [m]
     face : (n_f,) positions from mid-face, growing [m]
@@ -163,17 +165,34 @@ class InterpolatedCompliance:
     def shapes(self, roll: Array, face: Array) -> Array:
         """Return W, (n, n_p n_f): share of every grid point in points at ``roll`` and ``face`` (n,) [m]."""
         along = self._profile_shapes(np.clip(roll, self.profile[0], self.profile[-1]))
-        across = self._hats(face)
+        across = self._across(face)
         return np.asarray((along[:, :, None] * across[:, None, :]).reshape(len(roll), -1))
 
-    def _hats(self, face: Array) -> Array:
-        if len(self.face) == 1:
-            return np.ones((len(face), 1))
-        at = np.clip(np.searchsorted(self.face, face) - 1, 0, len(self.face) - 2)
-        share = np.clip((face - self.face[at]) / np.diff(self.face)[at], 0.0, 1.0)
-        hats, rows = np.zeros((len(face), len(self.face))), np.arange(len(face))
-        hats[rows, at], hats[rows, at + 1] = 1.0 - share, share
-        return hats
+    @cached_property
+    def _face_shapes(self) -> CubicSpline:
+        """Splines over the face, one for each position: of a force there its parts under the hats of the positions.
+
+        Displacements are means under hats as well. Splines that keep these means have an error of fourth order in the
+        distance of the positions; the hats themselves would spread every force over two of them.
+        """
+        face, n = self.face, len(self.face)
+        spline = CubicSpline(face, np.eye(n))
+        nodes, weights = np.polynomial.legendre.leggauss(3)
+        share, steps = 0.5 * (1.0 + nodes), np.diff(face)
+        values = spline(face[:-1, None] + steps[:, None] * share)
+        parts = 0.5 * steps[:, None] * weights
+        means = np.zeros((n, n))
+        means[:-1] += np.einsum("ck,ckn->cn", parts * (1.0 - share), values)
+        means[1:] += np.einsum("ck,ckn->cn", parts * share, values)
+        widths = 0.5 * (np.append(steps, 0.0) + np.insert(steps, 0, 0.0))
+        return CubicSpline(face, np.linalg.inv(means / widths[:, None]))
+
+    def _across(self, face: Array) -> Array:
+        """(n, n_f) parts of a force at ``face`` (n,) under the hats; fewer than four of them stay hats."""
+        held = np.clip(face, self.face[0], self.face[-1])
+        if len(self.face) >= LEAST_SPLINE:
+            return np.asarray(self._face_shapes(held))
+        return np.stack([np.interp(held, self.face, one) for one in np.eye(len(self.face))], axis=1)
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
         """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""

@@ -12,7 +12,15 @@ from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
 
 Array = NDArray[np.float64]
 FACE_POSITIONS = 11
-"""Positions over the face; see `dynamics.contact.face` for what the contact asks."""
+"""Positions over the face."""
+NEAR_ENDS = 0.6
+"""How much closer they stand near the ends of the face, where lines of contact end and edges press: 0 all alike, 1 as
+the points of Chebyshev.
+
+With eleven, interpolated by cubic splines, the mesh stiffness is within 0.5 % and the highest root stress within 4 % of
+those of 17 positions, on spur and helical gears, crowned and misaligned by up to 30 um over the face
+(tests/verification/test_face_positions.py).
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,7 +28,7 @@ class GearModel:
     """Cold gear that influence numbers are wanted of.
 
     form : outline of its teeth; body : under them; material : of the gear
-    face_width : that carries [m]; n_face : positions over it, planes between layers of bricks
+    face_width : that carries [m]; n_face : positions over it, planes between layers of bricks, closer near its ends
     division : elements of the section
     plane_strain : a slice far from the ends, one layer thick, alike over the face: for quick work
     """
@@ -36,8 +44,9 @@ class GearModel:
     @property
     def face(self) -> Array:
         """(n_face,) positions from mid-face; both ends of a slice [m]."""
-        n = 2 if self.plane_strain else self.n_face
-        return np.linspace(-0.5 * self.face_width, 0.5 * self.face_width, n)
+        even = np.linspace(-1.0, 1.0, 2 if self.plane_strain else self.n_face)
+        closer = np.sin(0.5 * np.pi * even)
+        return np.asarray(0.5 * self.face_width * (even + NEAR_ENDS * (closer - even)))
 
     @property
     def lead(self) -> float:

@@ -27,7 +27,7 @@ from thermal.fe.kernel_cache import cache_folder
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-SCHEMA = 2
+SCHEMA = 4
 """Of the numbers and of how they are computed; raise it with any change of either."""
 ABSENT = (FileNotFoundError, NotADirectoryError)
 POLL = 0.2

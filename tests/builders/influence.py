@@ -4,6 +4,7 @@ from math import cos, radians
 
 import numpy as np
 
+from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence.elastic_segment import Elastic
@@ -63,3 +64,29 @@ def invented_numbers(n_profile: int = 4, n_face: int = 2, seed: int = 0) -> Infl
         asymmetry=0.03,
         n_nodes=5,
     )
+
+
+def hat_weights(face: np.ndarray, n: int = 8) -> tuple[np.ndarray, np.ndarray]:
+    """Weights (n_f, m) of the means under the hats of positions, at places (m,) between them."""
+    nodes, weights = np.polynomial.legendre.leggauss(n)
+    steps, share = np.diff(face), 0.5 * (1.0 + nodes)
+    places = face[:-1, None] + steps[:, None] * share
+    found = np.zeros((len(face), len(steps), n))
+    for cell, step in enumerate(steps):
+        found[cell, cell] = 0.5 * step * weights * (1.0 - share)
+        found[cell + 1, cell] = 0.5 * step * weights * share
+    flat = found.reshape(len(face), -1)
+    return flat / flat.sum(axis=1, keepdims=True), places.ravel()
+
+
+def hat_means(table: InterpolatedCompliance, offset: int) -> np.ndarray:
+    """Means of a compliance under the hats of its face positions, at its profile positions: as `deflection`."""
+    weights, places = hat_weights(table.face) if len(table.face) > 1 else (np.ones((1, 1)), np.zeros(1))
+    roll = np.repeat(table.profile, len(places))
+    tooth = np.repeat([0, offset], len(roll)) if offset else np.zeros(len(roll), np.int64)
+    face = np.tile(places, len(table.profile))
+    times = len(tooth) // len(roll)
+    matrix = table.matrix(np.tile(roll, times), np.tile(face, times), tooth)
+    block = matrix[-len(roll) :, : len(roll)].reshape(len(table.profile), len(places), len(table.profile), -1)
+    means = np.einsum("am,imjn,bn->iajb", weights, block, weights)
+    return means.reshape(len(table.profile) * len(weights), -1)

@@ -43,7 +43,7 @@ def cycle(pair: GearPair) -> MeshCycle:
 
 def law_of(pair: GearPair, found: MeshCycle) -> Any:
     """What the root field reads of a mesh law: places and slices."""
-    path = np.linspace(found.points.path.min(), found.points.path.max(), 801)
+    path = np.linspace(found.points.path.min(), found.points.path.max(), 1201)
     return SimpleNamespace(
         stiffness=np.zeros((SLICES, path.size)),
         path_start=path[0],

@@ -30,7 +30,7 @@ COARSE = SectionDivision(profile=4, thickness=2, fillet=8, depth=1, grading=0.4,
 
 
 def coarse(model: GearModel) -> GearModel:
-    return replace(model, division=COARSE, n_face=5)
+    return replace(model, division=COARSE, n_face=7)
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,8 @@ def test_teeth_of_the_prototype_meet_early_and_share_as_in_calculix(found: Loade
 def test_stress_over_the_path_is_that_of_the_numbers(rig: Rig, found: LoadedContact) -> None:
     """Forces of the mesh law: the stress of the loaded contact on the same numbers, per force on the tooth.
 
-    Analytic teeth carry 0.79 at most where those of the loaded contact carry 0.88, and their face is cut into slices.
+    Analytic teeth carry 0.79 at most where those of the loaded contact carry 0.88, and their face is cut into slices:
+    on the wheel, twice as wide as the pinion, the load then ends half a slice further out.
     """
     model = base()[1].last.models[0]
     response = base()[1].last.response
@@ -91,7 +92,7 @@ def test_stress_over_the_path_is_that_of_the_numbers(rig: Rig, found: LoadedCont
     stresses = roots.highest(forces)
     share = float(forces.force.sum(axis=2).max()) / found.cycle.mesh_force
     expected = [course.highest * share / found.cycle.load_share.max() for course in found.roots]
-    assert [root.peak(stress) for stress in stresses] == pytest.approx(expected, rel=0.06)
+    assert [root.peak(stress) for stress in stresses] == pytest.approx(expected, rel=0.07)
     narrow = roots.at_highest(forces).highest(forces)
     assert [root.peak(one) for one in narrow] == [root.peak(one) for one in stresses]
     place = root.StressedGear("pinion", "test", model.pair.base_radii[0], roots.source)
@@ -132,7 +133,7 @@ def test_row_and_picture_hold_what_was_found(found: LoadedContact) -> None:
     assert max(row["root_stress"]["wheel"]["highest_MPa"]) == pytest.approx(1e-6 * found.roots[1].highest)
     assert np.all(np.diff(row["root_stress"]["wheel"]["rolling_angle_deg"]) > 0.0)
     tangent = row["root_stress_30_deg_tangent"]["pinion"]
-    assert len(tangent["face_mm"]) == 5 and np.all(np.diff(tangent["face_mm"]) > 0.0)
+    assert len(tangent["face_mm"]) == 7 and np.all(np.diff(tangent["face_mm"]) > 0.0)
     # the critical section of the standard lies next to the most stressed point of the fillet
     assert 0.85 < max(tangent["highest_MPa"]) / row["root_stress"]["pinion"]["largest_MPa"] <= 1.0
     pressure = np.array(row["pattern"]["pressure_MPa"])
