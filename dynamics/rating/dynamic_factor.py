@@ -6,6 +6,7 @@ load of the teeth, which ISO 6336 multiplies by K_V; the torque in an adjacent s
 between.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,13 +59,10 @@ def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> 
 
     A curve that still rises at its highest speed has a peak there (``at_end``).
     """
-    from scipy.signal import find_peaks  # half a second that no other command needs
-
     found: list[Resonance] = []
     for mesh, amplitude in enumerate(curve.amplitude):
         share = amplitude / np.abs(curve.mean_torque[mesh])
-        peaks, properties = find_peaks(share, prominence=least_prominence)
-        standing = dict(zip(peaks.tolist(), properties["prominences"].tolist()))
+        standing = {peak: height for peak, height in _prominences(share) if height >= least_prominence}
         if (rise := _rise_at_end(share)) >= least_prominence:
             standing[share.size - 1] = rise
         for peak, prominence in standing.items():
@@ -81,6 +79,17 @@ def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> 
                 )
             )
     return tuple(found)
+
+
+def _prominences(values: Array) -> Iterator[tuple[int, float]]:
+    """Every peak and its height over the higher one of the lowest values towards the next higher peaks beside it, as
+    `scipy.signal.find_peaks`, whose import takes half a second."""
+    for peak in (np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])) + 1).tolist():
+        higher = np.flatnonzero(values > values[peak])
+        first = int(higher[higher < peak].max(initial=-1)) + 1
+        last = int(higher[higher > peak].min(initial=values.size))
+        base = max(values[first:peak].min(), values[peak + 1 : last].min())
+        yield peak, float(values[peak] - base)
 
 
 def _rise_at_end(values: Array) -> float:

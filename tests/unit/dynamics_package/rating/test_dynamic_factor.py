@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.signal import find_peaks
 
-from dynamics.rating.dynamic_factor import DynamicFactorCurve, resonances
+from dynamics.rating.dynamic_factor import DynamicFactorCurve, _prominences, resonances
 
 WAVE = np.sin(np.linspace(0.0, 2.0 * np.pi, 4097)[:-1])
 
@@ -47,3 +48,9 @@ def test_a_curve_that_ends_rising_has_its_peak_at_the_end_or_above() -> None:
     assert last.amplification > 4.0
     falling = [180.0 + (70.0 - 0.05 * s) * WAVE for s in speed]
     assert resonances(factor_curve(speed, falling, np.zeros((241, 1)))) == ()
+
+
+def test_prominences_are_those_of_scipy() -> None:
+    values = np.random.default_rng(1).normal(size=400).cumsum()
+    peaks, found = find_peaks(values, prominence=0.0)
+    assert dict(_prominences(values)) == pytest.approx(dict(zip(peaks, found["prominences"], strict=True)))
