@@ -14,6 +14,7 @@ from rigdesign.records.hand import disagreeing
 from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
+from rigdesign.rig.model import Rig
 
 __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_other_law"]
 
@@ -39,6 +40,7 @@ def estimated_checks(solved: SolvedRig) -> list[Check]:
         checks = [of_other_law(check, spread) for check in checks]
     found = out_of_range(solved, {point.point.stage: point.last.losses for point in solved.points})
     checks = [_out_of_range(check, found) for check in checks]
+    checks = [_of_face_positions(solved.rig, check) for check in checks]
     return [_of_reduced_model(solved, check) if solved.rig.reduced else check for check in checks]
 
 
@@ -81,6 +83,21 @@ def of_other_law(check: Check, spread: LawSpread) -> Check:
     """A check with what another law of a loss moves in it added to its error."""
     change = spread.changes.get(check.id, 0.0)
     return with_error(check, (check.error or 0.0) + change, spread.cause) if change else check
+
+
+LINE_LOAD_ERROR = 0.04
+"""Share of the highest root stress that the face positions of the influence numbers leave open
+(`dynamics.influence.gear_model.NEAR_ENDS`)."""
+BY_LINE_LOAD = {"specimen.root_stress*": 1.0, "strength.root_safety*": 1.0, "flank.*": 0.5}
+"""Checks that follow the load over the face -> their share of `LINE_LOAD_ERROR`."""
+
+
+def _of_face_positions(rig: Rig, check: Check) -> Check:
+    """A check that follows the load over the face with the error of the positions over it."""
+    shares = [share for pattern, share in BY_LINE_LOAD.items() if check.is_one_of((pattern,))]
+    if not shares or check.value is None or rig.mesh_stiffness != "influence_numbers":
+        return check
+    return with_error(check, (check.error or 0.0) + LINE_LOAD_ERROR * shares[0] * abs(check.value))
 
 
 def _of_reduced_model(solved: SolvedRig, check: Check) -> Check:

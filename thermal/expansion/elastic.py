@@ -6,9 +6,10 @@ its supports, which would strain the three nodes they hold, and then moved as a 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +46,12 @@ DIRECT = 100_000
 """Unknowns up to which a direct solution steps in where conjugate gradients stall."""
 
 
+MOST_KNOWN = 4
+"""Solutions from which the next one starts."""
+INDEPENDENT = 1e-3
+"""Least eigenvalue of the energies of their steps, over the largest, that counts."""
+
+
 class Elastic(NamedTuple):
     """Isotropic elastic material."""
 
@@ -55,6 +62,13 @@ class Elastic(NamedTuple):
     """Mean coefficient of linear expansion between the reference temperature and the hot one [1/K]."""
 
 
+class Known(NamedTuple):
+    """A right-hand side (n,) [N] of held degrees of freedom zero, and what it gave (n,) [m]."""
+
+    load: FloatArray
+    values: FloatArray
+
+
 @dataclass(frozen=True)
 class Displacement:
     """Displacement (n_nodes, 3) [m], support reactions (n_nodes, 3) [N] and residuals of the linear solve."""
@@ -62,11 +76,29 @@ class Displacement:
     values: FloatArray
     reactions: FloatArray
     residuals: tuple[float, ...]
+    known: tuple[Known, ...] = ()
+    """This solution and some before it, from which the next one starts."""
 
     @property
     def iterations(self) -> int:
         """Iterations of conjugate gradients."""
         return len(self.residuals) - 1
+
+
+def _combination(known: Sequence[Known], load: FloatArray) -> FloatArray | None:
+    """The last solution and what of the steps that led there brings it nearest in energy; None without any."""
+    if not known:
+        return None
+    last = known[-1]
+    steps = np.array([after.values - before.values for before, after in pairwise(known)])
+    if not len(steps):
+        return last.values
+    forces = np.array([after.load - before.load for before, after in pairwise(known)])
+    work = steps @ forces.T
+    size = np.sqrt(np.maximum(np.diag(work), 1e-300))
+    matrix = 0.5 * (work + work.T) / np.outer(size, size)
+    shares = np.linalg.lstsq(matrix, steps @ (load - last.load) / size, rcond=INDEPENDENT)[0]
+    return np.asarray(last.values + (shares / size) @ steps)
 
 
 class ElasticSetup:
@@ -122,23 +154,24 @@ class ElasticSetup:
         temperature: FloatArray,
         reference: float,
         tolerance: float = 1e-8,
-        start: FloatArray | None = None,
+        known: Sequence[Known] = (),
     ) -> Displacement:
         """Displacement under a nodal temperature (n_nodes,) [K]; raises ThermalNotConverged with its residuals.
 
-        start : (n_nodes, 3) displacement of a neighbouring temperature field [m]
+        known : of neighbouring temperature fields; the solve starts from the combination of them that is nearest in
+            energy (Fischer, Comput. Methods Appl. Mech. Eng. 163 (1998) 193)
         """
         load = self.load(temperature, reference)
         right = np.where(self._held, 0.0, load.ravel())
-        first = None if start is None else np.where(self._held, 0.0, start.ravel())
-        solution = self._solved(right, first, tolerance)
+        solution = self._solved(right, _combination(known, right), tolerance)
         values = self.free.onto_supports(solution.values.reshape(-1, 3))
         rows, columns, blocks = self._held_rows
         forces = np.zeros_like(values)
         np.add.at(forces, rows, np.einsum("kij,kj->ki", blocks, values[columns]))
         reactions = np.where(self._held.reshape(-1, 3), forces - load, 0.0)
         reactions += self.free.reactions(load)
-        return Displacement(values, reactions, solution.residuals)
+        found = (*known, Known(right, solution.values))[-MOST_KNOWN:]
+        return Displacement(values, reactions, solution.residuals, found)
 
     def deflection(self, load: FloatArray, tolerance: float = 1e-8) -> FloatArray:
         """Displacement (n_nodes, 3) [m] under nodal forces (n_nodes, 3) [N]; those on free pieces must balance.

@@ -21,7 +21,7 @@ from thermal.expansion.clearances import (
     ShaftExpansion,
 )
 from thermal.expansion.deformed_geometry import DeformedGeometry
-from thermal.expansion.elastic import ElasticError
+from thermal.expansion.elastic import ElasticError, Known
 from thermal.expansion.setup import ExpansionSetup
 from thermal.fe.mesh import FloatArray
 
@@ -34,8 +34,8 @@ class Expansion:
 
     displacement: FloatArray
     """(n_nodes, 3) [m], relative to the foot, shafts placed in their bearings."""
-    supported: FloatArray
-    """(n_nodes, 3) [m] on the supports of the solve, every piece for itself; a start for the next solve."""
+    known: tuple[Known, ...]
+    """Solutions from which that of a neighbouring temperature field starts."""
     bearings: dict[str, BearingExpansion]
     seals: dict[str, SealExpansion]
     shafts: dict[str, ShaftExpansion]
@@ -72,7 +72,7 @@ def expand(
             f"temperature of shape {temperature.shape}: need one finite value per node, ({n_nodes},)"
         )
     solution = setup.elastic.solve(
-        temperature, reference_temperature, tolerance, None if start is None else start.supported
+        temperature, reference_temperature, tolerance, () if start is None else start.known
     )
     return read_expansion(
         setup,
@@ -80,6 +80,7 @@ def expand(
         reference_temperature,
         solution.values,
         largest_reaction=float(np.abs(solution.reactions).max()),
+        known=solution.known,
         iterations=solution.iterations,
     )
 
@@ -91,6 +92,7 @@ def read_expansion(
     supported: FloatArray,
     *,
     largest_reaction: float = 0.0,
+    known: tuple[Known, ...] = (),
     iterations: int = 0,
 ) -> Expansion:
     """Place the shafts and read every clearance from a displacement on the supports of the solve.
@@ -101,7 +103,7 @@ def read_expansion(
     shape = DeformedGeometry(setup, temperature, reference_temperature, supported)
     return Expansion(
         displacement=shape.displacement,
-        supported=supported,
+        known=known,
         bearings={b.name: shape.bearing(b) for b in model.bearings},
         seals={s.name: shape.seal(s) for s in model.seals},
         shafts={s.name: shape.shaft(s) for s in model.shafts},
