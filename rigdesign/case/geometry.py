@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.gearbox import Gearbox, Seals
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
 from rigdesign.case.matching import matched
@@ -97,6 +97,14 @@ def covering(housing: Housing, names: Iterable[str]) -> dict[str, list[str]]:
     return found
 
 
+def seals_on(gearbox: Gearbox, shaft: str) -> Seals:
+    """Seals of a shaft; KeyError when there are none."""
+    for seals in gearbox.seals.values():
+        if seals.shaft == shaft:
+            return seals
+    raise KeyError(shaft)
+
+
 def _end_bearing(bearing: BearingInput) -> EndBearing:
     return EndBearing(
         journal_diameter=bearing.shaft_diameter,
@@ -107,7 +115,7 @@ def _end_bearing(bearing: BearingInput) -> EndBearing:
 
 def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[str, float]) -> ShaftGeometry:
     front, rear = (bearing_on(gearbox, name, side) for side in ("front", "rear"))
-    seals = next(seals for seals in gearbox.seals.values() if seals.shaft == name)
+    seals = seals_on(gearbox, name)
     on_shaft = gear_on(gearbox, name)
     seal_diameter = shaft.seal_diameter or 0.0
     return ShaftGeometry(

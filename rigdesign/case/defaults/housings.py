@@ -255,7 +255,7 @@ def missing_films(tree: Mapping[str, Any], case: "Case") -> Iterator[tuple[str, 
             continue
         try:
             films = covering(box.housing, surface_names(housing_geometry(box)))
-        except (ThermalInputError, LookupError, StopIteration):
+        except (ThermalInputError, LookupError):
             continue  # what the rules of the housing name
         bare = [surface for surface, stated in films.items() if not stated]
         standard = _boundary(RawTree(dict(tree)), name) if bare else None

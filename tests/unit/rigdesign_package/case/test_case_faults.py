@@ -544,6 +544,13 @@ def test_a_seal_sits_on_a_shaft_with_bearings_in_its_gearbox() -> None:
     assert "test_pinion" in str(caught.value)
 
 
+def test_seals_of_one_shaft_on_the_other_are_two_faults() -> None:
+    """The films of a housing whose shaft has no seals are not looked for: the rules name what is missing."""
+    with pytest.raises(CaseError) as caught:
+        load_case(CASES / "uhcf_prototype").with_value("gearboxes.test.seals.wheel.shaft", "test_pinion")
+    assert str(caught.value).count("needs one table of seals") == 2
+
+
 @pytest.mark.parametrize("text", ["remove = [[[[]]]]", "remove = [{}]", "ambient.remove = [1]"])
 def test_what_is_no_list_of_keys_removes_nothing(tmp_path: Path, text: str) -> None:
     file = tmp_path / "bad.toml"
