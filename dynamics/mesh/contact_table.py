@@ -54,7 +54,7 @@ class TableGrid:
 
     per_pitch: int = 128
     finest: float = 0.125e-6
-    growth: float = 0.03
+    growth: float = 0.02
     tilts: tuple[float, float] | None = None
     planes: int = 5
 

@@ -36,7 +36,7 @@ class ExpansionMap:
         setup, reference = rig.expansion[name], rig.case.ambient.reference_temperature
         self._base = base
         field = basis @ base
-        start = setup.elastic.solve(field, reference, EXACT, None).values
+        start = setup.elastic.solve(field, reference, EXACT).values
 
         def read(temperature: FloatArray, supported: FloatArray) -> HousingExpansion:
             return named_expansion(rig, name, read_expansion(setup, temperature, reference, supported))
@@ -48,7 +48,7 @@ class ExpansionMap:
         def derivative(vector: FloatArray, size: float) -> FloatArray:
             if size < LEAST:
                 return np.zeros_like(first)
-            bent = setup.elastic.solve(AMPLITUDE * vector, 0.0, min(1e-2, ENOUGH / size), None).values
+            bent = setup.elastic.solve(AMPLITUDE * vector, 0.0, min(1e-2, ENOUGH / size)).values
             moved = read(field + AMPLITUDE * vector, start + bent)
             return np.asarray((numbers_of(moved) - first) / AMPLITUDE)
 

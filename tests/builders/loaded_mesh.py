@@ -67,11 +67,19 @@ def influence_of(
     neighbour : deflection of the teeth next to the loaded one, against its own; uneven to both sides
     """
     grid = FaceGrid.over(pair.face_width, n_face)
-    slices = SliceCompliance(pair=pair, index=index, grid=grid, coupling_length=1.5 * pair.normal_module)
+    finer = grid if n_face == 1 else FaceGrid.over(pair.face_width, 12 * (n_face - 1) + 1)
+    slices = SliceCompliance(pair=pair, index=index, grid=finer, coupling_length=1.5 * pair.normal_module)
     gear = pair.gears[index]
     profile = np.linspace(gear.roll_length(gear.form_radius), slices.tip_roll, n_profile)
-    roll, face = (one.ravel() for one in np.meshgrid(profile, grid.position, indexing="ij"))
-    own = slices.matrix(roll, face, np.zeros(roll.size, dtype=np.int64))
+    roll = np.repeat(profile, n_face)
+    # means under hats, as loads and displacements of finite elements are
+    hats = np.stack([np.interp(finer.position, grid.position, one) for one in np.eye(n_face)]) * finer.width
+    hats /= hats.sum(axis=1, keepdims=True)
+    zero = np.zeros(len(finer.position), dtype=np.int64)
+    over_face = hats @ slices.matrix(np.full(zero.size, profile[0]), finer.position, zero) @ hats.T
+    of_profile = slices.matrix(profile, np.zeros(n_profile), np.zeros(n_profile, dtype=np.int64))
+    scale = np.sqrt(np.diag(of_profile) / of_profile[0, 0])
+    own = np.kron(np.outer(scale, scale), over_face)
     next_one = neighbour * own * (1.0 + 0.3 * (roll / roll.max())[:, None])
     return InterpolatedCompliance(
         profile=profile,
