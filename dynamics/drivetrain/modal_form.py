@@ -41,8 +41,8 @@ class ModalForm:
         """The same in other freedoms (n, n_coordinates) per coordinate."""
         return ModalForm(
             poles=self.poles,
-            velocity_shapes=freedoms @ self.velocity_shapes,
-            loads=self.loads @ freedoms.T,
+            velocity_shapes=times(freedoms, self.velocity_shapes),
+            loads=times(freedoms, self.loads.T).T,
             rigid=freedoms @ self.rigid,
         )
 
@@ -63,6 +63,11 @@ class ModalForm:
         gain = 1.0 / (s[:, None] - self.poles)
         mobility = np.einsum("im,wm,mj->wij", out, gain, into, optimize=True)
         return np.asarray(mobility / s[:, None, None])
+
+
+def times(matrix: Array, motion: Complex) -> Complex:
+    """A real matrix times complex columns or a vector, without a complex copy of the matrix."""
+    return np.asarray(matrix @ motion.real + 1j * (matrix @ motion.imag))
 
 
 def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -> ModalForm:
@@ -90,11 +95,11 @@ def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -
             shapes[:, :n_elastic].T @ skew @ (shapes[:, :n_elastic] / frequency)
         )
     poles, right = eig(state)
-    left = np.linalg.inv(right)
+    loads = np.vstack((np.zeros((n_elastic, n)), shapes.T))
     return ModalForm(
         poles=poles,
-        velocity_shapes=shapes @ right[n_elastic:],
-        loads=np.asarray(left[:, n_elastic:] @ shapes.T, complex),
+        velocity_shapes=times(shapes, right[n_elastic:]),
+        loads=np.linalg.solve(right, loads),
         rigid=modes.shapes[:, :n_rigid],
     )
 

@@ -10,9 +10,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import times
 from dynamics.drivetrain.modes import (
     Describe,
     LoopMode,
@@ -62,17 +63,17 @@ class _Description:
         """Describe a shape (n,) with the energies of the meshes."""
         reduced = self.seen.reduced
         model = reduced.model
-        own = self._to_coordinates @ shape
-        whole = reduced.basis @ own
+        own = times(self._to_coordinates, shape)
+        whole = times(reduced.basis, own)
         energy: dict[str, float] = {}
         for name, stiffness in self._shafts.items():
             energy[name] = _energy(stiffness, whole)
         for joint in model.joints:
             part = joint.name if joint.kind in ("spline", "coupling") else f"{joint.kind} {joint.name}"
-            energy[part] = energy.get(part, 0.0) + _energy(joint.stiffness, joint.rows @ whole)
+            energy[part] = energy.get(part, 0.0) + _energy(joint.stiffness, times(joint.rows, whole))
         for name, coefficients in self.bearings.items():
             spring = coefficients.padded()[0]
-            energy[f"bearing {name}"] = _energy(0.5 * (spring + spring.T), reduced.ports[name] @ own)
+            energy[f"bearing {name}"] = _energy(0.5 * (spring + spring.T), times(reduced.ports[name], own))
         for name, value in zip(self.seen.ports, mesh_energy):
             energy[f"mesh {name}"] = float(value)
         shares = energy_shares({name: max(value, 0.0) for name, value in energy.items()})
@@ -106,7 +107,7 @@ class _Description:
         found = {}
         for number, shaft in enumerate(model.rig.drivetrain.shafts):
             for family in ("torsion", "axial", "bending"):
-                mask = csr_array(np.diag(((owner == number) & (kind == family)).astype(float)))
+                mask = diags_array(((owner == number) & (kind == family)).astype(float))
                 found[f"{shaft.name} {family}"] = csr_array(mask @ elements @ mask)
         return found
 
