@@ -61,7 +61,7 @@ class ModalForm:
         out = self.velocity_shapes[dofs]
         s = 1j * np.asarray(omega)
         gain = 1.0 / (s[:, None] - self.poles)
-        mobility = np.einsum("im,wm,mj->wij", out, gain, into, optimize=True)
+        mobility = (out * gain[:, None, :]) @ into
         return np.asarray(mobility / s[:, None, None])
 
 

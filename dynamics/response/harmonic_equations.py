@@ -96,7 +96,7 @@ class HarmonicEquations:
         model, load = self.problem.model, self.problem.load
         reactions = self._evaluate(state.ports())
         torque = reactions.torque if self.excitation is None else reactions.torque + self.excitation
-        miss = np.einsum("kij,jk->ik", self.receptance, torque[:, 1:]) - state.moving
+        miss = (self.receptance @ torque[:, 1:].T[:, :, None])[:, :, 0].T - state.moving
         if self._driven.any():
             miss += self._driven * np.exp(1j * self._lead * state.rest[model.pinions[0]])
         mean = np.append(torque[:, 0].real, 0.0)

@@ -4,6 +4,7 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
@@ -44,7 +45,7 @@ class HarmonicNewton:
         self._known: Complex | None = None
         self.sides = mesh_sides(problem.model)
         approach = problem.model.approach[:, :-1]
-        self.gain = np.einsum("mi,kij->kmj", approach, receptance)
+        self.gain = approach @ receptance
         """(top, n_meshes, n_bodies) approach per port torque."""
 
     def step(
@@ -72,12 +73,17 @@ class HarmonicNewton:
         torque[:, grid.cells - 1 :: grid.cells] = change
         for residue in range(1, grid.cells // 2 + 1):
             self._sideband(reactions, approach_miss, residue, torque)
-        return miss + np.einsum("kij,jk->ik", self.receptance, torque), rest, drive, twist
+        moved = (self.receptance @ torque.T[:, :, None])[:, :, 0].T
+        return miss + moved, rest, drive, twist
 
     def _tangent(self, reactions: MeshHarmonics, order: NDArray[np.int64], omega: Array) -> Complex:
         """(n_meshes, 2, n, n): harmonics of pinion and wheel torque per harmonics of approach."""
-        lag = np.subtract.outer(order, order)
-        stiff, damp = reactions.per_approach[:, :, lag], reactions.per_rate[:, :, lag]
+        n = order.size
+        lags = np.arange(1 - n, n)
+        stiff, damp = (
+            sliding_window_view(spectrum[:, :, lags], n, axis=2)[..., ::-1]
+            for spectrum in (reactions.per_approach, reactions.per_rate)
+        )
         return np.asarray(stiff + damp * (1j * omega))
 
     def _gain_at(self, index: NDArray[np.int64]) -> Complex:
@@ -90,9 +96,13 @@ class HarmonicNewton:
     def _block(self, tangent: Complex, gain: Complex) -> Complex:
         """Identity less gain times tangent, ordered mesh by mesh: (n_meshes n, n_meshes n)."""
         n_meshes, n = self.problem.model.n_meshes, tangent.shape[-1]
-        split = gain[:, :, self.sides]
-        coupled = np.einsum("kamp,mpkl->akml", split, tangent, optimize=True)
-        return np.asarray(np.eye(n_meshes * n) - coupled.reshape(n_meshes * n, n_meshes * n))
+        block = np.eye(n_meshes * n, dtype=complex)
+        for row in range(n_meshes):
+            for mesh, (pinion, wheel) in enumerate(self.sides):
+                by_pinion, by_wheel = gain[:, row, pinion, None], gain[:, row, wheel, None]
+                coupled = by_pinion * tangent[mesh, 0] + by_wheel * tangent[mesh, 1]
+                block[row * n : (row + 1) * n, mesh * n : (mesh + 1) * n] -= coupled
+        return block
 
     def _on_bodies(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
         """Torque on every gear body (n_bodies, n) from the change of approach (n_meshes, n)."""
