@@ -46,7 +46,7 @@ class LoopVibration:
         return same and all(map(is_, self.points, other.points)) and len(self.points) == len(other.points)
 
     def before_time_run(self) -> None:
-        """Solve all that takes long."""
+        """Solve all that takes long, while another core is at the time run."""
         _ = self.lateral, self.seal_amplitudes, self.held_torques
         if self.run is not None:
             _ = self.near_dwells, self.torques, self.campbell, self.start

@@ -140,8 +140,9 @@ def solve_case(
             mesh_shifts=meshes.shifts,
             law_spreads=spreads,
         )
-        solved.vibration.before_time_run()
-        lap("over_speed")
+        if time_run.running:
+            solved.vibration.before_time_run()
+            lap("over_speed")
         if run is not None:
             _ = run.ramp
             lap("time_run")
