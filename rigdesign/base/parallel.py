@@ -34,8 +34,6 @@ _PR_SET_PDEATHSIG = 1
 
 _taken = False
 """Whether the other cores have work of their own, see `one_core`."""
-_running = 0
-"""Copies that compute."""
 _lifeline: tuple[int, int] | None = None
 """Pipe to which nobody writes: it closes in the copies of this process when this process ends."""
 
@@ -50,7 +48,8 @@ def one_blas_thread() -> dict[str, str]:
 
 @contextmanager
 def one_core() -> Iterator[None]:
-    """For a point of a study in a process that is no child of ours, such as a worker of a cluster: no copies."""
+    """No copies: for a point of a study in a process that is no child of ours, such as a worker of a cluster, and while
+    the other cores are at a long work of this one."""
     global _taken
     before, _taken = _taken, True
     try:
@@ -65,11 +64,10 @@ def granted_cores() -> int:
 
 
 def cores() -> int:
-    """Cores this process may use for copies beside those that run; one in a worker process, whose pool already uses
-    the others."""
+    """Cores this process may use for copies; one in a worker process, whose pool already uses the others."""
     if _taken or parent_process() is not None or not hasattr(os, "fork"):
         return 1
-    return max(1, granted_cores() - _running)
+    return granted_cores()
 
 
 @dataclass(frozen=True)
@@ -134,8 +132,6 @@ def _stop(copies: Sequence[_Copy]) -> None:
 
 def _reap(copy: _Copy) -> None:
     """Wait for the end of a copy; where SIGCHLD is ignored, the system has done it already."""
-    global _running
-    _running -= 1
     with suppress(ChildProcessError):
         os.waitpid(copy.process, 0)
 
@@ -152,7 +148,7 @@ def _forked(shares: Sequence[Sequence[Callable[[], object]]]) -> list[_Copy]:
 
 
 def _fork(works: Sequence[Callable[[], object]]) -> _Copy:
-    global _lifeline, _running
+    global _lifeline
     _lifeline = _lifeline or os.pipe()
     reading, writing = os.pipe()
     with warnings.catch_warnings(), stops_held():
@@ -162,7 +158,6 @@ def _fork(works: Sequence[Callable[[], object]]) -> _Copy:
         if process == 0:
             _compute_copy(works, reading, writing)
     os.close(writing)
-    _running += 1
     return _Copy(process, os.fdopen(reading, "rb"))
 
 

@@ -12,7 +12,6 @@ from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
@@ -55,12 +54,9 @@ class Curves:
 
 def solve_curves(rig: Rig, warm: IterationResult) -> Curves:
     """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
-    ranges = speed_ranges(rig)
-    works = [partial(curve_at, rig, warm, torque, limits) for torque, limits in ranges.items()]
-    with BackgroundTasks(works) as tasks:
-        found = dict(zip(ranges, tasks.results(), strict=True))
+    curves = {torque: curve_at(rig, warm, torque, limits) for torque, limits in speed_ranges(rig).items()}
     torque = torque_key(signed_torque(rig, warm.point))
-    return Curves(response=found.pop(torque), others=found, torque=torque)
+    return Curves(response=curves.pop(torque), others=curves, torque=torque)
 
 
 def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:

@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
-from rigdesign.base.parallel import BackgroundTasks
+from rigdesign.base.parallel import BackgroundTasks, one_core
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
 from rigdesign.case.usual import unusual_inputs
@@ -118,7 +118,7 @@ def solve_case(
     if rig.drivetrain is not None:
         require_damping(rig, held_crossings(rig, governing_point(converged)))
     say("response over speed, time run over the schedule")
-    with BackgroundTasks(_time_runs(rig, converged)) as time_run, one_thread():
+    with BackgroundTasks(_time_runs(rig, converged)) as time_run, one_thread(), one_core():
         points = converged
         if wanted is not rig:
             say(f"last iteration on the {fidelity} mesh")
