@@ -184,8 +184,7 @@ class InterpolatedCompliance:
         means = np.zeros((n, n))
         means[:-1] += np.einsum("ck,ckn->cn", parts * (1.0 - share), values)
         means[1:] += np.einsum("ck,ckn->cn", parts * share, values)
-        widths = 0.5 * (np.append(steps, 0.0) + np.insert(steps, 0, 0.0))
-        return CubicSpline(face, np.linalg.inv(means / widths[:, None]))
+        return CubicSpline(face, np.linalg.inv(means / means.sum(axis=1, keepdims=True)))
 
     def _across(self, face: Array) -> Array:
         """(n, n_f) parts of a force at ``face`` (n,) under the hats; fewer than four of them stay hats."""

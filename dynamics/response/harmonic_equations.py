@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.static_loop import PortModel
 from dynamics.mesh.force import evaluate_mesh
-from dynamics.response.harmonic_newton import HarmonicNewton, MeshHarmonics, mesh_sides
+from dynamics.response.harmonic_newton import HarmonicNewton, MeshHarmonics, mesh_sides, moved_by
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 
 Array = NDArray[np.float64]
@@ -96,7 +96,7 @@ class HarmonicEquations:
         model, load = self.problem.model, self.problem.load
         reactions = self._evaluate(state.ports())
         torque = reactions.torque if self.excitation is None else reactions.torque + self.excitation
-        miss = (self.receptance @ torque[:, 1:].T[:, :, None])[:, :, 0].T - state.moving
+        miss = moved_by(self.receptance, torque[:, 1:]) - state.moving
         if self._driven.any():
             miss += self._driven * np.exp(1j * self._lead * state.rest[model.pinions[0]])
         mean = np.append(torque[:, 0].real, 0.0)

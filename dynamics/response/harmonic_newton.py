@@ -35,6 +35,11 @@ def mesh_sides(model: PortModel) -> NDArray[np.int64]:
     return np.stack([model.pinions, model.wheels], axis=1)
 
 
+def moved_by(receptance: Complex, torque: Complex) -> Complex:
+    """Harmonics (n_bodies, top) of motion under those of torque, receptance (top, n_bodies, n_bodies)."""
+    return np.asarray((receptance @ torque.T[:, :, None])[:, :, 0].T)
+
+
 class HarmonicNewton:
     """Newton steps of one speed: for each residue class of harmonics one block over the meshes."""
 
@@ -73,8 +78,7 @@ class HarmonicNewton:
         torque[:, grid.cells - 1 :: grid.cells] = change
         for residue in range(1, grid.cells // 2 + 1):
             self._sideband(reactions, approach_miss, residue, torque)
-        moved = (self.receptance @ torque.T[:, :, None])[:, :, 0].T
-        return miss + moved, rest, drive, twist
+        return miss + moved_by(self.receptance, torque), rest, drive, twist
 
     def _tangent(self, reactions: MeshHarmonics, order: NDArray[np.int64], omega: Array) -> Complex:
         """(n_meshes, 2, n, n): harmonics of pinion and wheel torque per harmonics of approach."""

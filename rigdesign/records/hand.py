@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.losses.mesh_loss import RIVAL_POWER
+from rigdesign.case.geometry import seals_on
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.records.solved_rig import SolvedRig
@@ -220,7 +221,7 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
     reference = solved.case.ambient.reference_temperature
     wide = materials[housing.material].expansion_coefficient * (plate - reference)
     thick = materials[entry.material].expansion_coefficient * (journal - reference)
-    gap = next(s.radial_gap for s in solved.case.gearboxes[warm.gearbox].seals.values() if s.shaft == shaft)
+    gap = seals_on(solved.case.gearboxes[warm.gearbox], shaft).radial_gap
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
 
