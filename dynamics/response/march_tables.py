@@ -25,7 +25,8 @@ CREEP = 0.1
 
 
 class MarchTables:
-    """Contact tables over the speed for the steps [s] of a march."""
+    """Contact tables over the speed for the steps [s] of a march; it keeps those that serve
+    again."""
 
     def __init__(self, laws: Sequence[MeshLaw], step: float, *, derivative_torques: bool = True) -> None:
         self._laws, self._step, self._derivative_torques = tuple(laws), step, derivative_torques
@@ -34,22 +35,26 @@ class MarchTables:
         unfiltered = np.array([law.base_pitch / (RESOLVED * law.base_radius_1 * step) for law in laws])
         self._slow = np.where(self._closes, CREEP, unfiltered)
         self._speeds: Array | None = None
-        self._found: ContactTables | None = None
+        self._found: dict[tuple[float, ...], ContactTables] = {}
 
     def at(self, speeds: Array) -> ContactTables:
         """Tables for speeds of the pinions (n_meshes,) [rad/s], the last ones as long as they are good."""
         known = self._speeds
-        if known is not None and self._found is not None:
+        if known is not None:
             wide = np.where(self._closes, CLOSING_RUNG, RUNG) * np.abs(known)
             if np.all(np.abs(speeds - known) <= np.where(known == 0.0, self._slow, wide)):
-                return self._found
+                return self._found[tuple(known.tolist())]
         rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
         known = np.where(self._closes, speeds, np.sign(speeds) * (1.0 + RUNG) ** rungs)
         known = np.where(np.abs(speeds) < self._slow, 0.0, known)
         self._speeds = known
-        self._found = contact_tables(
-            self._laws,
-            march=MarchStep(step=self._step, speeds=tuple(known.tolist())) if known.any() else None,
-            derivative_torques=self._derivative_torques,
-        )
-        return self._found
+        key = tuple(known.tolist())
+        if key not in self._found:
+            if self._closes.any():  # of too many speeds to keep
+                self._found.clear()
+            self._found[key] = contact_tables(
+                self._laws,
+                march=MarchStep(step=self._step, speeds=key) if known.any() else None,
+                derivative_torques=self._derivative_torques,
+            )
+        return self._found[key]

@@ -66,6 +66,7 @@ class TimeMarch:
         settings: MarchSettings,
         loads: DriveLoads = NO_LOADS,
         model: ModalModel | None = None,
+        tables: MarchTables | None = None,
     ) -> None:
         """Prepare the march.
 
@@ -76,6 +77,7 @@ class TimeMarch:
         settings : steps and what is kept
         loads : torques that act at the first instant; the names of drags say which may act
         model : ``march_model`` of the same system, laws and drags, to be shared between runs; made when left out
+        tables : of the same laws and step, of a march that this one goes on with; made when left out
 
         Raises
         ------
@@ -100,7 +102,9 @@ class TimeMarch:
         )
         self.unconverged = 0
         self._settings = settings
-        self._tables = MarchTables(self.laws, self.step, derivative_torques=settings.derivative_torques)
+        self._tables = tables or MarchTables(
+            self.laws, self.step, derivative_torques=settings.derivative_torques
+        )
         self._marched = 0
         self._reader: StateReader | None = None
         self._following: FollowingLoads | None = None
@@ -384,9 +388,8 @@ class TimeMarch:
         drags = dict(zip(self.drags, self._carried.drags[self._places].tolist()))
         loads = DriveLoads(drive_torque=float(self._carried.slow[0]), drag_torques=drags)
         state = self.state()
-        march = TimeMarch(system, self.laws, state, self._settings, loads, model)
+        march = TimeMarch(system, self.laws, state, self._settings, loads, model, self._tables)
         march._marched, march.unconverged = self._marched, self.unconverged
-        march.tables, march._tables = self.tables, self._tables
         march._following = self._following
         march._apart, march._apart_since = self._apart.copy(), self._apart_since
         before, after = self._carried, march._carried

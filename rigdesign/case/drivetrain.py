@@ -234,7 +234,7 @@ class DrivetrainInput(Part):
     """Gear at which test torque and speed are counted, ``gearbox.gear``."""
     shaft_model: ShaftModel = "elastic"
     """elastic: shafts that bend in bearings that give, gears in six degrees of freedom; torsional: shafts that only
-    twist, as always at fidelity quick."""
+    twist."""
     balance_grade: Annotated[float, Usual(0.3, 20.0)] | None = Field(default=None, ge=0.0, le=4000.0)
     """Balance quality grade G of ISO 21940-11 [mm/s] of all shafts that state neither one of their own nor unbalances;
     2.5 when left out."""
@@ -242,6 +242,5 @@ class DrivetrainInput(Part):
     """Lateral stiffness and damping of the bearings: computed for load, speed and temperature of each stage, or
     ``radial_stiffness`` and ``radial_damping`` as each bearing states them."""
     mesh_stiffness: MeshStiffness = "influence_numbers"
-    """Tooth model: finite-element influence numbers of the teeth as drawn on the gear bodies that all pairs share
-    (``iso_6336_scaled`` at fidelity quick), the analytic shape scaled to the mean of ISO 6336-1, or unscaled times
-    0.8."""
+    """Tooth model: finite-element influence numbers of the teeth as drawn on the gear bodies that all pairs share, the
+    analytic shape scaled to the mean of ISO 6336-1, or unscaled times 0.8."""

@@ -294,7 +294,7 @@ class GearMesh(Part):
     """K_A of ISO 6336: load from outside the gearbox over the nominal one."""
     face_load_factor: Annotated[float, Usual(1.0, 3.0)] = Field(default=1.0, ge=1.0, le=10.0)
     """K_Fbeta of ISO 6336-3: uneven load over the face width. K_Hbeta of the flanks follows from it. It counts where no
-    loaded contact is computed (fidelity quick); where one is, its own K_Hbeta, K_Fbeta, K_Halpha and K_Falpha do."""
+    loaded contact is computed (analytic teeth); where one is, its own K_Hbeta, K_Fbeta, K_Halpha and K_Falpha do."""
     phase: Share = 0.0
     """Where the pinion's teeth stand when all shafts stand at zero, as a share of a pitch; how the gears are put on
     their shafts decides it. A pinion in a second mesh of its gearbox counts from there on, by the place of its axes

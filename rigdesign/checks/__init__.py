@@ -3,12 +3,13 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks.assumptions import depends, with_assumptions
 from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import omissions
-from rigdesign.checks.registry import LOADS, REGISTRY, load_topics
+from rigdesign.checks.registry import REGISTRY, load_topics
 from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
 from rigdesign.records.hand import disagreeing
 from rigdesign.records.solved_rig import LawSpread, SolvedRig
@@ -40,8 +41,7 @@ def estimated_checks(solved: SolvedRig) -> list[Check]:
         checks = [of_other_law(check, spread) for check in checks]
     found = out_of_range(solved, {point.point.stage: point.last.losses for point in solved.points})
     checks = [_out_of_range(check, found) for check in checks]
-    checks = [_of_face_positions(solved.rig, check) for check in checks]
-    return [_of_reduced_model(solved, check) if solved.rig.reduced else check for check in checks]
+    return [_of_face_positions(solved.rig, check) for check in checks]
 
 
 def _with_doubts(case: Case, check: Check, causes: Sequence[tuple[tuple[str, ...], str]]) -> Check:
@@ -64,10 +64,11 @@ def _of_unusual(case: Case, check: Check, paths: Sequence[str]) -> Check:
     return with_doubt(check, f"unusual input: {', '.join(moving)}") if moving else check
 
 
-REDUCED = "fidelity quick (shafts that only twist, analytic teeth with K_Hbeta as stated, few speeds)"
-REDUCED_ERROR = 0.5
-"""Share of the value of a check on tooth loads by which fidelity quick may be off: up to 0.42 between quick and
-standard on the shipped rigs and two rigs of others (K_V 1.53 against 1.08, root safety 3.18 against 1.85)."""
+LINE_LOAD_ERROR: Mapping[Fidelity, float] = {"quick": 0.12, "standard": 0.04, "reference": 0.04}
+"""Share of the highest root stress that the face positions of the influence numbers leave open, of the flanks half
+(`dynamics.influence.gear_model.NEAR_ENDS`)."""
+BY_LINE_LOAD = {"specimen.root_stress*": 1.0, "strength.root_safety*": 1.0, "flank.*": 0.5}
+"""Checks that follow the load over the face -> their share of `LINE_LOAD_ERROR`."""
 
 
 def _out_of_range(check: Check, findings: Sequence[Finding]) -> Check:
@@ -85,29 +86,14 @@ def of_other_law(check: Check, spread: LawSpread) -> Check:
     return with_error(check, (check.error or 0.0) + change, spread.cause) if change else check
 
 
-LINE_LOAD_ERROR = 0.04
-"""Share of the highest root stress that the face positions of the influence numbers leave open
-(`dynamics.influence.gear_model.NEAR_ENDS`)."""
-BY_LINE_LOAD = {"specimen.root_stress*": 1.0, "strength.root_safety*": 1.0, "flank.*": 0.5}
-"""Checks that follow the load over the face -> their share of `LINE_LOAD_ERROR`."""
-
-
 def _of_face_positions(rig: Rig, check: Check) -> Check:
-    """A check that follows the load over the face with the error of the positions over it."""
+    """A check that follows the load over the face with the error of its positions."""
     shares = [share for pattern, share in BY_LINE_LOAD.items() if check.is_one_of((pattern,))]
     if not shares or check.value is None or rig.mesh_stiffness != "influence_numbers":
         return check
-    return with_error(check, (check.error or 0.0) + LINE_LOAD_ERROR * shares[0] * abs(check.value))
-
-
-def _of_reduced_model(solved: SolvedRig, check: Check) -> Check:
-    """A check on tooth loads with the error of the reduced model; resonances it cannot tell at all."""
-    family = REGISTRY.family_of(solved.case, check)
-    if check.value is None or family.needs is not LOADS:
-        return check
-    if family.resonant:
-        return unjudged(check, f"{REDUCED} cannot tell resonances")
-    return with_error(check, (check.error or 0.0) + REDUCED_ERROR * abs(check.value), REDUCED)
+    return with_error(
+        check, (check.error or 0.0) + LINE_LOAD_ERROR[rig.fidelity] * shares[0] * abs(check.value)
+    )
 
 
 def held_checks(solved: SolvedRig) -> list[Check]:

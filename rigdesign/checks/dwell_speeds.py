@@ -30,7 +30,6 @@ DWELL = RuleFamily(
     group="dynamics",
     source="limits.dynamics.resonance_distance_minimum; peaks of the periodic response",
     comparison=">=",
-    resonant=True,
     needs=LOADS,
     leaves_out=(long_periods,),
     absent="no stage dwells at a speed whose response is computed",

@@ -15,8 +15,7 @@ from rigdesign.results.units import NUMBER, RPM
 GROUP = "lateral vibration"
 BENDING = Need(
     lambda solved: solved.lateral is not None,
-    "the shafts of this run only twist (fidelity quick, shaft_model torsional, or losses given): they have no lateral "
-    "vibration",
+    "the shafts of this run only twist (shaft_model torsional, or losses given): they have no lateral vibration",
 )
 NO_FILM = "no bearing has an oil film"
 NO_MODE = "no lateral mode that oscillates up to the speed of the fastest shaft: all are damped out or above"

@@ -66,8 +66,6 @@ class RuleFamily:
     """Why there is no value where there is none: the rule does not apply, but for want of a housing it is open."""
     unconfirmed: str = ""
     """What of its sources was written from memory and could not be compared with a copy."""
-    resonant: bool = False
-    """The value jumps with a resonance or a loss of contact: a reduced model cannot tell it."""
     advisory: bool = False
     """A missed limit does not bind (`rules.Rule`)."""
     housed: bool = False

@@ -64,7 +64,7 @@ PATH = StressMethod(
     "sigma_F over the path from the dynamic tooth forces, local lever",
     "Forces on one tooth through its whole contact in the periodic response, shared between the pairs by their "
     "stiffness and deviations. With influence numbers the stress of every force at all points of the fillet and over "
-    "the face, forces on both neighbours included: this one governs. Without them, and at fidelity quick, by the form "
+    "the face, forces on both neighbours included: this one governs. Without them by the form "
     "and stress correction factors of ISO 6336-3 at the lever of its place. The peak of the path and of all held "
     "stages counts, times K_A.",
 )

@@ -38,8 +38,6 @@ WINDOW = 0.01
 """Length of the envelope windows [s]."""
 LEAST_TORQUE = 1.0
 """Bracing torque [N m] that is kept at standstill: the flanks just touch."""
-QUICK_CUTOFF = 20e3
-"""Highest mode of the time run at quick fidelity [Hz]."""
 ELASTIC_CUTOFF, MESH_ORDERS = 20e3, 1.25
 """Highest mode of the time run of elastic shafts at least [Hz], and per mesh frequency of the test speed."""
 DRIVE_ONSET = 0.1
@@ -137,8 +135,6 @@ def highest_mesh_frequency(rig: Rig, speed: float) -> float:
 
 def _cutoff(rig: Rig) -> float:
     """Highest mode of the time run [Hz]; those above keep their static effect."""
-    if rig.fidelity == "quick":
-        return QUICK_CUTOFF
     if rig.shaft_model == "torsional":
         return DEFAULT_CUTOFF
     return min(max(ELASTIC_CUTOFF, MESH_ORDERS * mesh_frequency(rig.case) / (2.0 * np.pi)), DEFAULT_CUTOFF)

@@ -113,8 +113,8 @@ def explain_check(case: Case, identity: str, finished: FinishedCheck | None = No
 
 
 DRIVETRAIN, HOUSING, TRANSIENT = "a drivetrain", "a gearbox with a housing", "check --transient"
-LOADED_CONTACT = "loaded contact, not at fidelity quick"
-BENDING = "shafts that bend, not at fidelity quick"
+LOADED_CONTACT = "loaded contact, of influence numbers"
+BENDING = "shafts that bend"
 PRESS_FIT = "a gear with shaft_interference and no spline.toothing"
 SPLINES = {
     "strength.spline_pressure": "allowable_pressure in spline.toothing of a gear",

@@ -37,7 +37,8 @@ class PredictionModel:
     """Shafts and teeth of the power circuit in a prediction.
 
     shafts : that only twist, or that bend on their bearings in six degrees of freedom; None as the case says
-    teeth : tooth model of the meshes; None as a check of the same fidelity has it, at ``quick`` the analytic one
+    teeth : tooth model of the meshes; None as the case says, at ``quick`` the analytic one in place of influence
+        numbers, with which the constants of the diagnosis were fitted
     """
 
     shafts: ShaftModel | None = None
@@ -47,7 +48,7 @@ class PredictionModel:
 OWN_MODEL = PredictionModel()
 """What the case asks for."""
 TORSIONAL = PredictionModel(shafts="torsional")
-"""The quick variant: shafts that only twist."""
+"""Shafts that only twist."""
 MEASURED_AGAINST = OWN_MODEL
 """Model that measured data are held against, and that the constants of the diagnosis were fitted with; of sets with
 root gauges it is `GAUGES_AGAINST`, in the shafts that lateral channels need (`measured_against`)."""

@@ -85,10 +85,11 @@ def modelled_rig(case: Case, fidelity: Fidelity, model: PredictionModel) -> Rig:
     power = case.drivetrain
     if power is None:
         return rig
+    analytic = fidelity == "quick" and power.mesh_stiffness == "influence_numbers"
     return replace(
         rig,
         shaft_model=model.shafts or power.shaft_model,
-        mesh_stiffness=model.teeth or rig.mesh_stiffness,
+        mesh_stiffness=model.teeth or ("iso_6336_scaled" if analytic else power.mesh_stiffness),
         residual_unbalance=False,
     )
 

@@ -25,8 +25,7 @@ def predict(
     """What the channels would read at the operating points of a measurement.
 
     The solve of a point is that of ``run_case``: the full model at a dwell of the schedule gives what a check with the
-    same shafts and teeth gives (at ``quick`` the shafts of a check only twist). Every point starts from the one
-    before, as in a check.
+    same shafts and teeth gives. Every point starts from the one before, as in a check.
 
     Parameters
     ----------

@@ -17,10 +17,9 @@ from dynamics.drivetrain.tracked_modes import ShapedModes, TrackedMode, shaped_m
 from dynamics.elastic_rig.damped_modes import mode_character
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.records.curves import own_ratio
+from rigdesign.records.curves import HARMONICS, LEAST_GAIN, own_ratio
 from rigdesign.records.dynamics import HIGHEST_MODE
 from rigdesign.records.loop_states import LoopState
-from rigdesign.records.resonances import HARMONICS, LEAST_GAIN
 from rigdesign.results.vibration import (
     CampbellCrossing,
     CampbellMode,

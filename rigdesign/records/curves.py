@@ -1,34 +1,45 @@
 """K_V over speed: simulated, and by ISO 6336-1."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.modes import loop_modes
+from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
+from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.records.loop_states import dwell_speeds, is_around
 from rigdesign.results.dynamics import DynamicFactorPoint
 from rigdesign.rig.model import Rig
 
 QUICK_SPEEDS = 24
 """Speeds of a curve at quick fidelity, or where every speed is solved over a whole revolution."""
+MERGED = 0.02
+"""Share of a speed, away from those at which the rig dwells, within which another one serves a resonance as well."""
 ROUNDS = 2
 """Halvings of the speed step around a peak."""
 SLOWEST = 0.05
 """Share of a held speed below which no resonance is looked for."""
 BEYOND = 1.25
 """How far past the least distance of a resonance the curve goes on, as a share of that distance."""
+HARMONICS = 4
+"""Mesh orders that may excite a mode."""
+LEAST_GAIN = 0.1
+"""Gain of a mode below which its mesh hardly excites it (`LoopMode.mesh_gain`)."""
 HARDNESS = ("case_hardened", "nitrided", "through_hardened")
 """Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
 DEFAULT = RatingOptions()
@@ -90,9 +101,10 @@ def torque_key(torque: float) -> float:
 
 
 def grid(rig: Rig, low: float, high: float) -> list[float]:
-    """Speeds of the first pinion [rad/s] as dense as the case asks; few where a whole revolution is solved."""
+    """Even speeds of the first pinion [rad/s] as dense as the case asks; few at quick and where a whole revolution is
+    solved."""
     numerics = rig.case.numerics
-    count = numerics.curve_speeds if resolved(rig) else QUICK_SPEEDS
+    count = numerics.curve_speeds if resolved(rig) and rig.fidelity != "quick" else QUICK_SPEEDS
     step = (numerics.curve_speed_end - numerics.curve_speed_start) / (count - 1)
     if step <= 0.0:
         return [rig.pinion_speed(speed) for speed in dict.fromkeys((low, high))]
@@ -101,8 +113,33 @@ def grid(rig: Rig, low: float, high: float) -> list[float]:
 
 
 def resolved(rig: Rig) -> bool:
-    """Whether the curves are dense enough to show every resonance."""
-    return rig.fidelity != "quick" and rig.case.numerics.response_period == "mesh"
+    """Whether the curves show every resonance: at quick few speeds are even, the others are those of the resonances."""
+    return rig.case.numerics.response_period == "mesh"
+
+
+def follows_peaks(rig: Rig) -> bool:
+    """Whether speeds are added where a section of the shafts has a peak between those of the curves."""
+    return resolved(rig) and rig.fidelity != "quick"
+
+
+def resonance_speeds(rig: Rig, warm: IterationResult, low: float, high: float) -> Iterator[float]:
+    """Speeds of the first pinion between two [rad/s] at which orders of a mesh meet the modes that it drives, bearings
+    as in ``warm``."""
+    assert rig.drivetrain is not None
+    laws = laws_of(warm.models)
+    if rig.shaft_model == "torsional":
+        modes = loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)
+    else:
+        state = running_state(rig, warm.point, warm.coupling_state, warm.bearings)
+        modes = elastic_loop_modes(rig.elastic.seen, state, laws, DEFAULT_CUTOFF)
+    for mesh, name in enumerate(rig.mesh_names):
+        teeth = own_ratio(rig, mesh) * rig.pairs[name].teeth[0]
+        for mode in modes:
+            if mode.mesh_gain[mesh] >= LEAST_GAIN:
+                for order in range(1, HARMONICS + 1):
+                    speed = 2.0 * math.pi * mode.frequency / (order * teeth)
+                    if low < speed < high:
+                        yield speed
 
 
 def response_solver(
@@ -138,8 +175,19 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
     limits : lowest and highest stated speed [rad/s]
     """
     speeds = grid(rig, *limits)
+    if rig.fidelity == "quick" and resolved(rig):
+        dwells = [rig.pinion_speed(speed) for speed in dwell_speeds(rig)]
+        for speed in resonance_speeds(rig, warm, min(speeds), max(speeds)):
+            decides = any(is_around(speed, dwell) for dwell in dwells)
+            if decides or all(abs(speed - other) > MERGED * speed for other in speeds):
+                speeds.append(speed)
+        speeds.sort()
     solve = response_solver(rig, warm, torque, (min(speeds), max(speeds)))
-    return refined_response(solve, speeds, rounds=ROUNDS) if resolved(rig) else solve(speeds)
+    return (
+        refined_response(solve, speeds, rounds=1 if rig.fidelity == "quick" else ROUNDS)
+        if resolved(rig)
+        else solve(speeds)
+    )
 
 
 def rating_options(rig: Rig, name: str) -> RatingOptions:

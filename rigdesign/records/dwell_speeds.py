@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from rigdesign.case.schedule import StageValues
-from rigdesign.records.loop_states import dwell_stages
+from rigdesign.records.loop_states import dwell_stages, is_around
 from rigdesign.records.near_dwell import (
     SHAFT_SHARE,
     NearDwell,
@@ -20,7 +20,6 @@ from rigdesign.records.ramp_steps import RampLimits, ramp_steps, speed_limit
 from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe, safe_windows
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.start_torque import start_torque, worst_start
-from rigdesign.records.torques_over_speed import is_around
 from rigdesign.results.vibration import (
     AvoidedResonance,
     CampbellRecord,

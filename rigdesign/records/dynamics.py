@@ -16,9 +16,9 @@ from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.records import root
-from rigdesign.records.curves import Curves, own_ratio
+from rigdesign.records.curves import HARMONICS, LEAST_GAIN, Curves, own_ratio
 from rigdesign.records.loop_modes import held_modes
-from rigdesign.records.resonances import HARMONICS, LEAST_GAIN, mesh_resonances
+from rigdesign.records.resonances import mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
 from rigdesign.records.tooth_history import tooth_histories
 from rigdesign.results.check import Role

@@ -16,11 +16,11 @@ from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
+from rigdesign.records.curves import LEAST_GAIN
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.event_place import EventPlace
 from rigdesign.records.loop_modes import held_modes
 from rigdesign.records.passing_peaks import passing_peaks
-from rigdesign.records.resonances import LEAST_GAIN
 from rigdesign.results.events import EventRecord
 from rigdesign.rig.model import Rig
 

@@ -1,6 +1,6 @@
 """Loads and cycles of the gear ratings: the one place that gives ISO 6336 its K factors.
 
-K_Hbeta and K_Halpha are those of the loaded contact where it is computed. Elsewhere, at fidelity quick, they follow
+K_Hbeta and K_Halpha are those of the loaded contact where it is computed. Elsewhere, of analytic teeth, they follow
 from the case (`face_load_factor`) and ISO 6336-1. Root stress, pitting, scuffing and film take them alike.
 """
 

@@ -18,6 +18,8 @@ COUNT = 6
 """Speeds over the range, evenly in their logarithm; those at which the rig dwells come on top."""
 SLOWEST = 0.04
 """Lowest speed, as a share of the highest: bearings below are those there."""
+AROUND = 0.2
+"""Speeds that count as around a dwell speed, as a share of it: twice the usual margin."""
 SAME = 0.03
 """Share of a dwell speed within which another speed is left out."""
 
@@ -83,3 +85,8 @@ def state_at(rig: Rig, held: PointResult, speed: float, share: float = 1.0) -> L
 def nearest(states: Sequence[LoopState], speed: float) -> LoopState:
     """The state whose speed is nearest in its logarithm."""
     return min(states, key=lambda state: abs(np.log(state.speed / speed)))
+
+
+def is_around(speed: float, dwell: float) -> bool:
+    """Whether a speed counts as one of those around a dwell speed."""
+    return abs(speed - dwell) <= AROUND * dwell

@@ -11,19 +11,15 @@ from dynamics.rating.dynamic_factor import DynamicFactorCurve, Resonance
 from dynamics.rating.dynamic_factor import resonances as find_resonances
 from dynamics.response.response_curve import CurvePoint, ResponseCurve
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.curves import Curves, own_ratio
+from rigdesign.records.curves import HARMONICS, LEAST_GAIN, Curves, own_ratio
 from rigdesign.results.loads import MeshResonance
 from rigdesign.rig.model import Rig
 
-HARMONICS = 4
-"""Mesh orders that may excite a mode."""
 LEAST_PROMINENCE = 0.01
 """Prominence of a peak of the dynamic torque, as a share of the mean, from which it counts as a resonance."""
 NEAR = 0.2
 """Distance of a mode, as a share of its frequency, within which it may still be called near: loaded teeth are stiffer
 or softer than the mean stiffness of the modes."""
-LEAST_GAIN = 0.1
-"""Gain of a mode below which its mesh hardly excites it (`LoopMode.mesh_gain`)."""
 LEAST_ORDER = 0.1
 """Amplitude of an order, over that of the strongest one, from which it may name a resonance."""
 

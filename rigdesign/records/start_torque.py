@@ -121,7 +121,7 @@ def response_under(rig: Rig, run: DynamicRun, torque: float, speeds: Sequence[fl
 
 def start_response(rig: Rig, run: DynamicRun) -> StartResponse | None:
     """Around the speed at which the torque is first raised; None where narrow resonances are not resolved."""
-    if not resolved(rig):
+    if not resolved(rig) or rig.fidelity == "quick":
         return None
     speeds = np.linspace(BELOW, ABOVE, SPEEDS) * first_speed(rig)
     curve = response_under(rig, run, start_torque(rig), speeds.tolist())

@@ -20,7 +20,7 @@ from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.held_torques import section_swings
-from rigdesign.records.loop_states import LoopState, dwell_speeds, nearest
+from rigdesign.records.loop_states import LoopState, dwell_speeds, is_around, nearest
 from rigdesign.results.vibration import TorqueOverSpeed, TorquePlace, TorqueSwing
 from rigdesign.rig.model import Rig
 
@@ -28,8 +28,6 @@ ROUNDS = 5
 """Halvings of the speed step around a peak of a section: of 57 rpm to 2."""
 LEAST_SHARE = 0.1
 """Half peak-to-peak torque of a peak that is looked at more closely, per mean torque of the first mesh."""
-AROUND = 0.2
-"""Speeds that count as around a dwell speed, as a share of it: twice the usual margin."""
 FLAT = 0.03
 """Share of a peak by which it stands above the lower of the speeds beside it, below which it is found."""
 
@@ -140,11 +138,6 @@ def _table(found: Found, above: float = 0.0) -> tuple[list[float], NDArray[np.bo
     peaks[1:-1] = (middle >= swing[:-2]) & (middle > swing[2:]) & (middle > least[1:-1, None])
     peaks[1:-1] &= middle - np.minimum(swing[:-2], swing[2:]) >= above * middle
     return speeds, peaks
-
-
-def is_around(speed: float, dwell: float) -> bool:
-    """Whether a speed counts as one of those around a dwell speed."""
-    return abs(speed - dwell) <= AROUND * dwell
 
 
 def mesh_swing(point: CurvePoint, mesh: int) -> TorqueSwing:

@@ -10,14 +10,14 @@ import numpy as np
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.campbell import campbell
-from rigdesign.records.curves import resolved, response_solver
+from rigdesign.records.curves import follows_peaks, response_solver
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.held_torques import held_torques
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
-from rigdesign.records.loop_states import LoopState, dwell_speeds, loop_states
+from rigdesign.records.loop_states import LoopState, dwell_speeds, is_around, loop_states
 from rigdesign.records.near_dwell import NearDwell, near_dwells
 from rigdesign.records.start_torque import StartResponse, start_response
-from rigdesign.records.torques_over_speed import LoopOverSpeed, Solve, is_around, torques_over_speed
+from rigdesign.records.torques_over_speed import LoopOverSpeed, Solve, torques_over_speed
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.vibration import CampbellRecord, HeldTorque, TorqueOverSpeed
@@ -128,7 +128,7 @@ def more_speeds(rig: Rig, run: DynamicRun) -> Solve | None:
 
     Where only a march finds the motion, meshes lose contact and no resonance of a shaft is narrow.
     """
-    if not resolved(rig):
+    if not follows_peaks(rig):
         return None
     speeds = run.curves.response.speeds
     limits = (float(min(speeds)), float(max(speeds)))

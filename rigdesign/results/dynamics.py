@@ -110,7 +110,7 @@ class GearboxDynamics:
     face_end_pressure_MPa, face_end_over_middle}, pattern: {rolling_angle_deg, face_mm, pressure_MPa, edge},
     root_stress: {pinion, wheel:
     {rolling_angle_deg, highest_MPa, mid_face_MPa, largest_MPa, at_face_mm, stress_ratio}}, strain_gauges: rows
-    of the gauges}; None where the teeth are analytic, as at fidelity quick, or carry no torque."""
+    of the gauges}; None where the teeth are analytic or carry no torque."""
 
 
 @dataclass(frozen=True, kw_only=True)

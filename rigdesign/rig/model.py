@@ -8,6 +8,7 @@ from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.layout import HousingSupport
 from dynamics.gear.pair import GearPair
+from dynamics.influence.gear_model import FACE_POSITIONS
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
@@ -42,7 +43,7 @@ from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, sh
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import refuse_uncovered_speeds, speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
-from rigdesign.rig.tooth_influence import Count, ToothInfluence
+from rigdesign.rig.tooth_influence import QUICK_POSITIONS, Count, ToothInfluence
 from rigdesign.rig.twisting_loop import TwistingLoop
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
@@ -58,8 +59,7 @@ class Rig:
     """Everything that stays the same over operating points and iterations.
 
     pairs : gear pair as drawn, by ``gearbox.mesh``; oils, materials : by the name the case uses
-    mesh_stiffness : tooth model of the meshes; that of the case, analytic at fidelity quick
-    shaft_model : of the power circuit; that of the case, torsional at fidelity quick
+    mesh_stiffness : tooth model of the meshes; shaft_model : of the power circuit; those of the case
     tooth_influence : influence numbers of the cold gears, from the store or computed when they are asked for
     coarsening : of the loop, for estimates of its discretisation error
     residual_unbalance : whether shafts that bend have what their balance grade leaves, at the worst angles
@@ -280,14 +280,6 @@ class Rig:
         )
 
     @property
-    def reduced(self) -> bool:
-        """Whether fidelity quick has other teeth or shafts than the case asks for."""
-        drivetrain = self.case.drivetrain
-        return drivetrain is not None and (
-            self.shaft_model != drivetrain.shaft_model or self.mesh_stiffness != drivetrain.mesh_stiffness
-        )
-
-    @property
     def mesh_names(self) -> tuple[str, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
         return tuple(self.pairs)
@@ -402,10 +394,9 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         oils=oils,
         materials=materials,
         pairs=pairs,
-        mesh_stiffness=_mesh_stiffness(case, fidelity),
-        shaft_model="torsional"
-        if case.drivetrain is None or fidelity == "quick"
-        else case.drivetrain.shaft_model,
+        mesh_stiffness="iso_6336_scaled" if case.drivetrain is None else case.drivetrain.mesh_stiffness,
+        shaft_model="torsional" if case.drivetrain is None else case.drivetrain.shaft_model,
+        tooth_influence=ToothInfluence(positions=QUICK_POSITIONS if fidelity == "quick" else FACE_POSITIONS),
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
     if rig.heat_parts.machines:
@@ -413,12 +404,6 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         refuse_uncovered_speeds(rig.heat_parts.machines, speeds, str(case.path))
     _ = rig.topographies, rig.strain_gauges  # now: what does not fit the teeth is a fault of the case
     return rig
-
-
-def _mesh_stiffness(case: Case, fidelity: Fidelity) -> MeshStiffness:
-    """Tooth model of a case: finite elements are not asked for at fidelity quick, nor where losses are given."""
-    stated = "iso_6336_scaled" if case.drivetrain is None else case.drivetrain.mesh_stiffness
-    return "iso_6336_scaled" if stated == "influence_numbers" and fidelity == "quick" else stated
 
 
 def _control_mesh(case: Case) -> str:

@@ -11,7 +11,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import PairGeometry
 from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_body import GearBody
-from dynamics.influence.gear_model import GearModel
+from dynamics.influence.gear_model import FACE_POSITIONS, GearModel
 from dynamics.influence.numbers import InfluenceNumbers
 from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.rig.influence_store import InfluenceStore, Progress, gear_words, silent
@@ -19,6 +19,9 @@ from thermal.fe.kept_results import kept
 
 INTEGRAL = 0.5
 """Radius at which a gear that is one with its shaft is held, as a share of its root radius: the shaft has the rest."""
+
+QUICK_POSITIONS = 7
+"""Positions over the face at fidelity quick."""
 
 NEEDED = 2.5e9
 """Memory in which the numbers of a gear are computed [bytes]."""
@@ -32,10 +35,12 @@ Compliances = tuple[InterpolatedCompliance, InterpolatedCompliance]
 class ToothInfluence:
     """Influence numbers of gear pairs, each gear once.
 
+    positions : over the face of every gear
     near : gears whose numbers also serve gears that differ from them in face width alone, for searches over it
     """
 
     store: InfluenceStore = field(default_factory=InfluenceStore.default)
+    positions: int = FACE_POSITIONS
     near: tuple[GearModel, ...] = ()
     _found: dict[GearModel, InfluenceNumbers] = field(default_factory=dict, compare=False, repr=False)
 
@@ -47,7 +52,9 @@ class ToothInfluence:
 
         count : called with gears done, gears in all and the last one, from none on; ``say`` where it is left out
         """
-        models = dict.fromkeys(self.known(gear_model(pair, index)) for pair in pairs for index in (0, 1))
+        models = dict.fromkeys(
+            self.known(gear_model(pair, index, self.positions)) for pair in pairs for index in (0, 1)
+        )
         for model in models:
             found = None if model in self._found else self.store.stored(model, say)
             if found is not None:
@@ -83,7 +90,7 @@ class ToothInfluence:
 
     def for_widths_near(self, pairs: Iterable[GearPair]) -> "ToothInfluence":
         """The same where gears that differ from those of some pairs in face width alone take their numbers over."""
-        near = dict.fromkeys(gear_model(pair, index) for pair in pairs for index in (0, 1))
+        near = dict.fromkeys(gear_model(pair, index, self.positions) for pair in pairs for index in (0, 1))
         return replace(self, near=tuple(near))
 
     def numbers(self, model: GearModel) -> InfluenceNumbers:
@@ -110,7 +117,7 @@ def _at_once() -> int:
 
 @kept
 def _of_pair(influence: ToothInfluence, pair: GearPair) -> Numbers:
-    pinion, wheel = (influence.numbers(gear_model(pair, index)) for index in (0, 1))
+    pinion, wheel = (influence.numbers(gear_model(pair, index, influence.positions)) for index in (0, 1))
     return pinion.reversed_face(), wheel
 
 
@@ -122,7 +129,7 @@ def _compliances(influence: ToothInfluence, pair: GearPair) -> Compliances:
     return pinion, wheel
 
 
-def gear_model(pair: GearPair, index: int) -> GearModel:
+def gear_model(pair: GearPair, index: int, positions: int = FACE_POSITIONS) -> GearModel:
     """Cold gear of a pair as drawn, pinion (0) or wheel (1); of a warm pair, that at its reference temperature."""
     drawn = {entry.name: getattr(pair, entry.name) for entry in fields(PairGeometry)}
     form = PairGeometry(**drawn | {"expansion": (0.0, 0.0)}).forms[index]
@@ -139,4 +146,5 @@ def gear_model(pair: GearPair, index: int) -> GearModel:
         ),
         material=Elastic(young=pair.youngs_moduli[index], poisson=pair.poisson_ratios[index]),
         face_width=pair.face_widths[index],
+        n_face=positions,
     )

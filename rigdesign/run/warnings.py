@@ -269,10 +269,7 @@ def _only_for_bending(solved: SolvedRig) -> Iterator[str]:
     """Keys of the case that shafts which only twist do not read."""
     keys = sideways_keys(solved.case) if solved.rig.shaft_model == "torsional" else []
     if keys:
-        yield (
-            f"{', '.join(keys)}: without effect in this run, whose shafts only twist (fidelity quick, or no "
-            "drivetrain); run at standard"
-        )
+        yield f"{', '.join(keys)}: without effect in this run, whose shafts only twist"
 
 
 def _light_dwells(solved: SolvedRig) -> Iterator[str]:

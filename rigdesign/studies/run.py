@@ -185,8 +185,6 @@ def run_study(
 
 def _prepare_teeth(case: "Case", fidelity: Fidelity, say: Callable[[str], None]) -> None:
     """Influence numbers of the base case, stored before every worker computes them; a base case may have no rig."""
-    if fidelity == "quick":
-        return
     from rigdesign.base.errors import RigdesignError
     from rigdesign.rig.model import build_rig
     from rigdesign.run.solver_errors import solver_errors

@@ -8,7 +8,8 @@ from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.housing import cooling_balance
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
+from tests.builders.twisting import twisting_rig
 
 Changes = tuple[tuple[str, object], ...]
 Settled = tuple[Rig, IterationResult]
@@ -16,8 +17,8 @@ Settled = tuple[Rig, IterationResult]
 
 @cache
 def base() -> tuple[Rig, PointResult]:
-    """As shipped, quick."""
-    rig = build_rig(load_case("cases/uhcf_prototype"), "quick")
+    """As shipped, but for shafts that only twist and analytic teeth; quick."""
+    rig = twisting_rig(load_case("cases/uhcf_prototype"))
     return rig, solve_point(rig, held_points(rig)[-1])
 
 
@@ -38,7 +39,7 @@ def settled(*changes: tuple[str, object], remesh: bool = False) -> Settled:
     rig, result = base()
     if not changes:
         return rig, result.last
-    changed = build_rig(case_with(changes), "quick")
+    changed = twisting_rig(case_with(changes))
     if remesh:
         return changed, solve_point(changed, result.point, start=result.last.coupling_state).last
     changed = changed.with_models(rig.models)

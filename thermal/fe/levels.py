@@ -58,6 +58,7 @@ class Level:
         gradients: FloatArray,
         weights: FloatArray,
     ) -> "Level":
+        cells = np.ascontiguousarray(cells)  # one signature of every kernel
         inverse, volumes = assembly.cell_geometry(points, cells, gradients, weights)
         start, around = kernels.cells_of_nodes(cells, len(points))
         indptr, indices, offsets = kernels.pattern(cells, start, around)

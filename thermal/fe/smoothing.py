@@ -101,11 +101,12 @@ def _inverse_groups(matrix: Matrix) -> tuple[IndexArray, Product] | None:
     """Unknowns (k,) of all groups of tied nodes, and the (k, n) inverse of their blocks; None if there are none."""
     block = matrix.blocksize[0] if isinstance(matrix, sparse.bsr_array) else 1
     data: FloatArray = np.asarray(matrix.data, dtype=np.float64).reshape(-1, block, block)
-    first, second, strength = kernels.tied_pairs(matrix.indptr, matrix.indices, data, TIED)
+    indptr, indices = _places(matrix)
+    first, second, strength = kernels.tied_pairs(indptr, indices, data, TIED)
     if not len(first):
         return None
     order = np.argsort(-strength, kind="stable")
-    label = kernels.joined(len(matrix.indptr) - 1, first[order], second[order], MOST_TIED)
+    label = kernels.joined(len(indptr) - 1, first[order], second[order], MOST_TIED)
     nodes = np.flatnonzero(label >= 0).astype(np.int32)
     nodes = nodes[np.argsort(label[nodes], kind="stable")]
     _, counts = np.unique(label[nodes], return_counts=True)
@@ -113,7 +114,7 @@ def _inverse_groups(matrix: Matrix) -> tuple[IndexArray, Product] | None:
     parts: list[tuple[FloatArray, IndexArray, IndexArray]] = []
     for size in np.unique(counts):
         members = nodes[starts[counts == size][:, None] + np.arange(size)]
-        dense = _inverses(kernels.group_blocks(matrix.indptr, matrix.indices, data, members))
+        dense = _inverses(kernels.group_blocks(indptr, indices, data, members))
         unknowns = (block * members[:, :, None] + np.arange(block)).reshape(len(members), -1)
         columns = np.broadcast_to(unknowns[:, None, :], dense.shape)
         parts.append((dense.ravel(), unknowns.ravel(), columns.ravel()))
@@ -138,7 +139,12 @@ def _inverse_diagonal(matrix: Matrix) -> FloatArray:
     """Inverse of the diagonal (n,), or of the 3x3 diagonal blocks (n, 3, 3)."""
     if not (isinstance(matrix, sparse.bsr_array) and matrix.blocksize == (3, 3)):
         return inverse_points(matrix.diagonal())
-    return np.asarray(np.linalg.inv(kernels.diagonal_blocks(matrix.indptr, matrix.indices, matrix.data)))
+    return np.asarray(np.linalg.inv(kernels.diagonal_blocks(*_places(matrix), matrix.data)))
+
+
+def _places(matrix: Matrix) -> tuple[IndexArray, IndexArray]:
+    """``indptr`` and ``indices`` in the one type that kernels are compiled for."""
+    return matrix.indptr.astype(np.int32, copy=False), matrix.indices.astype(np.int32, copy=False)
 
 
 def largest_eigenvalue(

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from rigdesign import checks
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case import Case, load_case
 from rigdesign.case.paths import known_paths
 from rigdesign.checks.assumptions import depends
@@ -161,16 +162,21 @@ def test_a_failing_check_names_what_makes_its_value_doubtful(
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "verdict"),
-    [("flank.pitting_safety", 1.4, "open"), ("flank.pitting_safety", 3.0, "pass"),
-     ("flank.pitting_safety", 0.9, "open"), ("flank.pitting_safety", 0.3, "fail"),
-     ("dynamics.resonance_distance", 5.0, "open"), ("oil.flow", 1.4, "pass")],
+    ("key", "fidelity", "value", "verdict"),
+    [("strength.root_safety", "quick", 1.1, "open"), ("strength.root_safety", "standard", 1.1, "pass"),
+     ("strength.root_safety", "quick", 1.2, "pass"), ("strength.root_safety", "standard", 0.97, "open"),
+     ("flank.pitting_safety", "quick", 1.05, "open"), ("flank.pitting_safety", "standard", 1.05, "pass"),
+     ("dynamics.resonance_distance", "quick", 1.01, "pass"), ("oil.flow", "quick", 1.01, "pass")],
 )  # fmt: skip
-def test_quick_judges_tooth_loads_only_beyond_the_error_of_its_model(
-    key: str, value: float, verdict: str, monkeypatch: pytest.MonkeyPatch, solved: SolvedRig
+def test_what_follows_the_load_over_the_face_carries_the_error_of_its_positions(
+    key: str,
+    fidelity: Fidelity,
+    value: float,
+    verdict: str,
+    monkeypatch: pytest.MonkeyPatch,
+    solved: SolvedRig,
 ) -> None:
-    """Its teeth and shafts are others than the case asks for: no pass at quick that standard may turn, no such fail."""
     check = hold(replace(rule(comparison=">=").rule(1.0), id=f"{key}.test"), value)
     monkeypatch.setattr(checks, "held_checks", lambda solved: [check])
-    assert solved.rig.reduced
-    assert checks.estimated_checks(solved)[0].verdict == verdict
+    own = replace(solved, rig=replace(solved.rig, fidelity=fidelity))
+    assert checks.estimated_checks(own)[0].verdict == verdict

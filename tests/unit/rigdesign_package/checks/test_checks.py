@@ -21,16 +21,17 @@ from rigdesign.results.loads import ContactLoss, MeshResonance, StageLoad, Unsol
 from rigdesign.results.rig_heat import HeatSource, RigHeat
 from rigdesign.results.vibration import AvoidedResonance, nearer
 from rigdesign.results.warm_gearbox import SealClearance, WarmGearbox
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 RPM = np.pi / 30.0
 
 
 @cache
 def rig() -> Rig:
-    return build_rig(load_case(CASES / "uhcf_prototype"), "quick")
+    return twisting_rig(load_case(CASES / "uhcf_prototype"))
 
 
 def held(stage: str, factors: tuple[float, float], rpm: float = 12000.0, **last: Any) -> Any:
@@ -280,7 +281,7 @@ def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
              coupling_state=SimpleNamespace(gear_temperature={}, bearing_clearance={}))
     ]  # fmt: skip
     for room in ("5 degC", "20 degC", "40 degC"):
-        warm = build_rig(rig().case.with_value("ambient.temperature", room), "quick")
+        warm = twisting_rig(rig().case.with_value("ambient.temperature", room))
         checks = temperatures.checks(replace(solved(points), rig=warm))
         assert named(checks, "temperature.bearing_film").distance == pytest.approx(0.2)
 

@@ -18,10 +18,11 @@ from rigdesign.checks.registry import RuleFamily
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.teeth import LoadedContact
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.loaded_mesh import influence_of
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 LIMITS = "limits.flanks."
 
@@ -34,7 +35,7 @@ def shipped() -> Case:
 @cache
 def cycle(mesh: str, n_face: int = 1) -> MeshCycle:
     """Loaded contact of a mesh of the prototype on analytic influence numbers."""
-    pair = build_rig(shipped(), "quick").pairs[mesh]
+    pair = twisting_rig(shipped()).pairs[mesh]
     gears = (influence_of(pair, 0, neighbour=0.4), influence_of(pair, 1, neighbour=0.4))
     loaded = LoadedMesh(pair=pair, gears=gears, grid=FaceGrid.over(pair.face_width, n_face), n_positions=32)
     return loaded.cycle(180.0 / pair.base_radii[0])
@@ -58,7 +59,7 @@ LEVELS = {"run-in": 1.0, "test": 1.21, "overload": 1.44}
 
 
 def solved(case: Case) -> SolvedRig:
-    rig = build_rig(case, "quick")
+    rig = twisting_rig(case)
     points: Any = [
         SimpleNamespace(
             point=SimpleNamespace(stage=stage, speed=1256.6, torque=200.0 if stage == "test" else 180.0),

@@ -17,9 +17,10 @@ from rigdesign.records.gear_loads import rated_cycles, rated_loads
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.rows.teeth import flank_rating_row
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 OUTLETS = {"test.gear_oil": 405.0, "reference.gear_oil": 315.0}
 
@@ -31,7 +32,7 @@ def prototype() -> Case:
 
 @pytest.fixture(scope="module")
 def rig(prototype: Case) -> Rig:
-    return build_rig(prototype, "quick")
+    return twisting_rig(prototype)
 
 
 def held(rig: Rig, *, torque: float = 180.0, loss: float = 500.0, response: bool = True) -> SolvedRig:
@@ -94,7 +95,7 @@ def test_the_flank_over_the_root_is_the_load_both_carry(rig: Rig) -> None:
 
 def test_gears_of_the_rig_last_for_all_specimens(rig: Rig) -> None:
     """One specimen is planned for; three of them triple the cycles of the rig's own gears."""
-    three = build_rig(changed_together(rig.case, {"test_plan.specimens": 3}), "quick")
+    three = twisting_rig(changed_together(rig.case, {"test_plan.specimens": 3}))
     for name, factor in (("test.main", 1.0), ("reference.main", 3.0)):
         mesh = rig.mesh_names.index(name)
         assert rated_cycles(three, mesh, 0) == pytest.approx(factor * rated_cycles(rig, mesh, 0))

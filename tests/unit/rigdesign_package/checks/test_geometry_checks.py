@@ -15,9 +15,10 @@ from rigdesign.case import load_case
 from rigdesign.checks import geometry
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from rigdesign.run import main
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 TYPE_C = {
     "normal_module": 4.5e-3, "teeth": (16, 24), "centre_distance": 91.5e-3, "face_widths": (14e-3, 14e-3),
@@ -34,7 +35,7 @@ TYPE_A = {**TYPE_C, "profile_shift_1": 0.8532}
 @cache
 def fzg() -> Rig:
     """Built, not solved."""
-    return build_rig(load_case(CASES / "fzg"), "quick")
+    return twisting_rig(load_case(CASES / "fzg"))
 
 
 def checks(toothing: dict[str, Any]) -> dict[str, Check]:

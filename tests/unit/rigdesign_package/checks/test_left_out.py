@@ -9,9 +9,9 @@ from rigdesign import load_case
 from rigdesign.checks.clearances import NO_PLAY, checks
 from rigdesign.results.check import Check
 from rigdesign.results.warm_gearbox import WarmGearbox, WarmShaft
-from rigdesign.rig.model import build_rig
 from rigdesign.run.warnings import not_modelled
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 PROTOTYPE = CASES / "uhcf_prototype"
 
@@ -40,7 +40,7 @@ def test_a_shaft_without_a_stated_play_uses_none_up() -> None:
 def test_axial_forces_of_single_helical_gears_are_named(double: bool, named: bool) -> None:
     """The tilting moment is a load of the bearings, whose positions are known; their thrust faces are not rated."""
     case = load_case(PROTOTYPE).with_value("gearboxes.reference.meshes.main.double_helical", double)
-    solved: Any = SimpleNamespace(case=case, rig=build_rig(case, "quick"), run=object(), points=())
+    solved: Any = SimpleNamespace(case=case, rig=twisting_rig(case), run=object(), points=())
     items = not_modelled(solved)
     assert any("axial force of main on the thrust faces" in item for item in items) == named
     assert any("gearboxes.*.meshes.*.phase" in item for item in items)
@@ -53,6 +53,6 @@ def test_bodies_of_one_half_are_named_where_no_inertia_is_stated(stated: bool) -
         f"{at}.gears.{gear}.inertia": "1e-3 kg m2" if stated else None for gear in ("pinion", "wheel")
     }
     case = load_case(PROTOTYPE).with_values(inertias | {f"{at}.meshes.main.carrying_halves": 1})
-    solved: Any = SimpleNamespace(case=case, rig=build_rig(case, "quick"), run=object(), points=())
+    solved: Any = SimpleNamespace(case=case, rig=twisting_rig(case), run=object(), points=())
     (item,) = (item for item in not_modelled(solved) if "one half of the double-helical" in item)
     assert ("inertia and weight of pinion, wheel are those of one half" in item) == (not stated)

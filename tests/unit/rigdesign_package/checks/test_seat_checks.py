@@ -15,9 +15,9 @@ from rigdesign.report.sections.vibration import least_safe
 from rigdesign.results.check import Check
 from rigdesign.results.events import EventPeak, EventRecord
 from rigdesign.results.rows.seats import press_fit_row
-from rigdesign.rig.model import build_rig
 from tests.builders.checks import check as check_of
 from tests.builders.made_run import made_ramp, made_run
+from tests.builders.twisting import twisting_rig
 from tests.builders.warm_prototype import base
 
 FIT = "gearboxes.test.gears.pinion.shaft_interference"
@@ -30,7 +30,7 @@ def solved(*changes: tuple[str, object], seat: tuple[float, float] | None = None
     """
     rig, point = base()
     if changes:
-        rig = build_rig(rig.case.with_values(dict(changes)), "quick").with_models(rig.models)
+        rig = twisting_rig(rig.case.with_values(dict(changes))).with_models(rig.models)
     sections = (
         TorqueSection(kind="spline", part="test.pinion"),
         TorqueSection(kind="spline", part="test.wheel"),

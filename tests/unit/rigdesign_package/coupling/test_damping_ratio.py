@@ -11,8 +11,9 @@ from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.minimal_case import minimal_case
+from tests.builders.twisting import twisting_rig
 
 
 @pytest.fixture(scope="module")
@@ -30,13 +31,13 @@ def _ratios(rig: Rig) -> dict[str, float]:
 def test_the_loop_has_the_ratio_that_the_case_states(case: Case) -> None:
     """The audit takes the gear bodies of the assembled drivetrain, the law those of the case."""
     stated = case.with_value("gearboxes.slave.meshes.main.damping_ratio", 0.03)
-    ratios = _ratios(build_rig(stated, "quick"))
+    ratios = _ratios(twisting_rig(stated))
     assert ratios["test.main"] == pytest.approx(0.06, rel=1e-9)
     assert ratios["slave.main"] == pytest.approx(0.03, rel=1e-9)
 
 
 def test_ratio_and_constant_mean_the_same_loop(case: Case, tmp_path: Path) -> None:
-    rig = build_rig(case, "quick")
+    rig = twisting_rig(case)
     point = held_points(rig)[-1]
     first = mesh_models(rig, point, initial_state(rig, point))[0].law
     path = minimal_case(tmp_path)
@@ -45,7 +46,7 @@ def test_ratio_and_constant_mean_the_same_loop(case: Case, tmp_path: Path) -> No
         f'centre_distance = "91.5 mm", damping = "{first.damping!r} N s/m" }}',
     )
     path.write_text(text)
-    stated = build_rig(load_case(path), "quick")
+    stated = twisting_rig(load_case(path))
     assert _ratios(stated)["test.main"] == pytest.approx(0.06, rel=1e-9)
     assert stated.case.gearboxes["test"].meshes["main"].damping_ratio is None
 
@@ -55,7 +56,7 @@ def test_a_heavier_gear_keeps_its_ratio(case: Case) -> None:
     heavier = case.with_value("gearboxes.test.gears.*.inertia_factor", 4.0)
     laws = []
     for one in (case, heavier):
-        rig = build_rig(one, "quick")
+        rig = twisting_rig(one)
         point = held_points(rig)[-1]
         laws.append(mesh_models(rig, point, initial_state(rig, point))[0].law)
         assert _ratios(rig)["test.main"] == pytest.approx(0.06, rel=1e-9)
@@ -65,7 +66,7 @@ def test_a_heavier_gear_keeps_its_ratio(case: Case) -> None:
 def test_remembered_meshes_take_another_ratio(case: Case) -> None:
     known = Memoisation()
     for ratio in (0.06, 0.02):
-        rig = build_rig(case.with_value("gearboxes.test.meshes.main.damping_ratio", ratio), "quick")
+        rig = twisting_rig(case.with_value("gearboxes.test.meshes.main.damping_ratio", ratio))
         point = held_points(rig)[-1]
         initial = initial_state(rig, point)
         remembered, fresh = known.models(rig, point, initial)[0], mesh_models(rig, point, initial)[0]
@@ -75,7 +76,7 @@ def test_remembered_meshes_take_another_ratio(case: Case) -> None:
 def test_material_damping_is_the_loss_factor_at_the_mesh_frequency(case: Case) -> None:
     """Every element of the shaft: omega c = eta k at 16 teeth and 2250 rpm; the other shafts stay without."""
     path = "drivetrain.shafts.test_wheel.material_damping"
-    rig = build_rig(case.with_value(path, 0.004), "quick")
+    rig = twisting_rig(case.with_value(path, 0.004))
     omega = 16 * 2250 * math.tau / 60
     found = {
         joint.name: omega * joint.damping / joint.stiffness for joint in rig.joints if joint.kind == "shaft"

@@ -7,8 +7,8 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.leak_by_side import side_excess
 from rigdesign.coupling.loop import solve_point
-from rigdesign.rig.model import build_rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed
+from tests.builders.twisting import twisting_rig
 from tests.builders.warm_prototype import Changes, Settled, base, case_with, lost, open_share, settled
 from thermal.conduction.steady import CLOSURE
 
@@ -21,7 +21,7 @@ OUTLET = "bearing_oil_outlet"
 
 
 def excess(share: float, front: float, surface: str, fluid: str = OUTLET) -> float:
-    rig = build_rig(case_with(((LEAK, share), (FRONT, front))), "quick")
+    rig = twisting_rig(case_with(((LEAK, share), (FRONT, front))))
     return side_excess(rig, "test", base()[1].last.coupling_state, surface, fluid)
 
 
@@ -36,7 +36,7 @@ def test_the_oil_of_both_sides_mixes_to_that_of_the_drain(front: float) -> None:
     """Two bearings and their part of the leak on each side: the heats of both sides are that of the whole."""
     share = 0.08
     state = base()[1].last.coupling_state
-    rig = build_rig(case_with(((LEAK, share),)), "quick")
+    rig = twisting_rig(case_with(((LEAK, share),)))
     leak = share * gear_feed(rig, "test", 0.0).capacity_rate
     each = bearing_feed(rig, "test", 0.0).capacity_rate
     flows = {"front": 2.0 * each + front * leak, "rear": 2.0 * each + (1.0 - front) * leak}
@@ -73,7 +73,7 @@ def test_a_leak_into_the_front_warms_the_front() -> None:
 def blown() -> Settled:
     """The shipped rig with three times the film on its front."""
     rig, steady = base()
-    made = build_rig(case_with(((WALLS, {"outer_cold_front": 3.0}),)), "quick").with_models(rig.models)
+    made = twisting_rig(case_with(((WALLS, {"outer_cold_front": 3.0}),))).with_models(rig.models)
     start = steady.last.coupling_state
     return made, solve_point(made, steady.point, start=start, before=steady.last).last
 

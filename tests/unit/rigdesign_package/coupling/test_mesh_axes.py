@@ -14,7 +14,8 @@ from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.mesh_axes import axes_in_mesh
 from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
+from tests.builders.twisting import twisting_rig
 from tests.unit.rigdesign_package.coupling.test_tooth_springs import AnalyticTeeth
 
 CASE, MESH = load_case("cases/fzg").with_value("numerics.slices_spur", 6), "test.main"
@@ -23,8 +24,8 @@ POINT = OperatingPoint(stage="test", speed=150.0, torque=302.0)
 
 
 def rig_with(**values: str) -> Rig:
-    return build_rig(
-        CASE.with_values({f"{AT}.{key.replace('__', '.')}": value for key, value in values.items()}), "quick"
+    return twisting_rig(
+        CASE.with_values({f"{AT}.{key.replace('__', '.')}": value for key, value in values.items()})
     )
 
 
@@ -93,9 +94,7 @@ def test_misaligned_spur_gears_get_slices_of_their_own() -> None:
         "numerics.slices_spur": None
     }
     tilt = {f"{AT}.meshes.main.axis_inclination": "30 um"}
-    counts = [
-        len(model(build_rig(CASE.with_values(values), "quick")).law.gap) for values in (flat, flat | tilt)
-    ]
+    counts = [len(model(twisting_rig(CASE.with_values(values))).law.gap) for values in (flat, flat | tilt)]
     assert axes_in_mesh(rig_with(), MESH, cold_state()) == PARALLEL
     assert counts[0] == 1
     assert counts[1] > 1

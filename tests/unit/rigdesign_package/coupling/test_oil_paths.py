@@ -13,9 +13,10 @@ from rigdesign.coupling.oil import OilStream, heater_and_cooler, oil_streams
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699
 from rigdesign.properties.oil_mixing import Portion, mixed
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, gear_oil
 from rigdesign.transient.oil import BEARING_OIL, GEAR_OIL, oil_conditions
+from tests.builders.twisting import twisting_rig
 from tests.builders.warm_prototype import base, case_with, lost, open_share, outlet, settled
 from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.steady import solve_steady
@@ -28,7 +29,7 @@ JETS = f"{BOX}.oil.blocked_jets"
 
 
 def changed(*changes: tuple[str, object]) -> Rig:
-    return build_rig(case_with(changes), "quick").with_models(base()[0].models)
+    return twisting_rig(case_with(changes)).with_models(base()[0].models)
 
 
 def streams(*changes: tuple[str, object]) -> dict[str, OilStream]:

@@ -7,8 +7,9 @@ from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.mesh_models import warm_pair
 from rigdesign.coupling.time_run import held_points
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 PROTOTYPE = CASES / "uhcf_prototype"
 
@@ -17,7 +18,7 @@ def rig_at(**values: str) -> Rig:
     case = load_case(PROTOTYPE)
     for key, value in values.items():
         case = case.with_value(f"ambient.{key}", value)
-    return build_rig(case, "quick")
+    return twisting_rig(case)
 
 
 def test_a_box_in_a_warm_room_has_grown_before_it_runs() -> None:

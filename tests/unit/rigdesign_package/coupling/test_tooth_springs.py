@@ -7,6 +7,7 @@ import pytest
 
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.static_cycle import static_cycle
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.coupling.initial_state import initial_state
@@ -71,16 +72,11 @@ def test_stiffness_factor_takes_teeth_and_bodies() -> None:
     assert stiff.law.mean_stiffness == pytest.approx(1.25 * one.law.mean_stiffness)
 
 
-@pytest.mark.parametrize(
-    ("stated", "fidelity", "kind"),
-    [
-        ("influence_numbers", "standard", "influence_numbers"),
-        ("influence_numbers", "quick", "iso_6336_scaled"),
-        ("weber_banaschek_0.8", "quick", "weber_banaschek_0.8"),
-        (None, "standard", "influence_numbers"),
-        (None, "quick", "iso_6336_scaled"),
-    ],
-)
-def test_quick_fidelity_keeps_the_analytic_teeth(stated: str | None, fidelity: str, kind: str) -> None:
+@pytest.mark.parametrize("fidelity", ["quick", "standard", "reference"])
+@pytest.mark.parametrize("stated", [None, "influence_numbers", "weber_banaschek_0.8", "iso_6336_scaled"])
+def test_every_fidelity_has_the_teeth_and_shafts_of_the_case(stated: str | None, fidelity: Fidelity) -> None:
     case = CASE if stated is None else CASE.with_value("drivetrain.mesh_stiffness", stated)
-    assert build_rig(case, fidelity).mesh_stiffness == kind  # type: ignore[arg-type]
+    rig = build_rig(case, fidelity)
+    assert rig.mesh_stiffness == (stated or "influence_numbers")
+    assert rig.shaft_model == "elastic"
+    assert rig.tooth_influence.positions == (7 if fidelity == "quick" else 11)

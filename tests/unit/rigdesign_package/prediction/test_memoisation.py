@@ -10,11 +10,12 @@ from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.memoisation import Memoisation, shape_key
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import ToothInfluence
+from tests.builders.twisting import twisting_rig
 
 MESH = "test.main"
 POINT = OperatingPoint(stage="test", speed=150.0, torque=302.0)
 CASE = load_case("cases/fzg")
-QUICK = build_rig(CASE, "quick")
+QUICK = twisting_rig(CASE)
 STATE = initial_state(QUICK, POINT)
 
 
@@ -26,7 +27,7 @@ def test_rigs_of_one_case_with_other_tooth_models_have_meshes_of_their_own() -> 
     standard = replace(build_rig(CASE, "standard"), coarsening=QUICK.coarsening, pairs=QUICK.pairs)
     assert (QUICK.mesh_stiffness, standard.mesh_stiffness) == ("iso_6336_scaled", "influence_numbers")
     assert key(QUICK) != key(standard)
-    assert key(QUICK) == key(build_rig(CASE, "quick"))
+    assert key(QUICK) == key(twisting_rig(CASE))
     near = tuple(QUICK.tooth_influence.for_widths_near([QUICK.pairs[MESH]]).near)
     assert key(standard) != key(replace(standard, tooth_influence=ToothInfluence(near=near)))
 
@@ -39,5 +40,5 @@ def test_a_known_mesh_is_not_handed_to_a_rig_with_another_tooth_model() -> None:
 
 
 def test_axes_as_made_are_part_of_the_key() -> None:
-    tilted = build_rig(CASE.with_value("gearboxes.test.meshes.main.axis_inclination", "20 um"), "quick")
+    tilted = twisting_rig(CASE.with_value("gearboxes.test.meshes.main.axis_inclination", "20 um"))
     assert key(tilted) != key(QUICK)

@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import load_case
-from rigdesign.prediction import TORSIONAL, Channel, OperatingCondition, features_of
+from rigdesign.prediction import Channel, OperatingCondition, PredictionModel, features_of
 from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.readings import readings
@@ -47,7 +47,7 @@ def predicted(rig):
     seal = Channel(name="seal", quantity="seal_gap", place=rig.models["test"].seals[0].name)
     point = Channel(name="point", quantity="temperature", place="test", at=POINT)
     channels = (*CHANNELS, seal, point)
-    prediction = predict(CASE, [DWELL], channels, circuit=TORSIONAL)  # as the shafts of a quick check
+    prediction = predict(CASE, [DWELL], channels, circuit=PredictionModel(teeth="influence_numbers"))
     assert prediction.features == features_of([DWELL], channels)
     assert prediction.error == 0.0 and np.all(np.isfinite(prediction.values))
     return dict(zip([feature.channel for feature in prediction.features], prediction.values))

@@ -20,6 +20,7 @@ from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.rows.lateral import lateral_row
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 
 def rig_of(**keys: Any) -> Rig:
@@ -88,7 +89,7 @@ def test_seals_follow_their_shafts_and_a_twisting_rig_has_no_whirl() -> None:
     rig = rig_of()
     found = seal_whirls(rig, held(rig))
     assert found and all(seal.amplitude > 0.0 for seal in found)
-    quick = build_rig(rig.case, "quick")
+    quick = twisting_rig(rig.case)
     assert lateral_vibration(quick, [held(quick)]) is None
     assert seal_whirls(quick, held(quick)) == ()
 

@@ -38,7 +38,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     """The prototype with influence numbers of coarse teeth."""
     rig, _ = base()
     whole = tooth_influence.gear_model
-    tooth_influence.gear_model = lambda pair, index: coarse(whole(pair, index))
+    tooth_influence.gear_model = lambda *arguments: coarse(whole(*arguments))
     try:
         folder = tmp_path_factory.mktemp("influence")
         yield replace(

@@ -125,14 +125,17 @@ def test_waterfalls_cover_the_mesh_order_of_the_highest_speed_up_and_down() -> N
 
 
 def test_mesh_orders_of_the_time_run_are_those_of_the_periodic_response() -> None:
-    """The march and harmonic balance at the held stage: first three mesh orders, no other line as high."""
+    """The march and harmonic balance at the held stage: first three mesh orders, no other line as high.
+
+    Tooth friction acts across the line of action in the march and along the ports in harmonic balance: 0.2 % of the mean.
+    """
     for one in held_spectra(solved().rig, solved().run):
         order, amplitude = np.array(one.order), np.array(one.amplitude)
         assert order[-1] > 3.0 * TEETH
         for number, expected in zip(one.harmonic_order, one.harmonic_amplitude, strict=True):
             if number < 3.1 * TEETH:
                 found = amplitude[np.abs(order - number) < 0.3].max()
-                assert found == pytest.approx(expected, rel=0.05, abs=2e-4 * one.mean)
+                assert found == pytest.approx(expected, rel=0.02, abs=2e-3 * one.mean)
         between = np.abs((order + 0.5 * TEETH) % TEETH - 0.5 * TEETH) > 2.0
         assert amplitude[between & (order > 2.5)].max() < 2e-3 * one.mean
 
@@ -153,7 +156,7 @@ BY_DISTANCE = ("resonances by strength", "peaks of the periodic response")
 def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
     """With a share so low that shafts resonate: one distance by one function."""
     found = solved()
-    limits = found.case.with_value("limits.dynamics.dangerous_force_share", 0.02)
+    limits = found.case.with_value("limits.dynamics.dangerous_force_share", 0.06)
     rig = replace(found.rig, case=limits)
     assert found.run is not None
     assert found.loads is not None
@@ -169,7 +172,7 @@ def test_check_table_and_ramp_name_the_same_nearest_resonance() -> None:
     assert f"{near.resonance.speed * RPM:.0f} rpm" in check.reason
     dwell = next(step for step in dwelling.ramp if step.action == "dwell")
     assert f"peaks at {near.resonance.speed * RPM:.0f} rpm, " in dwell.reason
-    assert dwell.speed == stage.nearest_safe or stage.nearest_safe is None
+    assert stage.nearest_safe is None or dwell.speed * RPM == math.floor(stage.nearest_safe * RPM)
 
 
 def test_bands_and_what_is_safe_fill_the_speeds_without_overlap() -> None:

@@ -18,14 +18,15 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.tooth_history import GearInMesh, mean_stress, sensitivity
 from rigdesign.results.dynamics import FROM_FACTORS, StressSource
 from rigdesign.results.teeth import ToothHistory
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 
 @pytest.fixture(scope="module")
 def prototype() -> Rig:
-    return build_rig(load_case(CASES / "uhcf_prototype"), "quick")
+    return twisting_rig(load_case(CASES / "uhcf_prototype"))
 
 
 @pytest.mark.parametrize(
@@ -92,7 +93,7 @@ def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:
 
 @pytest.fixture(scope="module")
 def main_rig() -> Rig:
-    return build_rig(load_case(CASES / "uhcf_main"), "quick")
+    return twisting_rig(load_case(CASES / "uhcf_main"))
 
 
 def test_every_mesh_of_a_gearbox_is_rated_and_an_idler_bends_both_ways(main_rig: Rig) -> None:
@@ -169,7 +170,7 @@ def with_application(rig: Rig, factor: float) -> Rig:
     for name in rig.mesh_names:
         box, _, mesh = name.partition(".")
         case = case.with_value(f"gearboxes.{box}.meshes.{mesh}.application_factor", str(factor))
-    return build_rig(case, "quick")
+    return twisting_rig(case)
 
 
 def test_stress_over_the_path_takes_the_application_factor(prototype: Rig) -> None:

@@ -20,8 +20,9 @@ from rigdesign.records.tooth_history import GearInMesh, gear_meshes, tooth_histo
 from rigdesign.report.figures.teeth import tooth_history_figure
 from rigdesign.results.rows.teeth import tooth_history_row
 from rigdesign.results.teeth import ToothHistory
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
 from tests.builders.idler_case import idler_case
+from tests.builders.twisting import twisting_rig
 
 SPEED, TORQUE, STEPS = 1256.6, 4000.0, 64
 
@@ -29,7 +30,7 @@ SPEED, TORQUE, STEPS = 1256.6, 4000.0, 64
 @pytest.fixture(scope="module")
 def rig() -> Rig:
     """The main rig: in both gearboxes a pinion between two wheels."""
-    return build_rig(load_case("cases/uhcf_main"), "quick")
+    return twisting_rig(load_case("cases/uhcf_main"))
 
 
 @pytest.fixture(scope="module")
@@ -179,7 +180,7 @@ def test_a_press_fit_adds_to_the_mean_stress(interference: str, more: bool) -> N
     case = load_case("cases/uhcf_main").with_value(
         "gearboxes.test.gears.pinion.shaft_interference", interference
     )
-    found = tooth_history.mean_stress(build_rig(case, "quick"), GearInMesh(0, 0), SPEED)
+    found = tooth_history.mean_stress(twisting_rig(case), GearInMesh(0, 0), SPEED)
     assert (found.press_fit > 1e6) is more
 
 
@@ -195,7 +196,7 @@ def test_a_press_fit_needs_a_seat() -> None:
 def without_housing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     folder = tmp_path_factory.mktemp("idlers")
     idler_case(folder, housing=False)
-    yield build_rig(load_case(folder), "quick")
+    yield twisting_rig(load_case(folder))
 
 
 def test_partners_without_places_are_taken_as_opposite(without_housing: Rig) -> None:
@@ -210,7 +211,7 @@ def test_history_takes_the_application_factor_of_its_mesh(
     """On one mesh of an idler: the stress of the other flank does not change."""
     case = rig.case.with_value("gearboxes.test.meshes.a.application_factor", "1.25")
     raised = tooth_history.tooth_history(
-        build_rig(case, "quick"), point, "test.pinion", gear_meshes(rig)["test.pinion"]
+        twisting_rig(case), point, "test.pinion", gear_meshes(rig)["test.pinion"]
     )
     assert raised is not None
     plain, found = histories["test.pinion"].turn, raised.turn
@@ -244,5 +245,5 @@ def test_a_gear_that_is_wheel_and_pinion_keeps_its_face(
 def test_a_stated_rim_raises_the_centrifugal_stress(rig: Rig) -> None:
     case = rig.case.with_value("gearboxes.test.gears.wheel_a.rim_thickness", "10 mm")
     place = gear_meshes(rig)["test.wheel_a"][0]
-    solid, rim = (tooth_history.mean_stress(one, place, SPEED) for one in (rig, build_rig(case, "quick")))
+    solid, rim = (tooth_history.mean_stress(one, place, SPEED) for one in (rig, twisting_rig(case)))
     assert rim.disc > 1.2 * solid.disc and rim.teeth > solid.teeth

@@ -9,7 +9,7 @@ from rigdesign.case import surface_conditions as laws
 from rigdesign.case.films import NiemannWinter
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM
-from rigdesign.rig.model import build_rig
+from tests.builders.twisting import twisting_rig
 from tests.builders.warm_prototype import base, case_with, heat_by_kind, open_share, outlet, settled
 from thermal.conditions.boundary import Exchange, Film
 from thermal.conduction.steady import CLOSURE
@@ -22,7 +22,7 @@ FACTOR = 1.7
 def coefficients(changes: tuple[tuple[str, object], ...] = ()) -> dict[tuple[str, str], float]:
     """(surface, kind) -> coefficient of every film and exchange at fixed temperatures."""
     rig, result = base()
-    changed = build_rig(case_with(changes), "quick").with_models(rig.models) if changes else rig
+    changed = twisting_rig(case_with(changes)).with_models(rig.models) if changes else rig
     found = {}
     for condition in boundary_conditions(changed, "test", result.last, radiation_included=False):
         if isinstance(condition, Film):
@@ -75,7 +75,7 @@ def test_factors_multiply_and_show_as_one() -> None:
         (f"gearboxes.test.housing.boundary.{entry}.film_factor", 2.0),
         ("gearboxes.test.housing.ambient_film_factor", 0.75),
     )
-    changed = build_rig(case_with(changes), "quick").with_models(rig.models)
+    changed = twisting_rig(case_with(changes)).with_models(rig.models)
     films = boundary_conditions(changed, "test", result.last, radiation_included=True)
     shown = {
         film.law(350.0, 300.0).inputs.get("film_factor")

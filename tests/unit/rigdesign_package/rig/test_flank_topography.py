@@ -14,7 +14,8 @@ from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
+from tests.builders.twisting import twisting_rig
 
 FLANK = "gearboxes.test.gears.pinion.flank"
 POINT = OperatingPoint(stage="test", speed=100.0, torque=200.0)
@@ -22,7 +23,7 @@ STATED = load_case("cases/loop_1to1")
 PLAIN = STATED.with_values(
     {f"{FLANK}.{key}": "0 um" for key in ("profile_crowning", "lead_crowning", "tip_relief")}
 )
-PAIR = build_rig(PLAIN, "quick").pairs["test.main"]
+PAIR = twisting_rig(PLAIN).pairs["test.main"]
 GEAR, WIDTH = PAIR.gears[0], PAIR.face_widths[0]
 ROLLS = np.linspace(GEAR.roll_length(GEAR.form_radius) - 1e-5, GEAR.roll_length(GEAR.tip_radius) + 1e-5, 9)
 FACES = np.linspace(-0.5 * WIDTH, 0.5 * WIDTH, 7)
@@ -74,8 +75,8 @@ def slices(case: Case) -> Case:
 
 def test_a_measured_slope_is_the_stated_slope(tmp_path: Path) -> None:
     """The gap of the mesh law, place by place."""
-    plain = gap_of(build_rig(slices(PLAIN.with_value(f"{FLANK}.helix_slope", "6 um")), "quick"))
-    found = gap_of(build_rig(slices(measured(tmp_path, grid_text())), "quick"))
+    plain = gap_of(twisting_rig(slices(PLAIN.with_value(f"{FLANK}.helix_slope", "6 um"))))
+    found = gap_of(twisting_rig(slices(measured(tmp_path, grid_text()))))
     assert np.ptp(plain[:, plain.shape[1] // 2]) > 5e-6
     np.testing.assert_allclose(found, plain, atol=1e-14)
 
@@ -94,9 +95,7 @@ def test_every_way_to_write_a_grid_gives_the_same_flank(tmp_path: Path, spelled:
     def bumpy(roll: float, face: float) -> float:
         return 4e-6 + 6e-6 * face / WIDTH + 3e-6 * (roll - ROLLS[0]) / np.ptp(ROLLS)
 
-    front, back = build_rig(measured(tmp_path, grid_text(bumpy, **spelled)), "quick").topography(
-        "test.pinion"
-    )  # type: ignore[arg-type]
+    front, back = twisting_rig(measured(tmp_path, grid_text(bumpy, **spelled))).topography("test.pinion")  # type: ignore[arg-type]
     assert front is not None and back is None
     flank = FlankField(pair=PAIR, index=0, micro=Microgeometry(topography=front))
     roll, face = np.linspace(*flank.profile, 7)[:, None], np.linspace(FACES[0], FACES[-1], 5)
@@ -111,11 +110,11 @@ def test_every_tooth_of_its_own_and_the_back_flanks(tmp_path: Path) -> None:
         [f"tooth,{names}", f",{unit}", *(f"{t},{row}" for t in range(PAIR.teeth[0]) for row in rows)]
     )
     case = measured(tmp_path, text).with_value(f"{FLANK}.back_topography", str(tmp_path / "pinion.csv"))
-    front, back = build_rig(case, "quick").topography("test.pinion")
+    front, back = twisting_rig(case).topography("test.pinion")
     assert front is not None and back is not None and front.teeth == back.teeth == PAIR.teeth[0]
     shorter = "\n".join(text.splitlines()[: 2 + 3 * len(rows)])
     with pytest.raises(CaseError, match=r"topography.*3 teeth, the gear has .*give all teeth or one for all"):
-        build_rig(measured(tmp_path, shorter), "quick")
+        twisting_rig(measured(tmp_path, shorter))
 
 
 def test_the_hash_of_the_case_follows_the_content_of_the_file(tmp_path: Path) -> None:
@@ -170,7 +169,7 @@ def shuffled() -> str:
 )
 def test_a_grid_that_cannot_be_used_is_refused(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(CaseError, match=words) as caught:
-        build_rig(measured(tmp_path, text), "quick")
+        twisting_rig(measured(tmp_path, text))
     assert caught.value.faults and all(fault.remedy for fault in caught.value.faults)
 
 
@@ -178,16 +177,16 @@ def test_files_that_are_no_grids(tmp_path: Path) -> None:
     for content, words in ((b"PK\x03\x04....", "a zip archive"), (b"roll\xff", "not UTF-8")):
         (tmp_path / "flank.csv").write_bytes(content)
         with pytest.raises(CaseError, match=words):
-            build_rig(PLAIN.with_value(f"{FLANK}.topography", str(tmp_path / "flank.csv")), "quick")
+            twisting_rig(PLAIN.with_value(f"{FLANK}.topography", str(tmp_path / "flank.csv")))
     with pytest.raises(CaseError, match="No such file"):
-        build_rig(PLAIN.with_value(f"{FLANK}.topography", str(tmp_path / "none.csv")), "quick")
+        twisting_rig(PLAIN.with_value(f"{FLANK}.topography", str(tmp_path / "none.csv")))
 
 
 def test_a_diameter_below_the_base_circle_has_no_involute(tmp_path: Path) -> None:
     first = 2e3 * np.hypot(ROLLS[0], GEAR.base_radius)
     text = grid_text(coordinate="diameter").replace(f"{first:.9f}", f"{1.99e3 * GEAR.base_radius:.9f}")
     with pytest.raises(CaseError, match="below the base diameter"):
-        build_rig(measured(tmp_path, text), "quick")
+        twisting_rig(measured(tmp_path, text))
 
 
 @pytest.mark.parametrize(
@@ -216,11 +215,9 @@ def test_reliefs_of_the_case_reach_the_mesh_law() -> None:
         "root_relief": "10 um", "root_relief_length": "0.5 mm", "root_relief_exponent": 2.0,
         "end_relief": "8 um", "end_relief_length": "5 mm", "end_relief_at": "rear",
     }  # fmt: skip
-    rig = build_rig(
-        slices(PLAIN.with_values({f"{FLANK}.{key}": value for key, value in reliefs.items()})), "quick"
-    )
+    rig = twisting_rig(slices(PLAIN.with_values({f"{FLANK}.{key}": value for key, value in reliefs.items()})))
     (model, *_) = mesh_models(rig, POINT, initial_state(rig, POINT))
-    plain = gap_of(build_rig(slices(PLAIN), "quick"))
+    plain = gap_of(twisting_rig(slices(PLAIN)))
     added = model.law.gap - plain
     path = model.law.path_start + model.law.path_step * np.arange(added.shape[1])
     assert added[0, path < model.pair.path.start] == pytest.approx(10e-6, abs=1e-12)

@@ -14,6 +14,7 @@ from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 SPLINE = "gearboxes.test.gears.pinion.spline"
 ETA = 0.1
@@ -28,7 +29,7 @@ def case() -> Case:
 
 @pytest.fixture(scope="module")
 def rig(case: Case) -> Rig:
-    return build_rig(case, "quick")
+    return twisting_rig(case)
 
 
 def expected(rig: Rig, speed: float) -> float:
@@ -60,7 +61,7 @@ def test_over_speed_it_falls_from_band_to_band(rig: Rig) -> None:
     assert found[-1] == pytest.approx(expected(rig, 400.0))
     # the middle of the lowest band, a factor of sqrt(1.25) above its speed at most
     assert expected(rig, 100.0) / 1.12 < found[0] < expected(rig, 100.0)
-    plain = build_rig(rig.case.with_value(f"{SPLINE}.loss_factor", 0.0), "quick")
+    plain = twisting_rig(rig.case.with_value(f"{SPLINE}.loss_factor", 0.0))
     assert loop_over_speed(plain, warm, (100.0, 400.0), lambda speed: 1.0) is plain.system
 
 

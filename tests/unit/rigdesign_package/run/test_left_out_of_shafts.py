@@ -12,6 +12,7 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from rigdesign.run.warnings import _only_for_bending, not_modelled
 from tests.builders.paths import CASES
+from tests.builders.twisting import twisting_rig
 
 
 def items(**keys: object) -> list[str]:
@@ -51,13 +52,13 @@ def test_couplings_out_of_line_lack_their_alternating_forces_alone() -> None:
 
 
 def test_keys_that_only_bending_shafts_read_are_named_where_shafts_only_twist() -> None:
-    """elastic_seats.toml at quick gives what case.toml gives, so it says that it does."""
+    """elastic_seats.toml gives there what case.toml gives, so it says that it does."""
     case = load_case(CASES / "uhcf_prototype" / "elastic_seats.toml")
-    quick, standard = (
-        list(_only_for_bending(SimpleNamespace(case=case, rig=build_rig(case, fidelity))))  # type: ignore[arg-type]
-        for fidelity in ("quick", "standard")
+    twisting, bending = (
+        list(_only_for_bending(SimpleNamespace(case=case, rig=rig)))  # type: ignore[arg-type]
+        for rig in (twisting_rig(case), build_rig(case, "quick"))
     )
-    assert standard == []
-    assert "gearboxes.test.housing.bearing_seats" in quick[0]
-    assert "gearboxes.test.gears.wheel.spline.radial_stiffness" in quick[0]
-    assert "without effect in this run" in quick[0] and "run at standard" in quick[0]
+    assert bending == []
+    assert "gearboxes.test.housing.bearing_seats" in twisting[0]
+    assert "gearboxes.test.gears.wheel.spline.radial_stiffness" in twisting[0]
+    assert "without effect in this run" in twisting[0]
