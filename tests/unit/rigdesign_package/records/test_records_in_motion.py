@@ -127,7 +127,8 @@ def test_waterfalls_cover_the_mesh_order_of_the_highest_speed_up_and_down() -> N
 def test_mesh_orders_of_the_time_run_are_those_of_the_periodic_response() -> None:
     """The march and harmonic balance at the held stage: first three mesh orders, no other line as high.
 
-    Tooth friction acts across the line of action in the march and along the ports in harmonic balance: 0.2 % of the mean.
+    Tooth friction acts across the line of action in the march and along the ports in harmonic balance: 0.2 % of the
+    mean.
     """
     for one in held_spectra(solved().rig, solved().run):
         order, amplitude = np.array(one.order), np.array(one.amplitude)
