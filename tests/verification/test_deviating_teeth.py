@@ -23,7 +23,8 @@ from rigdesign.coupling.braced_loop import brace_initial
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.model import Rig
+from tests.builders.twisting import twisting_rig
 
 POINT = OperatingPoint(stage="test", speed=60.0, torque=200.0)
 PINION, WHEEL = (f"gearboxes.test.gears.{gear}.flank" for gear in ("pinion", "wheel"))
@@ -43,7 +44,7 @@ def changed(**values: object) -> Case:
 
 
 def built(case: Case) -> tuple[Rig, tuple[MeshModel, ...]]:
-    rig = build_rig(case, "quick")
+    rig = twisting_rig(case)
     return rig, mesh_models(rig, POINT, initial_state(rig, POINT))
 
 
