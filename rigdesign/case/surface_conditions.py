@@ -62,6 +62,14 @@ class BearingFilm(SurfaceCondition):
     film_factor: FilmFactor = 1.0
     """Multiplies the conductance between film and wall, not what the film carries or heats."""
 
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """It needs a bearing."""
+        if not site.in_bearing:
+            yield Fault(
+                "surfaces", f'"{site.surface}"', "is neither bore nor journal of a bearing",
+                'law = "bearing_film" is for bearing_bore_* and shaft_*_journal_*; write another law',
+            )  # fmt: skip
+
 
 class ThermalRadiation(SurfaceCondition):
     """Grey radiation to large surroundings; a film may cover the same surface."""
@@ -129,7 +137,14 @@ class GapExchange(SurfaceExchange):
         return convection.scaled(across(shaft.speed, 0.5 * shaft.diameter, gap), self.film_factor)
 
     def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
-        """Its gap has to be known, and that of the seals where it is one."""
+        """It needs a surface that turns; its gap has to be known, and that of the seals where it is one."""
+        if not site.on_shaft:
+            yield Fault(
+                "surfaces", f'"{site.surface}"',
+                "is no surface of a shaft or gear: the gap takes its diameter from there",
+                "write the shaft here and this surface as its partner, or choose another law",
+            )  # fmt: skip
+            return
         if site.seal_gap is None:
             if self.gap is None:
                 yield Fault("gap", "", f"{site.surface} is no seal, its gap is not known", "add the gap")

@@ -16,6 +16,8 @@ class SurfaceSite:
     """A surface of a shaft or gear."""
     has_teeth: bool
     """The rim of a gear."""
+    in_bearing: bool = False
+    """Bore or journal of a bearing."""
     seal: str = ""
     """Shaft of the seal the surface belongs to; empty for another surface."""
     seal_gap: float | None = None

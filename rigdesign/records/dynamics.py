@@ -157,11 +157,13 @@ class _SolvedMesh:
 
     @cached_property
     def root_stress_ratios(self) -> tuple[RootStressRatio, ...]:
-        """At every speed of the governing curve."""
+        """At every speed of the governing curve; none where the roots carry nothing at the held stage."""
         rig, run, mesh = self.loads.rig, self.loads.run, self.mesh
         test = self._held[run.test.point.stage]
         model, points = run.test.last.models[mesh], run.curves.response.points
         roots, ratios = test.roots.at_highest(test.forces), []
+        if not all(root.peak(test.static[gear]) for gear in (0, 1)):
+            return ()
         for response, forces in zip(points, root.dynamic_forces(model, points, mesh, EVERY)):
             stresses = roots.highest(forces)
             pinion, wheel = (root.peak(stresses[gear]) / root.peak(test.static[gear]) for gear in (0, 1))

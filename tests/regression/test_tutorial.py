@@ -73,7 +73,7 @@ def test_the_study_says_what_the_page_tells(folder: Path, capsys: pytest.Capture
     margins = [float(row["temperature.oil_outlet margin [K]"]) for row in (held[-1], last)]
     verdicts = [row["temperature.oil_outlet verdict"] for row in (*held, last)]
     assert verdicts[0] == "pass" and verdicts[-1] == "fail"
-    assert 80.0 + 20.0 * margins[0] / (margins[0] - margins[1]) == pytest.approx(97.0, abs=0.6)
+    assert 80.0 + 20.0 * margins[0] / (margins[0] - margins[1]) == pytest.approx(97.7, abs=0.3)
     assert margins == pytest.approx([18.16, -2.40], rel=0.02)
 
 

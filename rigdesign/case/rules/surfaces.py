@@ -22,6 +22,9 @@ from thermal.housing.surfaces import surface_names
 POSITION_TOLERANCE = 1e-4
 """Most difference [m] between the distance of two axes and the centre distance of their mesh."""
 
+BEARING_SURFACES = ("bearing_bore_*", "shaft_*_journal_*")
+"""Surfaces that a lubricant film joins."""
+
 
 def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
     """Everything wrong with the housing of a gearbox; empty for one without a housing."""
@@ -207,6 +210,7 @@ def _site(gearbox: Gearbox, housing: Housing, surface: str) -> SurfaceSite:
         housing_height=housing.height,
         on_shaft=any(f"_{shaft}_" in f"{surface}_" for shaft in housing.shafts),
         has_teeth=fnmatchcase(surface, GEAR_RIMS),
+        in_bearing=any(fnmatchcase(surface, pattern) for pattern in BEARING_SURFACES),
         seal="" if seals is None else seals.shaft,
         seal_gap=None if seals is None else seals.radial_gap,
     )

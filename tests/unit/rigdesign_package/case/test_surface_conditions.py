@@ -1,7 +1,8 @@
 """Boundary conditions of the case say themselves what they need of a surface and which law they stand for there."""
 
+from dataclasses import replace
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import pytest
 
@@ -13,8 +14,9 @@ from rigdesign.case.films import (
     VerticalPlate,
 )
 from rigdesign.case.given_film import PRINTED_LAWS, ConstantFilm, TakenFrom
+from rigdesign.case.rules.surfaces import _on_their_surfaces
 from rigdesign.case.shaft_films import RotatingCylinder
-from rigdesign.case.surface_conditions import Condition, FlankFilm, GapExchange, SurfaceExchange
+from rigdesign.case.surface_conditions import BearingFilm, Condition, FlankFilm, GapExchange, SurfaceExchange
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
 from tests.builders.fzg_case import fzg_case
 from thermal.films import convection
@@ -77,7 +79,7 @@ def test_a_printed_coefficient_may_come_from_every_law_that_needs_no_more_than_a
 def test_gaps_and_flanks_ask_for_seals_and_teeth() -> None:
     gap = GapExchange(surfaces=("s_*",), law="narrow_gap", partner="bore_*")
     assert gap.partner_of(("front",)) == "bore_front"
-    assert [fault.path for fault in gap.faults_on(WALL)] == ["gap"]
+    assert [fault.path for fault in gap.faults_on(replace(WALL, on_shaft=True))] == ["gap"]
     seal = SurfaceSite(
         surface="s", housing_height=0.28, on_shaft=True, has_teeth=False, seal="pinion", seal_gap=6e-4
     )
@@ -106,3 +108,42 @@ def test_the_film_of_the_standard_is_an_assumption(tmp_path: Path) -> None:
     records = {record.path: record for record in load_case(path).assumptions}
     found = records["gearboxes.test.housing.boundary.oil.film_factor"]
     assert (found.value, found.range) == ("1", ("0.5", "1.5"))
+
+
+FOREIGN = {
+    "bearing_film": ("outer_warm", "field_bottom", "shaft_test_pinion_warm"),
+    "narrow_gap": ("outer_warm", "field_bottom"),
+    "flank_film": ("outer_warm", "shaft_test_pinion_warm"),
+    "horizontal_cylinder": ("outer_warm",),
+}
+"""Laws that take something from their surface -> surfaces that do not have it."""
+
+
+@pytest.mark.parametrize(
+    ("law", "surface"), [(law, surface) for law, surfaces in FOREIGN.items() for surface in surfaces]
+)
+def test_a_law_is_refused_on_a_surface_that_lacks_what_it_takes(law: str, surface: str) -> None:
+    """Not met in the solver, where a wall has no film and a shaft away from its bearings none of its own."""
+    case = load_case("cases/uhcf_prototype")
+    housing = case.gearboxes["test"].housing
+    assert housing is not None
+    union, _ = get_args(Condition)
+    kind = next(one for one in _kinds(union) if law in get_args(one.model_fields["law"].annotation))
+    values: dict[str, object] = {"surfaces": (surface,), "law": law}
+    if law == "narrow_gap":
+        values |= {"partner": "field_top", "gap": "0.6 mm"}
+    condition = kind.model_validate(values)
+    other = housing.model_copy(update={"boundary": {"foreign": condition}})
+    faults = list(_on_their_surfaces("at", case.gearboxes["test"], other, (surface,)))
+    assert [fault.path for fault in faults] == ["at.foreign.surfaces"]
+
+
+def test_bearing_films_join_bores_and_journals() -> None:
+    film = BearingFilm(surfaces=("s",), law="bearing_film")
+    assert not list(film.faults_on(replace(WALL, in_bearing=True)))
+
+
+def _kinds(union: object) -> list[Any]:
+    """Classes of a union, annotated unions in it included."""
+    parts = get_args(union)
+    return [kind for part in parts for kind in _kinds(part)] if parts else [union]

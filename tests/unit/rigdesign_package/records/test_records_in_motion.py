@@ -13,6 +13,7 @@ from rigdesign.checks.dwell_speeds import checks
 from rigdesign.records.contact_in_motion import pair_shares
 from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamic_root import dynamic_root
+from rigdesign.records.dynamics import SolvedLoads, _SolvedMesh
 from rigdesign.records.near_dwell import near_dwells
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
@@ -185,3 +186,16 @@ def test_bands_and_what_is_safe_fill_the_speeds_without_overlap() -> None:
     covered = sum(min(high, record.high) - max(low, record.low) for low, high in pieces)
     assert covered == pytest.approx(record.high - record.low)
     assert {"dynamic factor", "root stress", "shaft torque"} <= set(record.highest)
+
+
+def test_a_mesh_whose_roots_carry_nothing_has_no_ratios() -> None:
+    """Of two meshes that share a torque one may take all of it."""
+    found = solved()
+    assert found.run is not None
+    mesh = SolvedLoads(found.rig, found.run).meshes["test"]
+    assert isinstance(mesh, _SolvedMesh)
+    stage = found.run.test.point.stage
+    held = mesh._held[stage]
+    idle = replace(held, static=tuple((path, 0.0 * stress) for path, stress in held.static))
+    mesh.__dict__["_held"] = {stage: idle}
+    assert mesh.root_stress_ratios == ()
