@@ -25,8 +25,7 @@ CREEP = 0.1
 
 
 class MarchTables:
-    """Contact tables over the speed for the steps [s] of a march; it keeps those that serve
-    again."""
+    """Contact tables over the speed for the steps [s] of a march, which keeps those that serve again."""
 
     def __init__(self, laws: Sequence[MeshLaw], step: float, *, derivative_torques: bool = True) -> None:
         self._laws, self._step, self._derivative_torques = tuple(laws), step, derivative_torques

@@ -1,8 +1,8 @@
 """Torque of shafts and joints read from the modal state of a march at every sample, and its envelopes.
 
-Exact for that state in single precision, tooth friction and every other load included, and cheap: one product with the
-modal state. What alternates within a sample is seen at the ends of the samples only: over a window of many samples
-their phases cover a vibration unless its frequency is a multiple of half the sample rate.
+Exact for that state, tooth friction and every other load included, and cheap: one product with the modal state. What
+alternates within a sample is seen at the ends of the samples only: over a window of many samples their phases cover a
+vibration unless its frequency is a multiple of half the sample rate.
 """
 
 from collections.abc import Sequence
@@ -31,9 +31,8 @@ class StateReader:
             (rows.damping[:, None] * turning, rows.stiffness[:, None] * bent / model.frequencies[rigid:])
         )
         modes, places = scaled @ model.to_scaled, propagator.layout.modes
-        state = np.zeros((len(rows.rows), propagator.modes.rows.shape[1]))
-        state[:, places], state[:, places + WIDTH] = modes.real, -modes.imag
-        self._state = state.astype(np.float32)
+        self._state = np.zeros((len(rows.rows), propagator.modes.rows.shape[1]))
+        self._state[:, places], self._state[:, places + WIDTH] = modes.real, -modes.imag
         self._inputs = scaled @ model.scaled_through + (modes @ propagator.hold).real
         self._bracing = -rows.stiffness * rows.bracing
         self.sections = rows.sections
@@ -44,7 +43,7 @@ class StateReader:
         states : (n, n_states); inputs : (n, n_inputs) that act there (see ``propagator.modal_state``)
         twist : (n,) of the bracing [rad]
         """
-        torque = self._state @ states.astype(np.float32).T + self._inputs @ inputs.T
+        torque = self._state @ states.T + self._inputs @ inputs.T
         return np.asarray(torque + self._bracing[:, None] * twist)
 
 

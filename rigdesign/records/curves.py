@@ -8,20 +8,17 @@ from functools import partial
 import numpy as np
 
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modes import loop_modes
-from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
-from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.coupling.braced_loop import locked_share, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
-from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.records.loop_modes import warm_modes
 from rigdesign.records.loop_states import dwell_speeds, is_around
 from rigdesign.results.dynamics import DynamicFactorPoint
 from rigdesign.rig.model import Rig
@@ -104,7 +101,7 @@ def grid(rig: Rig, low: float, high: float) -> list[float]:
     """Even speeds of the first pinion [rad/s] as dense as the case asks; few at quick and where a whole revolution is
     solved."""
     numerics = rig.case.numerics
-    count = numerics.curve_speeds if resolved(rig) and rig.fidelity != "quick" else QUICK_SPEEDS
+    count = numerics.curve_speeds if dense(rig) else QUICK_SPEEDS
     step = (numerics.curve_speed_end - numerics.curve_speed_start) / (count - 1)
     if step <= 0.0:
         return [rig.pinion_speed(speed) for speed in dict.fromkeys((low, high))]
@@ -117,21 +114,15 @@ def resolved(rig: Rig) -> bool:
     return rig.case.numerics.response_period == "mesh"
 
 
-def follows_peaks(rig: Rig) -> bool:
-    """Whether speeds are added where a section of the shafts has a peak between those of the curves."""
+def dense(rig: Rig) -> bool:
+    """Whether speeds are as dense as the case asks, and more where a section of the shafts peaks between them."""
     return resolved(rig) and rig.fidelity != "quick"
 
 
 def resonance_speeds(rig: Rig, warm: IterationResult, low: float, high: float) -> Iterator[float]:
     """Speeds of the first pinion between two [rad/s] at which orders of a mesh meet the modes that it drives, bearings
     as in ``warm``."""
-    assert rig.drivetrain is not None
-    laws = laws_of(warm.models)
-    if rig.shaft_model == "torsional":
-        modes = loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)
-    else:
-        state = running_state(rig, warm.point, warm.coupling_state, warm.bearings)
-        modes = elastic_loop_modes(rig.elastic.seen, state, laws, DEFAULT_CUTOFF)
+    modes = warm_modes(rig, warm)
     for mesh, name in enumerate(rig.mesh_names):
         teeth = own_ratio(rig, mesh) * rig.pairs[name].teeth[0]
         for mode in modes:
@@ -175,7 +166,7 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
     limits : lowest and highest stated speed [rad/s]
     """
     speeds = grid(rig, *limits)
-    if rig.fidelity == "quick" and resolved(rig):
+    if resolved(rig) and not dense(rig):
         dwells = [rig.pinion_speed(speed) for speed in dwell_speeds(rig)]
         for speed in resonance_speeds(rig, warm, min(speeds), max(speeds)):
             decides = any(is_around(speed, dwell) for dwell in dwells)
@@ -183,11 +174,9 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
                 speeds.append(speed)
         speeds.sort()
     solve = response_solver(rig, warm, torque, (min(speeds), max(speeds)))
-    return (
-        refined_response(solve, speeds, rounds=1 if rig.fidelity == "quick" else ROUNDS)
-        if resolved(rig)
-        else solve(speeds)
-    )
+    if not resolved(rig):
+        return solve(speeds)
+    return refined_response(solve, speeds, rounds=ROUNDS if dense(rig) else 1)
 
 
 def rating_options(rig: Rig, name: str) -> RatingOptions:

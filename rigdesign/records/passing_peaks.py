@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records.curves import curve_at, follows_peaks, response_solver, torque_key
+from rigdesign.records.curves import curve_at, dense, response_solver, torque_key
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.torques_over_speed import LoopOverSpeed, torques_over_speed
@@ -35,7 +35,7 @@ def passing_peaks(
             "torques during run-down are not known: no periodic response was found below the speed of the event",
         )
     ends = known[0].speed, known[-1].speed
-    solve = response_solver(rig, run.test.last, torque, ends) if follows_peaks(rig) else None
+    solve = response_solver(rig, run.test.last, torque, ends) if dense(rig) else None
     share = torque / signed_torque(rig, run.test.point)
     loop = LoopOverSpeed(rig, run.test.last, loop_states(rig, run.test, stop.speed, share))
     points, curves = torques_over_speed(loop, known, solve)

@@ -10,7 +10,7 @@ import numpy as np
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.campbell import campbell
-from rigdesign.records.curves import follows_peaks, response_solver
+from rigdesign.records.curves import dense, response_solver
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.held_torques import held_torques
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
@@ -128,7 +128,7 @@ def more_speeds(rig: Rig, run: DynamicRun) -> Solve | None:
 
     Where only a march finds the motion, meshes lose contact and no resonance of a shaft is narrow.
     """
-    if not follows_peaks(rig):
+    if not dense(rig):
         return None
     speeds = run.curves.response.speeds
     limits = (float(min(speeds)), float(max(speeds)))

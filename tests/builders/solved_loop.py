@@ -15,3 +15,10 @@ SLOW = "120 rpm"
 def solved() -> SolvedRig:
     case = load_case(CASES / "loop_1to1").with_value("numerics.root_stress_speeds", [SLOW])
     return solve_case(case, "quick")
+
+
+@cache
+def solved_twisting() -> SolvedRig:
+    """The same loop with shafts that only twist and analytic teeth."""
+    models = {"drivetrain.shaft_model": "torsional", "drivetrain.mesh_stiffness": "iso_6336_scaled"}
+    return solve_case(load_case(CASES / "loop_1to1").with_values(models), "quick")
