@@ -56,21 +56,25 @@ LEAST_EXCESS = 0.05
 FARTHEST = 5.0
 """Factor by which an input may move either way."""
 CLOSE = 0.01
-"""Distance of the share of the limit from 1 at which the value is found."""
-STEPS = 4
+"""Distance of the share of the limit from 1 at which the value is found; the search aims at half of it beyond 1."""
+STEPS = 5
 SHOWN = 3
 """Checks looked at, and rows kept beside that of the limit."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """An input that may turn a check: paths that move together, the text before and after its number."""
+    """An input that may turn a check: paths that move together, the text before and after its number.
+
+    power : with which the share of a limit follows the input, about; None where it is not known beforehand
+    """
 
     paths: tuple[str, ...]
     title: str
     stated: float
     unit: str
     offset: float = 0.0
+    power: float | None = None
 
     def moved(self, factor: float) -> float:
         """Value whose excess over the offset is ``factor`` times the stated one, to four digits."""
@@ -83,6 +87,13 @@ class Candidate:
     def written(self, value: float) -> str:
         """As the case writes it."""
         return f"{value:g} {self.unit}"
+
+    def first_move(self, used: float) -> float:
+        """Logarithm of the factor tried first for a check that uses a share of its limit."""
+        if self.power is None:
+            return math.log(PROBE)
+        move = -math.log(used) / self.power
+        return math.copysign(min(max(abs(move), CLOSE), math.log(FARTHEST)), move)
 
 
 SIDE_STEPS = 3
@@ -190,7 +201,7 @@ def _used(check: Check) -> float | None:
 def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iterator[Candidate]:
     """Inputs of the design that may move the checks; gears of one box with the same width move together."""
     written = solved.case.origin.value_of
-    for title, paths, in_heat in _inputs(solved.case, targets, heat):
+    for title, paths, in_heat, power in _inputs(solved.case, targets, heat):
         by_text: dict[str, list[str]] = {}
         for path in paths:
             by_text.setdefault(written.get(path, ""), []).append(path)
@@ -202,22 +213,31 @@ def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iter
             own = [path.split(".")[3] for path in together if path.endswith(".face_width")]
             offset = BASE.get(unit, 0.0) if in_heat else 0.0
             if abs(value - offset) > LEAST_EXCESS * abs(value):
-                yield Candidate(tuple(together), f"{title}{' and '.join(own)}", value, unit, offset)
+                name = f"{title}{' and '.join(own)}"
+                yield Candidate(tuple(together), name, value, unit, offset, None if heat else power)
 
 
-def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[str, list[str], bool]]:
-    """Title and paths of the inputs by what the checks follow, and whether they are temperatures."""
-    yield "test torque", ["schedule.test_torque"], False
+def _inputs(
+    case: Case, targets: Sequence[Check], heat: bool
+) -> Iterator[tuple[str, list[str], bool, float | None]]:
+    """Title and paths of the inputs by what the checks follow, whether they are temperatures, and `Candidate.power`."""
+    yield "test torque", ["schedule.test_torque"], False, 1.0
     if any(target.id == "oil.room_temperature" for target in targets):
-        yield "air flow of the room", ["rig_heat.room.air_flow"], False
+        yield "air flow of the room", ["rig_heat.room.air_flow"], False, None
     for name, box in case.gearboxes.items():
         own = f"gearboxes.{name}"
         if heat and box.housing is not None:
-            yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], True
-            yield f"bearing oil inlet temperature of {name}", [f"{own}.bearing_oil.inlet_temperature"], True
-            yield f"oil flow of {name}", [f"{own}.oil.flow"], False
+            yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], True, None
+            yield (
+                f"bearing oil inlet temperature of {name}",
+                [f"{own}.bearing_oil.inlet_temperature"],
+                True,
+                None,
+            )
+            yield f"oil flow of {name}", [f"{own}.oil.flow"], False, None
         if any(target.is_one_of(BY_LOADS) and f".{name}." in target.id for target in targets):
-            yield f"face width of {name} ", [f"{own}.gears.{gear}.face_width" for gear in box.gears], False
+            widths = [f"{own}.gears.{gear}.face_width" for gear in box.gears]
+            yield f"face width of {name} ", widths, False, -1.0
 
 
 def _flips(case: Case, candidate: Candidate, search: Search) -> list[tuple[float, Flip]]:
@@ -251,8 +271,9 @@ def _flip(candidate: Candidate, search: Search, target: Check, case: Case, facto
 def _factor(case: Case, candidate: Candidate, search: Search, target: Check) -> float | None:
     """Factor of the input that brings the check to its limit, just beyond; by secants on the logarithms."""
     stated = _used(target)
-    if not stated or math.isinf(stated):
+    if not stated or stated == 1.0 or math.isinf(stated):
         return None
+    goal = math.copysign(0.5 * CLOSE, 1.0 - stated)
 
     def at(logarithm: float) -> float | None:
         try:
@@ -262,16 +283,17 @@ def _factor(case: Case, candidate: Candidate, search: Search, target: Check) -> 
         return math.log(used) if used and math.isfinite(used) else None
 
     before, y_before = 0.0, math.log(stated)
-    here, y_here = math.log(PROBE), at(math.log(PROBE))
+    here = candidate.first_move(math.exp(y_before - goal))
     for _ in range(STEPS):
-        if y_here is None or abs(y_here - y_before) < 1e-3 * abs(here - before):
-            return None
-        before, here, y_before = here, here - y_here * (here - before) / (y_here - y_before), y_here
-        if abs(here) > math.log(FARTHEST):
-            return None
         y_here = at(here)
         if y_here is not None and abs(y_here) < CLOSE:
             return _beyond(here, at, held=stated <= 1.0)
+        if y_here is None or abs(y_here - y_before) < 1e-3 * abs(here - before):
+            return None
+        slope = (y_here - y_before) / (here - before)
+        before, here, y_before = here, here + (goal - y_here) / slope, y_here
+        if abs(here) > math.log(FARTHEST):
+            return None
     return None
 
 

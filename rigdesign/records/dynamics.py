@@ -18,6 +18,7 @@ from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.records import root
 from rigdesign.records.curves import HARMONICS, LEAST_GAIN, Curves, own_ratio
 from rigdesign.records.loop_modes import held_modes
+from rigdesign.records.loop_states import chosen, dwell_speeds
 from rigdesign.records.resonances import mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
 from rigdesign.records.tooth_history import tooth_histories
@@ -39,6 +40,8 @@ from rigdesign.rig.model import Rig
 EVERY = 2
 """Instants of the periodic responses at which root stress over speed is taken: of 512 in a mesh period every second one
 leaves the ratio within 0.0006."""
+MOST_SPEEDS = 60
+"""Speeds at which root stress is taken, as of `chosen`: a figure shows it, around dwells a check asks for it."""
 HIGHEST_MODE = 25e3
 """Natural frequencies are listed up to here [Hz]: the mesh frequency at 12,000 rpm and a quarter more."""
 
@@ -157,10 +160,11 @@ class _SolvedMesh:
 
     @cached_property
     def root_stress_ratios(self) -> tuple[RootStressRatio, ...]:
-        """At every speed of the governing curve; none where the roots carry nothing at the held stage."""
+        """Over the governing curve (`chosen`); none where the roots carry nothing at the held stage."""
         rig, run, mesh = self.loads.rig, self.loads.run, self.mesh
         test = self._held[run.test.point.stage]
-        model, points = run.test.last.models[mesh], run.curves.response.points
+        dwells = [rig.pinion_speed(speed) for speed in dwell_speeds(rig)]
+        model, points = run.test.last.models[mesh], chosen(run.curves.response.points, MOST_SPEEDS, dwells)
         roots, ratios = test.roots.at_highest(test.forces), []
         if not all(root.peak(test.static[gear]) for gear in (0, 1)):
             return ()

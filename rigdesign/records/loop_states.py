@@ -7,6 +7,7 @@ import numpy as np
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.running_state import RunningState
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.loop import PointResult
@@ -90,3 +91,17 @@ def nearest(states: Sequence[LoopState], speed: float) -> LoopState:
 def is_around(speed: float, dwell: float) -> bool:
     """Whether a speed counts as one of those around a dwell speed."""
     return abs(speed - dwell) <= AROUND * dwell
+
+
+def chosen(points: Sequence[CurvePoint], most: int, dwells: Sequence[float] = ()) -> list[CurvePoint]:
+    """At most so many points of a curve, evenly by their number, with all at which the torque of a mesh peaks; on top
+    all around a dwell speed [rad/s] (`is_around`), where shafts peak between the meshes."""
+    if len(points) <= most:
+        return list(points)
+    swing = np.array([point.dynamic_factor_half_peak_to_peak for point in points])
+    inner = (swing[1:-1] >= swing[:-2]) & (swing[1:-1] >= swing[2:])
+    peaks = set((np.flatnonzero(inner.any(axis=1)) + 1).tolist())
+    rest = max(2, most - len(peaks))
+    even = set(np.linspace(0, len(points) - 1, rest).round().astype(int).tolist())
+    near = {i for i, point in enumerate(points) if any(is_around(point.speed, dwell) for dwell in dwells)}
+    return [points[i] for i in sorted(peaks | even | near)]

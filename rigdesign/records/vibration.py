@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from operator import is_
 
-import numpy as np
-
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.campbell import campbell
@@ -14,7 +12,7 @@ from rigdesign.records.curves import dense, response_solver
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.held_torques import held_torques
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
-from rigdesign.records.loop_states import LoopState, dwell_speeds, is_around, loop_states
+from rigdesign.records.loop_states import LoopState, chosen, dwell_speeds, loop_states
 from rigdesign.records.near_dwell import NearDwell, near_dwells
 from rigdesign.records.start_torque import StartResponse, start_response
 from rigdesign.records.torques_over_speed import LoopOverSpeed, Solve, torques_over_speed
@@ -107,20 +105,6 @@ class LoopVibration:
     def _states(self) -> Sequence[LoopState]:
         top = max(self._run.curves.response.speeds) / self.rig.pinion_speed(1.0)
         return loop_states(self.rig, self._run.test, float(top))
-
-
-def chosen(points: Sequence[CurvePoint], most: int, dwells: Sequence[float] = ()) -> list[CurvePoint]:
-    """At most so many points of a curve, evenly by their number, with all at which the torque of a mesh peaks; on top
-    all around a dwell speed [rad/s] (`is_around`), where shafts peak between the meshes."""
-    if len(points) <= most:
-        return list(points)
-    swing = np.array([point.dynamic_factor_half_peak_to_peak for point in points])
-    inner = (swing[1:-1] >= swing[:-2]) & (swing[1:-1] >= swing[2:])
-    peaks = set((np.flatnonzero(inner.any(axis=1)) + 1).tolist())
-    rest = max(2, most - len(peaks))
-    even = set(np.linspace(0, len(points) - 1, rest).round().astype(int).tolist())
-    near = {i for i, point in enumerate(points) if any(is_around(point.speed, dwell) for dwell in dwells)}
-    return [points[i] for i in sorted(peaks | even | near)]
 
 
 def more_speeds(rig: Rig, run: DynamicRun) -> Solve | None:
