@@ -34,7 +34,7 @@ from dynamics.kernels.mesh_workspace import (
     UPPER,
 )
 
-# compiled from sources 834b7ecd
+# compiled from sources 14f65d14
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 834b7ecd
+# compiled from sources 14f65d14
 Array = NDArray[np.float64]
 
 

@@ -24,7 +24,6 @@ from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.results.rows.seats import press_fit_row, spline_stress_row
 from rigdesign.results.rows.teeth import (
-    contact_in_loop_row,
     dynamic_root_rows,
     flank_rating_row,
     loaded_contact_row,
@@ -75,7 +74,6 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         campbell=campbell_row(vibration.campbell),
         section_torques=section_torque_rows(torques),
         dwell=dwell_row(dwell_record(solved, torques)),
-        contact_in_loop=[contact_in_loop_row(found) for found in solved.contact_in_loop.meshes],
         press_fits=[press_fit_row(found) for found in solved.press_fits],
         splines=[spline_stress_row(found) for found in solved.splines],
         pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],

@@ -1,7 +1,7 @@
 """The solved rig: the case, the solved points and their SI records. Checks and rows of the result read nothing else."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 from rigdesign.base.finite import finite
@@ -23,7 +23,6 @@ from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow, MeshShift
 from rigdesign.results.seats import PressFitCapacity, SplineStress
-from rigdesign.results.teeth import ContactInLoop
 from rigdesign.results.transient import HistoryExtremes
 from rigdesign.results.vibration import HeldTorque
 from rigdesign.results.warm_gearbox import WarmGearbox
@@ -63,7 +62,6 @@ class SolvedRig:
     """Of a rig with a drivetrain."""
     loop: LoopVibration | None = None
     """What is known of ``vibration``, of the same points and run."""
-    contact_in_loop: ContactInLoop = field(default_factory=ContactInLoop)
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
     law_spreads: Sequence[LawSpread] = ()

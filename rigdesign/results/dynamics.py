@@ -182,12 +182,6 @@ class DynamicsResult:
     pair_shares: list[dict[str, Any]] = field(default_factory=list)
     """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
     force at that moment, in motion), share_quasi_static, force_over_mean}."""
-    contact_in_loop: list[dict[str, Any]] = field(default_factory=list)
-    """At fidelity reference, K_V with the contact solved in the loop against that of the contact tables, at the held
-    stages and (peak) where the mesh has its highest K_V over speed: {gearbox, stage (empty: no stage holds the speed),
-    peak, pinion_speed_rpm, torque_Nm, dynamic_factor, dynamic_factor_by_table, shift, least_share,
-    least_share_by_table, other_flank_share, without_contact_share, tilt_urad, still_changing, settled, time_s,
-    unconverged_steps}."""
     press_fits: list[dict[str, Any]] = field(default_factory=list)
     """Of every gear with an interference at every torque that its check counts, of held stages, time run and events:
     {gear, where, stage (whose temperatures count), interference_um, interference_hot_um, gear_degC, shaft_degC,

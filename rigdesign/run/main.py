@@ -26,7 +26,6 @@ from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
-from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.curves import solve_curves
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.dynamics_section import dynamics_section
@@ -150,10 +149,6 @@ def solve_case(
         say("events: " + ", ".join(wanted.case.events))
         solved = replace(solved, events=solve_events(wanted, run))
         lap("events")
-    if run is not None and fidelity == "reference":
-        say("contact in the loop")
-        solved = replace(solved, contact_in_loop=contact_in_loop(wanted, run))
-        lap("contact_in_loop")
     say("discretisation errors of the loads")
     solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
     lap("load_errors")

@@ -24,7 +24,6 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
-from rigdesign.results.teeth import ContactInLoop
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
@@ -32,8 +31,6 @@ from rigdesign.run.fast_ramps import fast_ramps
 from rigdesign.run.heat_audits import heat_audits
 from rigdesign.run.load_convergence import missing_load_errors
 
-MOST_UNCONVERGED = 10
-"""Steps of a march with the contact in the loop that may end before their contact is solved to its tolerance."""
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
 
@@ -57,7 +54,6 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="damping", text=text) for text in _damping(solved)),
         *(Finding(id="sampling", text=text) for text in _sampling(solved)),
         *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
-        *(Finding(id="load_error", text=text) for text in _contact_in_loop(solved.contact_in_loop)),
         *(Finding(id="not_steady", text=text) for text in _warming(solved)),
         *(Finding(id="heat_audit", text=text) for text in heat_audits(solved)),
     ]
@@ -197,24 +193,6 @@ def _warming(solved: SolvedRig) -> Iterator[str]:
 def _damping(solved: SolvedRig) -> Iterator[str]:
     if solved.loads is not None:
         yield from (record.warning for record in solved.loads.damping if record.warning)
-
-
-def _contact_in_loop(found: ContactInLoop) -> Iterator[str]:
-    """Where fidelity reference has no comparison with the contact solved in the loop, or a poor one."""
-    for place in found.missing:
-        yield f"contact in the loop: not solved at {place}; the errors of the loads there do not include it"
-    for mesh in found.meshes:
-        where = f"contact in the loop: gearbox {mesh.mesh}, {mesh.speed * RPM:.0f} rpm"
-        if not mesh.settled:
-            yield (
-                f"{where}: K_V still changes by {mesh.still_changing:.2g} after {mesh.time:.2g} s; added to the error "
-                "of the loads"
-            )
-        if mesh.unconverged > MOST_UNCONVERGED:
-            yield (
-                f"{where}: in {mesh.unconverged} steps the contact was not solved to its tolerance, limit "
-                f"{MOST_UNCONVERGED}; its K_V is uncertain"
-            )
 
 
 def _load_errors(solved: SolvedRig) -> Iterator[str]:

@@ -16,12 +16,11 @@ from typing import TypeVar
 
 from rigdesign import load_case
 from rigdesign.reanalysis.flips import with_flips
-from rigdesign.records.contact_in_loop import contact_in_loop
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import RunResult
-from rigdesign.results.teeth import ContactInLoop
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
+from tests.contact_in_loop.rig import LoopedContact, contact_in_loop
 from thermal.fe.kernel_cache import cache_folder
 
 VARIABLE = "RIGDESIGN_TEST_RUN_FOLDER"
@@ -68,10 +67,10 @@ def shared(name: str, make: Callable[[], T]) -> T:
 
 @dataclass(frozen=True)
 class ShippedRun:
-    """A shipped case as `rigdesign check` computes it, and what fidelity reference adds to its loads."""
+    """A shipped case as `rigdesign check` computes it, and its dynamic factors with the contact solved in the loop."""
 
     result: RunResult
-    contact_in_loop: ContactInLoop
+    contact_in_loop: tuple[LoopedContact, ...]
 
 
 def shipped_run(name: str) -> RunResult:
@@ -85,16 +84,16 @@ def shipped(name: str) -> ShippedRun:
 
 
 def _shipped(name: str) -> ShippedRun:
-    looped = [ContactInLoop()]
+    looped: list[LoopedContact] = []
 
     def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
         if solved.run is not None and name == "uhcf_prototype":
-            looped.append(contact_in_loop(solved.rig, solved.run))
+            looped.extend(contact_in_loop(solved.rig, solved.run))
         return result
 
     follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}
     result = run_case(load_case(CASES / name), "standard", follow_ups=follow_ups)
-    return ShippedRun(result, looped[-1])
+    return ShippedRun(result, tuple(looped))
 
 
 def quick_run(name: str, file: str = "case.toml") -> RunResult:

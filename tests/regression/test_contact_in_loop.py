@@ -1,17 +1,16 @@
-"""Contact in the loop of the prototype, as fidelity reference solves it, against its contact tables."""
+"""Contact solved in the loop of the prototype against its contact tables: inside the error that the loads carry."""
 
 import pytest
 
-from rigdesign.results.teeth import LoopedContact
+from rigdesign.run.load_convergence import TABLES_LEAVE_OUT
 from tests.builders.shared_runs import shipped
+from tests.contact_in_loop.rig import LoopedContact
 
 pytestmark = pytest.mark.whole_run
 
 
 def found() -> tuple[LoopedContact, ...]:
-    in_loop = shipped("uhcf_prototype").contact_in_loop
-    assert in_loop.missing == ()
-    return in_loop.meshes
+    return shipped("uhcf_prototype").contact_in_loop
 
 
 def test_held_stage_and_peaks_of_both_meshes_are_solved_and_settle() -> None:
@@ -25,15 +24,17 @@ def test_held_stage_and_peaks_of_both_meshes_are_solved_and_settle() -> None:
         assert row.apart == 0.0
 
 
-@pytest.mark.parametrize("peak", [False, True])
-def test_dynamic_factors_by_both_models_agree(peak: bool) -> None:
+def test_dynamic_factors_by_both_models_agree() -> None:
     """Two ways to the same motion: harmonic balance on tables, and a march on the points themselves. They differ by
     tilt and shuttling in motion, which move a peak most where its mode tilts the gears.
     """
+    solid, per_dynamic = TABLES_LEAVE_OUT
     for row in found():
-        if row.peak is peak:
-            assert row.dynamic_factor == pytest.approx(row.dynamic_factor_by_table, abs=0.1 if peak else 0.01)
-            assert row.least_share == pytest.approx(row.least_share_by_table, abs=0.1 if peak else 0.02)
+        for loop, table in (
+            (row.dynamic_factor, row.dynamic_factor_by_table),
+            (row.least_share, row.least_share_by_table),
+        ):
+            assert abs(loop - table) < solid + per_dynamic * abs(table - 1.0)
 
 
 def test_gears_tilt_most_where_their_mesh_is_excited_most() -> None:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.phase_tables import phase_table
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_ports
@@ -19,16 +18,17 @@ from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.elastic_rig.wrench_rows import wrench_rows
 from dynamics.errors import DynamicsInputError
-from dynamics.kernels.looped_contact import FlankMotion, PhaseTable, Pressed, contact_work, press_phase
 from dynamics.mesh.law import in_parallel
-from dynamics.response.contact_loop import ContactLoop, MeshInLoop
-from dynamics.response.held_modes import ModesOverStep
 from dynamics.response.initial_state import wound_state
-from dynamics.response.looped_response import LoopedProblem, LoopedResponse, looped_response
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.loaded_mesh import fzg_c, influence_of
 from tests.builders.p2_gears import helical_pair, spur_pair
 from tests.builders.rig import prototype_laws
+from tests.contact_in_loop.integration import FlankMotion, PhaseTable, Pressed, contact_work, press_phase
+from tests.contact_in_loop.loop import ContactLoop, MeshInLoop
+from tests.contact_in_loop.modes import ModesOverStep
+from tests.contact_in_loop.phase_tables import phase_table
+from tests.contact_in_loop.response import LoopedProblem, LoopedResponse, looped_response
 
 Array = NDArray[np.float64]
 RPM = np.pi / 30.0
@@ -241,7 +241,7 @@ def test_a_steady_response_keeps_its_speed_and_torque() -> None:
 
 @pytest.mark.slow
 def test_a_steady_response_is_that_of_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("dynamics.response.looped_response.LONGEST_STEP", 2e-6)
+    monkeypatch.setattr("tests.contact_in_loop.response.LONGEST_STEP", 2e-6)
     assert looped_response(problem(), longest=0.2).dynamic_factor == pytest.approx(
         steady().dynamic_factor, abs=3e-3
     )

@@ -16,7 +16,6 @@ from rigdesign.results.teeth import (
     FlankRating,
     GaugeStress,
     LoadedContact,
-    LoopedContact,
     PairShare,
     ToothHistory,
 )
@@ -142,29 +141,6 @@ def pair_share_row(found: PairShare) -> dict[str, Any]:
         "face_mm": [1e3 * place for place in found.face],
         "line_load_N_mm": [1e-3 * load for load in found.line_load],
         "line_load_quasi_static_N_mm": [1e-3 * load for load in found.static_line_load],
-    }
-
-
-def contact_in_loop_row(found: LoopedContact) -> dict[str, Any]:
-    """K_V and least torque by both models, speed of the pinion."""
-    return {
-        "gearbox": found.mesh,
-        "stage": found.stage,
-        "peak": found.peak,
-        "pinion_speed_rpm": found.speed * RPM,
-        "torque_Nm": found.torque,
-        "dynamic_factor": found.dynamic_factor,
-        "dynamic_factor_by_table": found.dynamic_factor_by_table,
-        "shift": found.shift,
-        "least_share": found.least_share,
-        "least_share_by_table": found.least_share_by_table,
-        "other_flank_share": found.other_flank,
-        "without_contact_share": found.apart,
-        "tilt_urad": 1e6 * found.tilt,
-        "still_changing": found.still_changing,
-        "settled": found.settled,
-        "time_s": found.time,
-        "unconverged_steps": found.unconverged,
     }
 
 

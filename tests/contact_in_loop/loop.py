@@ -1,7 +1,7 @@
 """March of an elastic drivetrain with the tooth contact in the loop, in six degrees of freedom.
 
 In every step the contact of each mesh is solved from the influence numbers of its gears at the positions and tilts that
-the gears have (`dynamics.kernels.looped_contact`): both flanks, loss of contact, tip corners, the load over the face.
+the gears have (`tests.contact_in_loop.integration`): both flanks, loss of contact, tip corners, the load over the face.
 Its forces act in the directions in which its motion is seen (`dynamics.elastic_rig.wrench_rows`): each flank along its
 own normal, moments over the face, friction across the normals. It is the reference of the faster march on tables
 (`dynamics.response.time_march`), which has one approach per mesh on the flank that carries.
@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.phase_tables import PHASES, phase_table
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
-from dynamics.kernels.looped_contact import PhaseTable
-from dynamics.kernels.looped_march import (
+from dynamics.mesh.law import MeshLaw, back_deviations
+from dynamics.response.initial_state import WoundLoop
+from tests.contact_in_loop.integration import (
     N_RECORD,
     N_ROWS,
     R_ANGLE,
@@ -34,11 +34,11 @@ from dynamics.kernels.looped_march import (
     R_TILT,
     LoopedMesh,
     LoopedState,
+    PhaseTable,
     looped_march,
 )
-from dynamics.mesh.law import MeshLaw, back_deviations
-from dynamics.response.held_modes import ModesOverStep
-from dynamics.response.initial_state import WoundLoop
+from tests.contact_in_loop.modes import ModesOverStep
+from tests.contact_in_loop.phase_tables import PHASES, phase_table
 
 Array = NDArray[np.float64]
 

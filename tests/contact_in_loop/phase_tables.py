@@ -15,8 +15,8 @@ from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.local_approach import LocalModel
 from dynamics.contact.points import ContactPoints
 from dynamics.errors import DynamicsInputError
-from dynamics.kernels.looped_contact import PhaseTable
 from dynamics.mesh.tip_contact import path_reach
+from tests.contact_in_loop.integration import PhaseTable
 
 Array = NDArray[np.float64]
 

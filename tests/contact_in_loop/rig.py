@@ -1,9 +1,10 @@
-"""K_V of the meshes with the contact solved in the loop, at reference: what the contact tables leave out.
+"""K_V of the meshes of a solved rig with the contact solved in the loop: what the contact tables leave out.
 
 At every held stage, and where a mesh has its highest K_V over speed, the loop marches with the contact of each mesh
 solved from influence numbers in every step: tilt of the gears in motion, both flanks on their own normals, friction
-across them (`dynamics.response.contact_loop`). It is held against the periodic response on contact tables under the
-same loads: all teeth alike and nothing that alternates once a turn, so that both repeat in every mesh.
+across them (`tests.contact_in_loop.loop`). It is held against the periodic response on contact tables under the
+same loads: all teeth alike and nothing that alternates once a turn, so that both repeat in every mesh. On half as many
+positions over the face the helical gears of the strain gauge rig reach 1.189 in place of 1.079.
 """
 
 from collections.abc import Iterator
@@ -13,15 +14,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.elastic_rig.wrench_rows import wrench_rows
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.contact_loop import MeshInLoop
-from dynamics.response.looped_response import LoopedProblem, LoopedResponse, looped_response
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.base.parallel import BackgroundTasks
@@ -32,16 +29,41 @@ from rigdesign.coupling.time_run import drags_at
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import held_contact
 from rigdesign.records.loop_states import state_at
-from rigdesign.results.teeth import ContactInLoop, LoopedContact
-from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
+from tests.contact_in_loop.loop import MeshInLoop
+from tests.contact_in_loop.response import LoopedProblem, LoopedResponse, looped_response
 
 Array = NDArray[np.float64]
 
-FEWER_POSITIONS = 2
-"""Positions over the face are so many times further apart than those of the quasi-static contact."""
 SAME_SPEED = 0.01
 """Speeds that differ by less, over the higher, are one place [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopedContact:
+    """One mesh at a held stage or at the peak of its K_V over speed (stage: empty); all teeth alike, no loads once a
+    turn.
+
+    speed : of the pinion of the mesh [rad/s]; peak : whether it is the highest K_V of this mesh over speed
+    dynamic_factor, least_share : highest and least over mean torque, contact in the loop and by the contact table [-]
+    apart : share of the time without contact [-]; tilt : of the gears about their mean, peak to peak [rad]
+    settled : whether K_V no longer changed when the march ended, else about by ``still_changing``
+    unconverged : steps whose contacts were not solved to their tolerance
+    """
+
+    mesh: str
+    stage: str
+    peak: bool
+    speed: float
+    dynamic_factor: float
+    dynamic_factor_by_table: float
+    least_share: float
+    least_share_by_table: float
+    apart: float
+    tilt: float
+    still_changing: float
+    settled: bool
+    unconverged: int
 
 
 @dataclass(frozen=True)
@@ -56,12 +78,6 @@ class _Place:
     speed: float
     peaks: tuple[int, ...] = ()
 
-    @property
-    def name(self) -> str:
-        """In messages."""
-        where = f"stage {self.stage}" if self.stage else "the highest K_V over speed"
-        return f"{where}, {self.speed * RPM:.0f} rpm"
-
 
 @dataclass(frozen=True)
 class _Both:
@@ -71,19 +87,15 @@ class _Both:
     in_loop: LoopedResponse
 
 
-def contact_in_loop(rig: Rig, run: DynamicRun) -> ContactInLoop:
-    """Of every mesh at every place; empty for analytic teeth and shafts that only twist."""
-    if rig.mesh_stiffness != "influence_numbers" or rig.shaft_model == "torsional":
-        return ContactInLoop()
+def contact_in_loop(rig: Rig, run: DynamicRun) -> tuple[LoopedContact, ...]:
+    """Of every mesh at every place, of a rig with shafts that bend and teeth by influence numbers.
+
+    Raises DynamicsNotConverged where there is no response, DynamicsInputError where a mesh carries no torque.
+    """
     places = _places(rig, run)
     with BackgroundTasks([partial(_both, rig, place) for place in places]) as tasks:
         found = list(zip(places, tasks.results(), strict=True))
-    return ContactInLoop(
-        meshes=tuple(
-            row for place, both in found if isinstance(both, _Both) for row in _rows(rig, place, both)
-        ),
-        missing=tuple(f"{place.name}: {both}" for place, both in found if isinstance(both, str)),
-    )
+    return tuple(row for place, both in found for row in _rows(rig, place, both))
 
 
 def _places(rig: Rig, run: DynamicRun) -> list[_Place]:
@@ -139,13 +151,9 @@ def problem_in_loop(rig: Rig, held: PointResult, speed: float) -> tuple[CurvePoi
     )
 
 
-def _both(rig: Rig, place: _Place) -> _Both | str:
-    """Both responses, or why there are none."""
-    try:
-        by_table, problem = problem_in_loop(rig, place.held, place.speed)
-        return _Both(by_table, looped_response(problem))
-    except (DynamicsNotConverged, DynamicsInputError) as error:
-        return str(error)
+def _both(rig: Rig, place: _Place) -> _Both:
+    by_table, problem = problem_in_loop(rig, place.held, place.speed)
+    return _Both(by_table, looped_response(problem))
 
 
 def _meshes(rig: Rig, held: PointResult, laws: list[MeshLaw], flank: Array) -> list[MeshInLoop]:
@@ -157,14 +165,8 @@ def _meshes(rig: Rig, held: PointResult, laws: list[MeshLaw], flank: Array) -> l
                 f"mesh {rig.mesh_names[number]} carries no torque: there is no contact to solve"
             )
         force = float(flank[number]) * halves * contact.force
-        found.append(MeshInLoop(contact=_coarser(contact.mesh), law=law, force=force, halves=halves))
+        found.append(MeshInLoop(contact=contact.mesh, law=law, force=force, halves=halves))
     return found
-
-
-def _coarser(mesh: LoadedMesh) -> LoadedMesh:
-    """The contact on fewer positions over the face: K_V of the prototype moves by 1.4e-3."""
-    n = (len(mesh.grid.position) - 1) // FEWER_POSITIONS + 1
-    return replace(mesh, grid=FaceGrid.over(mesh.grid.face_width, n))
 
 
 def _rows(rig: Rig, place: _Place, both: _Both) -> Iterator[LoopedContact]:
@@ -176,18 +178,14 @@ def _rows(rig: Rig, place: _Place, both: _Both) -> Iterator[LoopedContact]:
             mesh=rig.mesh_labels[name],
             stage=place.stage,
             peak=mesh in place.peaks,
-            stated=(place.speed, place.held.point.torque),
             speed=rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, place.speed),
-            torque=float(loop.mean_force[mesh]) * place.held.last.models[mesh].pair.base_radii[0],
             dynamic_factor=float(loop.dynamic_factor[mesh]),
             dynamic_factor_by_table=float(table.dynamic_factor[mesh]),
             least_share=float(loop.least_share[mesh]),
             least_share_by_table=float(table.minimum[mesh] / table.mean[mesh]),
-            other_flank=float(loop.other_flank[mesh]),
             apart=float(loop.apart[mesh]),
             tilt=float(loop.tilt[mesh]),
             still_changing=float(loop.change[mesh]),
             settled=loop.settled,
-            time=loop.time,
             unconverged=loop.unconverged,
         )

@@ -1,8 +1,8 @@
 """Modes of a drivetrain over one step, under forces on some of its rows that are linear in it.
 
 The modes of the linear part are taken over the step exactly; those above a cutoff follow their forces at once and with
-their delay (`dynamics.kernels.looped_march`). The straight line is the hold here: the speeds at the ends of a step are
-then exactly those of its forces, so that their power closes the books of the contact.
+their delay (`tests.contact_in_loop.integration`). The straight line is the hold here: the speeds at the ends of a step
+are then exactly those of its forces, so that their power closes the books of the contact.
 """
 
 import numpy as np
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import ModalForm
-from dynamics.kernels.looped_march import HeldModes
 from dynamics.response.step_hold import phi, straight_line
+from tests.contact_in_loop.integration import HeldModes
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
