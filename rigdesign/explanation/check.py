@@ -12,7 +12,6 @@ from rigdesign.checks.rules import Rule, not_applicable
 from rigdesign.explanation.finished import FinishedCheck
 from rigdesign.explanation.keys import entry_at, starred
 from rigdesign.explanation.rules import declared_rules, depends_on
-from rigdesign.explanation.stations import entering
 from rigdesign.results.check import Check
 
 
@@ -28,7 +27,7 @@ class Limit:
 class Input:
     """An input that a check depends on.
 
-    key : its path with ``*`` for names; enters : module where it enters the flow
+    key : its path with ``*`` for names
     influences : groups it moves the check by; empty for an input that moves every check, or its own limit
     assumed : the case assumes it; range : its plausible ends
     shift : how far the ends move the margin, in the unit of the check; None where no ranges were evaluated
@@ -37,7 +36,6 @@ class Input:
 
     path: str
     key: str
-    enters: str
     value: str
     influences: tuple[str, ...]
     assumed: bool
@@ -205,11 +203,9 @@ def _input(
     known = set(influences_of(case, path) or ()) & set(family.moved_by)
     entry = entry_at(path)
     assert entry is not None, path
-    key = starred(entry.path)
     return Input(
         path=path,
-        key=key,
-        enters=entering(key)[0].module,
+        key=starred(entry.path),
         value=value,
         influences=tuple(sorted(known)),
         assumed=mark is not None and mark.assumed is not None,

@@ -1,4 +1,4 @@
-"""A key of a case explained: what it is, its value and where that comes from, where it enters, what it moves."""
+"""A key of a case explained: what it is, its value and where that comes from, what it moves."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,8 +14,6 @@ from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
 from rigdesign.explanation.rules import declared_checks, depends_on
-from rigdesign.explanation.station import Station
-from rigdesign.explanation.stations import entering
 
 BasisKind = Literal["measured", "assumed", "source", "confirmed", "stated", "default", "left out"]
 """Where a value comes from: a measurement, an assumption, a printed source, the case alone, the tool."""
@@ -47,7 +45,6 @@ class PathExplanation:
     key : what the schema says of it
     values : of every place the path stands for
     keys : of a table, its keys with their values
-    enters : where it enters the flow; empty for a table
     influences : groups of inputs it belongs to; None if it moves every check
     checks : ids of the checks that depend on it
     all_checks : how many checks the case has
@@ -59,7 +56,6 @@ class PathExplanation:
     unusual: tuple[str, ...]
     """Which of them are outside of their usual range, in words."""
     keys: tuple[StatedValue, ...]
-    enters: tuple[Station, ...]
     influences: tuple[str, ...] | None
     checks: tuple[str, ...]
     all_checks: int
@@ -108,7 +104,6 @@ def explain_path(case: Case, path: str) -> PathExplanation:
         values=() if entry.table else tuple(_value(case, one, entry) for one in places),
         unusual=tuple(text for one, text in unusual_inputs(case).items() if one in places),
         keys=below,
-        enters=() if entry.table else entering(starred(entry.path)),
         influences=influences,
         checks=moved,
         all_checks=len(checks),

@@ -25,8 +25,6 @@ from rigdesign.report.numbers import (
 
 HEAD = 11
 """Columns of the word before an answer."""
-MODULE = 27
-"""Columns of the module where inputs enter."""
 MOST_IDS = 24
 """Ids of checks that are listed; beyond that those that are not are fewer to read."""
 MOST_INPUTS = 12
@@ -101,7 +99,7 @@ def print_built_in(found: BuiltIn) -> None:
 
 
 def print_path(found: PathExplanation) -> None:
-    """What a key is, its value and where that comes from, where it enters, which checks depend on it."""
+    """What a key is, its value and where that comes from, which checks depend on it."""
     console = new_console(wrap=True)
     console.print(Text(found.asked, "bold"))
     _answer(console, "is", _plain(found.key.description))
@@ -117,8 +115,6 @@ def print_path(found: PathExplanation) -> None:
         _answer(console, "value", f"{place}{_value(value)}")
     for text in found.unusual:
         _answer(console, "unusual", text)
-    for station in found.enters:
-        _answer(console, "enters", f"{station.module}: {station.role}")
     if found.influences:
         _answer(console, "moves", ", ".join(found.influences))
     _answer(console, "checks", _checks(found.checks, found.all_checks))
@@ -239,13 +235,11 @@ def _print_ranking(console: Console, found: CheckExplanation) -> None:
         _answer(console, "", f"{len(moving) - MOST_INPUTS} more with a range move it less; --json lists them")
     if not moving:
         _answer(console, "moved by", "no input over its range")
-    _answer(
-        console, "not ranked", "inputs without a range; without --results they are listed by where they enter"
-    )
+    _answer(console, "not ranked", "inputs without a range; without --results they are listed by table")
 
 
 def _print_inputs(console: Console, found: CheckExplanation, case: Path) -> None:
-    """The inputs by the module where they enter, the assumed ones first; none is said to matter more."""
+    """The inputs by their tables, the assumed ones first; none is said to matter more."""
     _answer(
         console,
         "ranking",
@@ -257,23 +251,20 @@ def _print_inputs(console: Console, found: CheckExplanation, case: Path) -> None
     ):
         _answer(console, "", command)
     for title, assumed in (("assumed inputs", True), ("other inputs", False)):
-        modules: dict[str, list[str]] = {}
-        for one in found.inputs:
-            if one.assumed is assumed:
-                modules.setdefault(one.enters, []).append(one.key)
-        if modules:
-            console.print(Text(f"{title}, by where they enter; * stands for any name", "bold"))
-        for module, keys in modules.items():
-            hanging(console, Text(f"  {module:{MODULE}s}"), _by_table(keys))
+        tables = _by_table(one.key for one in found.inputs if one.assumed is assumed)
+        if tables:
+            console.print(Text(f"{title}; * stands for any name", "bold"))
+        for table, names in tables.items():
+            hanging(console, Text(f"  {table}: "), ", ".join(names))
 
 
-def _by_table(keys: Iterable[str]) -> str:
-    """Keys, each once, after the table that they share: ``gearboxes.*.oil: flow, inlet_temperature``."""
+def _by_table(keys: Iterable[str]) -> dict[str, list[str]]:
+    """Names of keys, each once, by the table that they share."""
     tables: dict[str, list[str]] = {}
     for key in dict.fromkeys(keys):
         table, _, name = key.rpartition(".")
         tables.setdefault(table, []).append(name)
-    return "; ".join(f"{table}: {', '.join(names)}" for table, names in tables.items())
+    return tables
 
 
 def _table(first: str, *further: str) -> Table:
