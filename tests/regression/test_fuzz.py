@@ -24,6 +24,7 @@ from rigdesign.results.check import status
 from rigdesign.run.main import run_case
 from tests.builders.fuzz import broken_texts, shortened
 from tests.builders.mutant import mutations
+from tests.builders.twisting import OWN_EVERY, twisting_case
 
 LOADS, MANY_LOADS = 300, 10_000
 LOAD_TIME, RUN_TIME = 5.0, 300.0
@@ -109,13 +110,14 @@ class Run:
     seconds: float
 
 
-def run_outcome(name: str, path: str, value: object, out: Path) -> Run:
-    """Load, run and write one changed case as `rigdesign check --out` does."""
+def run_outcome(name: str, path: str, value: object, out: Path, *, own: bool) -> Run:
+    """Load, run and write one changed case as `rigdesign check --out` does; own : its own shafts and teeth."""
     started = time.perf_counter()
     where = (name, path, value)
     try:
         with in_time(RUN_TIME):
-            result = run_case(shortened(name).with_value(path, value), fidelity="quick")
+            base = shortened(name) if own else twisting_case(shortened(name))
+            result = run_case(base.with_value(path, value), fidelity="quick")
             write_results(result, out)
     except RigdesignError as error:
         assert len(str(error).split()) > 4, where
@@ -148,7 +150,8 @@ def runs(count: int, seed: int, tmp_path: Path) -> list[Run]:
     found = []
     for name in NAMES:
         for number, (path, value) in enumerate(islice(mutations(shortened(name), seed), count)):
-            found.append(run_outcome(name, path, value, tmp_path / f"{name}_{number}"))
+            own = number % OWN_EVERY == 0
+            found.append(run_outcome(name, path, value, tmp_path / f"{name}_{number}", own=own))
     return found
 
 
