@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

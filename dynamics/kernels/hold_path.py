@@ -69,7 +69,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

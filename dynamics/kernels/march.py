@@ -79,7 +79,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 
 

@@ -48,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -68,10 +68,11 @@ class MeshStates(NamedTuple):
 @inlined
 def _path_slopes(
     table: Array, flank: Flank, law: Array, pressing: Pressing
-) -> tuple[float, float, float, float]:
-    """Return (da_1/ds, da_2/ds, dP/ds, elastic energy) of one flank at fixed reach, rate and speeds."""
+) -> tuple[float, float, float, float, float]:
+    """Return (da_1/ds, da_2/ds, dP/ds, elastic energy) of one flank at fixed reach, rate and speeds, and what of a_1 is
+    friction."""
     sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
-    slope_1, slope_2, slope, energy = 0.0, 0.0, 0.0, 0.0
+    slope_1, slope_2, slope, energy, rubbed = 0.0, 0.0, 0.0, 0.0, 0.0
     f = flank.place
     damp_time, per_depth, derivative = law[DAMP_TIME], law[PER_DEPTH], law[DERIVATIVE]
     path_speed = law[CLOSING] * sign * law[R1] * omega_1
@@ -108,6 +109,7 @@ def _path_slopes(
         df -= k * grown * damp_time * gap_curvature * path_speed
         df = df if touches else 0.0
         energy += 0.5 * k * depth * depth
+        rubbed += force * mu_1 * direction * rho_1
         de = stiffness_slope * depth - k * gap_slope
         damped, damped_s = force - k * depth, df - de
         bent = (0.5 * stiffness_curvature * depth - stiffness_slope * gap_slope) * depth
@@ -116,7 +118,7 @@ def _path_slopes(
         )
         slope_2 += df * m_2 + force * m_2_s
         slope += de
-    return slope_1, slope_2, slope, energy
+    return slope_1, slope_2, slope, energy, rubbed
 
 
 class MeshState(NamedTuple):
@@ -155,19 +157,19 @@ def _flank_at(meshes: PackedMeshes, state: MeshState, side: int, contacts: Array
 
 
 def mesh_reactions(meshes: PackedMeshes, states: MeshStates, out: Array) -> None:
-    """Evaluate the first mesh at many states; ``out`` (n, 14) in the order of ``MeshReaction``."""
+    """Evaluate the first mesh at many states; ``out`` (n, 17) in the order of ``MeshReaction``."""
     contacts = np.zeros(2 * int(meshes.counts[0, MOST]) * N_PHASE)
     _mesh_reactions(meshes, states, contacts, np.empty((2, 0), np.int64), out)
 
 
 @inlined
 def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pressing, out: Array) -> float:
-    """Add what one flank of the first mesh answers to the row ``out`` (14,); return its elastic force per path."""
+    """Add what one flank of the first mesh answers to the row ``out`` (17,); return its elastic force per path."""
     sign = pressing.sign
     r_1, r_2 = law[R1], law[R2]
     sums = press_flank(table, flank, law, 0, pressing, 0.0)
     friction_power, damping_power, _ = flank_powers(table, flank, law, 0, pressing)
-    slope_1, slope_2, slope, energy = _path_slopes(table, flank, law, pressing)
+    slope_1, slope_2, slope, energy, rubbed = _path_slopes(table, flank, law, pressing)
     out[0] -= sign * r_1 * sums.a_1
     out[1] += sign * r_2 * sums.a_2
     out[2 + side] += sums.force
@@ -180,6 +182,9 @@ def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pres
     out[10] += friction_power
     out[11] += damping_power
     out[12] += energy
+    out[14] -= sign * r_1 * (sums.a_1 - sums.force - rubbed)
+    out[15] += sums.force_x
+    out[16] += sums.force_v
     return slope
 
 
@@ -213,6 +218,7 @@ def _mesh_reactions(
         out[n, 9] += out[n, 5] * turned
         out[n, 4] *= share
         out[n, 5] *= share
+        out[n, 15] *= share
         if law[BODY] > 0.0:
             out[n, 12] += 0.5 * (reach[n] - teeth) ** 2 / law[BODY]
         out[n, 13] = teeth

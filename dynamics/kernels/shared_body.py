@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources 14f65d14
+# compiled from sources 13bed2b9
 Array = NDArray[np.float64]
 
 MOST_SETS = 64

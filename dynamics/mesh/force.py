@@ -48,6 +48,12 @@ class MeshReaction(NamedTuple):
     """Elastic energy of the tooth contacts and of the shared bodies [J]."""
     tooth_approach: Array
     """Approach that the tooth pairs see: that of the gears less what the shared bodies give [m]."""
+    path_torque: Array
+    """Part of torque_1 from the change of gaps and stiffness over the path [N m]."""
+    force_per_approach: Array
+    """d (force_front - force_back) / d approach [N/m]."""
+    force_per_rate: Array
+    """The same over the rate of the approach [N s/m]."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,8 +1,9 @@
 """Equations of a harmonic balance at one speed: what a periodic state leaves of them.
 
-The linear drivetrain enters exactly as receptance at the mesh bodies, harmonic by harmonic. The meshes, with contact
-loss, friction, damping and the phase from the true pinion angle, are evaluated over time (alternating frequency and
-time: Cameron & Griffin, J. Appl. Mech. 56 (1989) 149).
+The linear drivetrain enters exactly as receptance at the mesh bodies, harmonic by harmonic. Friction and the change of
+gaps over the path act on rows of their own beside the ports (`MeshWrench`), across the line of action. The meshes, with
+contact loss, friction, damping and the phase from the true pinion angle, are evaluated over time (alternating frequency
+and time: Cameron & Griffin, J. Appl. Mech. 56 (1989) 149).
 """
 
 from collections.abc import Mapping
@@ -12,8 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.static_loop import PortModel
-from dynamics.mesh.force import evaluate_mesh
-from dynamics.response.harmonic_newton import HarmonicNewton, MeshHarmonics, mesh_sides, moved_by
+from dynamics.mesh.force import MeshReaction, evaluate_mesh
+from dynamics.response.harmonic_newton import (
+    HarmonicNewton,
+    MeshHarmonics,
+    mesh_inputs,
+    mesh_sides,
+    moved_by,
+)
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 
 Array = NDArray[np.float64]
@@ -67,7 +74,7 @@ def state_of(solution: HarmonicSolution) -> HarmonicState:
 class HarmonicEquations:
     """Equations at one speed on one grid.
 
-    base : lowest frequency [rad/s]; receptance : (top, n_bodies, n_bodies) [rad/(N m)]
+    base : lowest frequency [rad/s]; receptance : (top, n_bodies, n_inputs) [rad/(N m)], inputs of `mesh_inputs`
     newton : solves the linearised equations
     """
 
@@ -85,7 +92,12 @@ class HarmonicEquations:
         self.base = speed * 2.0 * np.pi / (grid.cell_angle * grid.cells)
         order = np.arange(1, grid.top + 1)
         bodies = model.dofs[: model.n_bodies]
-        self.receptance = problem.form.receptance(np.asarray(self.base * order, float), bodies)
+        omega = np.asarray(self.base * order, float)
+        self.receptance = problem.form.receptance(omega, bodies)
+        if len(model.beside):
+            beside = problem.form.receptance_to(omega, bodies, model.beside)
+            self.receptance = np.concatenate([self.receptance, beside], axis=2)
+        self._inputs = mesh_inputs(model)
         self.newton = HarmonicNewton(problem, grid, self.base, self.receptance)
         self._drag = model.drag(speed, drag_torques)
         self._driven = problem.driven(grid, self.base)[:, 1:]
@@ -95,11 +107,15 @@ class HarmonicEquations:
         """What a state leaves of the equations, and its mesh torques."""
         model, load = self.problem.model, self.problem.load
         reactions = self._evaluate(state.ports())
-        torque = reactions.torque if self.excitation is None else reactions.torque + self.excitation
+        torque = reactions.torque
+        if self.excitation is not None:
+            torque = torque.copy()
+            torque[: model.n_bodies] += self.excitation
         miss = moved_by(self.receptance, torque[:, 1:]) - state.moving
         if self._driven.any():
             miss += self._driven * np.exp(1j * self._lead * state.rest[model.pinions[0]])
-        mean = np.append(torque[:, 0].real, 0.0)
+        mean = np.append(torque[: model.n_bodies, 0].real, 0.0)
+        mean += model.beside_at_rest @ torque[model.n_bodies :, 0].real
         balance = model.stiffness @ state.rest - mean - model.twist * state.twist - self._drag
         balance[-1] -= state.drive
         asked = 0.0
@@ -134,25 +150,40 @@ class HarmonicEquations:
         count = grid.count
         drive_angle = np.arange(count, dtype=np.float64) * (grid.cell_angle * grid.cells / count)
         motion, rate = in_time(ports, self.base, count)
-        torque = np.zeros((model.n_bodies, count))
-        tangents = np.empty((2, model.n_meshes, 2, grid.samples))
+        torque = np.zeros((self.receptance.shape[2], count))
+        tangents = np.empty((2, *self._inputs.shape, grid.samples))
         transmitted = np.empty((model.n_meshes, count))
         for m, packed in enumerate(model.packed):
             moving = motion_of_mesh(model, m, self.speed, drive_angle, motion, rate)
             reaction = evaluate_mesh(packed, *moving)
-            torque[model.pinions[m]] += reaction.torque_1
-            torque[model.wheels[m]] += reaction.torque_2
             transmitted[m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
-            for row, value in (
-                ((0, m, 0), reaction.torque_1_per_approach),
-                ((0, m, 1), reaction.torque_2_per_approach),
-                ((1, m, 0), reaction.torque_1_per_rate),
-                ((1, m, 1), reaction.torque_2_per_rate),
-            ):
-                tangents[row] = value.reshape(grid.cells, grid.samples).mean(axis=0)
+            acting = input_torques(model, m, reaction)
+            for k, (at, (value, *slopes)) in enumerate(zip(self._inputs[m], acting)):
+                torque[at] += value
+                for kind, slope in enumerate(slopes):
+                    tangents[kind, m, k] = slope.reshape(grid.cells, grid.samples).mean(axis=0)
         harmonics = np.fft.rfft(torque, axis=1)[:, : grid.top + 1] / count
         spectra = np.fft.fft(tangents, axis=3) / grid.samples
         return MeshHarmonics(harmonics, spectra[0], spectra[1], transmitted)
+
+
+def input_torques(model: PortModel, m: int, reaction: MeshReaction) -> tuple[tuple[Array, Array, Array], ...]:
+    """Torque on each input of mesh ``m`` (`mesh_inputs`), and what it changes by per approach and per its rate, (n,)
+    each; of friction without the change of the path torque."""
+    ports = (
+        (reaction.torque_1, reaction.torque_1_per_approach, reaction.torque_1_per_rate),
+        (reaction.torque_2, reaction.torque_2_per_approach, reaction.torque_2_per_rate),
+    )
+    if not len(model.beside):
+        return ports
+    normal = reaction.force_front - reaction.force_back, reaction.force_per_approach, reaction.force_per_rate
+    beside = []
+    for port, radius, share, sign in zip(ports, model.base_radii[m], model.path_shares[m], (1.0, -1.0)):
+        value, per_approach, per_rate = (
+            own + sign * radius * force for own, force in zip(port, normal, strict=True)
+        )
+        beside.append((value + share * reaction.path_torque, per_approach, per_rate))
+    return (*ports, *beside)
 
 
 def in_time(ports: Complex, base: float, count: int) -> tuple[Array, Array]:

@@ -19,8 +19,8 @@ Complex = NDArray[np.complex128]
 class MeshHarmonics:
     """Mesh torques over time and their cell-averaged tangents, as harmonics.
 
-    torque : (n_bodies, top + 1) on each gear body, of all its meshes
-    per_approach, per_rate : (n_meshes, 2, samples) of the torques on pinion and wheel, two-sided over one cell
+    torque : (n_inputs, top + 1) on each gear body, of all its meshes, then of friction beside the ports (`mesh_inputs`)
+    per_approach, per_rate : (n_meshes, k, samples) of the torques on the inputs of each mesh, two-sided over one cell
     transmitted : (n_meshes, count) torque at the pinion over the period [N m]
     """
 
@@ -35,8 +35,15 @@ def mesh_sides(model: PortModel) -> NDArray[np.int64]:
     return np.stack([model.pinions, model.wheels], axis=1)
 
 
+def mesh_inputs(model: PortModel) -> NDArray[np.int64]:
+    """(n_meshes, k) inputs of each mesh: ports of pinion and wheel and, where gears do not only rotate, its friction
+    beside them; these are counted after the bodies."""
+    beside = model.n_bodies + np.arange(len(model.beside)).reshape(model.n_meshes, -1)
+    return np.hstack([mesh_sides(model), beside])
+
+
 def moved_by(receptance: Complex, torque: Complex) -> Complex:
-    """Harmonics (n_bodies, top) of motion under those of torque, receptance (top, n_bodies, n_bodies)."""
+    """Harmonics (n_bodies, top) of motion under those of torque, receptance (top, n_bodies, n_inputs)."""
     return np.asarray((receptance @ torque.T[:, :, None])[:, :, 0].T)
 
 
@@ -48,10 +55,10 @@ class HarmonicNewton:
         self.receptance = receptance
         self._factors: _Paired | None = None
         self._known: Complex | None = None
-        self.sides = mesh_sides(problem.model)
+        self.inputs = mesh_inputs(problem.model)
         approach = problem.model.approach[:, :-1]
         self.gain = approach @ receptance
-        """(top, n_meshes, n_bodies) approach per port torque."""
+        """(top, n_meshes, n_inputs) approach per torque."""
 
     def step(
         self, reactions: MeshHarmonics, miss: Complex, balance: Array, asked: float
@@ -74,14 +81,14 @@ class HarmonicNewton:
         approach_miss = self.problem.model.approach[:, :-1] @ miss
         change, rest, drive, twist = self._meshing(reactions, approach_miss, balance, asked)
         grid = self.grid
-        torque = np.zeros(miss.shape, complex)
+        torque = np.zeros((self.receptance.shape[2], grid.top), complex)
         torque[:, grid.cells - 1 :: grid.cells] = change
         for residue in range(1, grid.cells // 2 + 1):
             self._sideband(reactions, approach_miss, residue, torque)
         return miss + moved_by(self.receptance, torque), rest, drive, twist
 
     def _tangent(self, reactions: MeshHarmonics, order: NDArray[np.int64], omega: Array) -> Complex:
-        """(n_meshes, 2, n, n): harmonics of pinion and wheel torque per harmonics of approach."""
+        """(n_meshes, k, n, n): harmonics of the torques on its inputs per harmonics of approach."""
         n = order.size
         lags = np.arange(1 - n, n)
         stiff, damp = (
@@ -91,7 +98,7 @@ class HarmonicNewton:
         return np.asarray(stiff + damp * (1j * omega))
 
     def _gain_at(self, index: NDArray[np.int64]) -> Complex:
-        """(n_index, n_meshes, n_bodies) approach per torque at signed harmonics, zero at the mean."""
+        """(n_index, n_meshes, n_inputs) approach per torque at signed harmonics, zero at the mean."""
         gain = self.gain[np.maximum(np.abs(index) - 1, 0)]
         gain = np.where((index < 0)[:, None, None], gain.conj(), gain)
         gain[index == 0] = 0.0
@@ -102,16 +109,15 @@ class HarmonicNewton:
         n_meshes, n = self.problem.model.n_meshes, tangent.shape[-1]
         block = np.eye(n_meshes * n, dtype=complex)
         for row in range(n_meshes):
-            for mesh, (pinion, wheel) in enumerate(self.sides):
-                by_pinion, by_wheel = gain[:, row, pinion, None], gain[:, row, wheel, None]
-                coupled = by_pinion * tangent[mesh, 0] + by_wheel * tangent[mesh, 1]
+            for mesh, inputs in enumerate(self.inputs):
+                coupled = sum(gain[:, row, at, None] * own for at, own in zip(inputs, tangent[mesh]))
                 block[row * n : (row + 1) * n, mesh * n : (mesh + 1) * n] -= coupled
         return block
 
-    def _on_bodies(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
-        """Torque on every gear body (n_bodies, n) from the change of approach (n_meshes, n)."""
-        torque = np.zeros((self.problem.model.n_bodies, approach.shape[1]), complex)
-        np.add.at(torque, self.sides, np.einsum("mpkl,ml->mpk", tangent, approach))
+    def _torques(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
+        """Torque on every input (n_inputs, n) from the change of approach (n_meshes, n)."""
+        torque = np.zeros((self.receptance.shape[2], approach.shape[1]), complex)
+        np.add.at(torque, self.inputs, np.einsum("mpkl,ml->mpk", tangent, approach))
         return torque
 
     def _meshing(
@@ -137,7 +143,7 @@ class HarmonicNewton:
             right[rest + size + 1] = asked
         solution = self._factors.solve(right)
         approach = solution[:rest].reshape(n_meshes, n)
-        torque = self._on_bodies(tangent, approach)
+        torque = self._torques(tangent, approach)
         tail = solution[rest:].real
         return torque[:, mean + 1 :], tail[:size], float(tail[size]), float(tail[size + 1])
 
@@ -159,8 +165,10 @@ class HarmonicNewton:
         # balance of mean torques
         matrix[rest : rest + size, rest : rest + size] = model.stiffness
         for m in range(n_meshes):
-            for side, body in enumerate(self.sides[m]):
-                matrix[rest + body, m * n : (m + 1) * n] -= tangent[m, side, mean]
+            for own, at in zip(tangent[m], self.inputs[m]):
+                beside = at - model.n_bodies
+                load = np.eye(size)[at] if beside < 0 else model.beside_at_rest[:, beside]
+                matrix[rest : rest + size, m * n : (m + 1) * n] -= np.outer(load, own[mean])
         matrix[rest + size - 1, rest + size] = -1.0
         matrix[rest : rest + size, rest + size + 1] = -model.twist
         # reference angle stays, torque of the control mesh or twist is met
@@ -173,7 +181,7 @@ class HarmonicNewton:
         return tangent, matrix
 
     def _sideband(self, reactions: MeshHarmonics, miss: Complex, residue: int, torque: Complex) -> None:
-        """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_bodies, top)."""
+        """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_inputs, top)."""
         model, grid = self.problem.model, self.grid
         j = np.arange(-grid.harmonics, grid.harmonics)
         index = residue + grid.cells * j
@@ -183,7 +191,7 @@ class HarmonicNewton:
         known = miss[:, np.abs(index) - 1]
         known = np.where(index < 0, known.conj(), known)
         approach = np.linalg.solve(block, known.ravel()).reshape(model.n_meshes, j.size)
-        change = self._on_bodies(tangent, approach)
+        change = self._torques(tangent, approach)
         positive = index > 0
         torque[:, index[positive] - 1] = change[:, positive]
         torque[:, -index[~positive] - 1] = change[:, ~positive].conj()

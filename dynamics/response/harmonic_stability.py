@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.response.harmonic_equations import HarmonicEquations, state_of
-from dynamics.response.harmonic_newton import MeshHarmonics, mesh_sides
+from dynamics.response.harmonic_newton import MeshHarmonics, mesh_inputs
 from dynamics.response.harmonic_problem import HarmonicSolution
 
 Array = NDArray[np.float64]
@@ -78,11 +78,11 @@ class _Line:
         self.order = np.arange(-reach, reach + 1)
         lag = np.subtract.outer(self.order, self.order)
         self.stiff, self.damp = reactions.per_approach[:, :, lag], reactions.per_rate[:, :, lag]
-        bodies, sides = model.dofs[: model.n_bodies], mesh_sides(model)
+        bodies, inputs = model.dofs[: model.n_bodies], mesh_inputs(model)
         out = model.approach[:, :-1] @ form.velocity_shapes[bodies]
-        into = form.loads[:, bodies][:, sides]
+        into = np.hstack([form.loads[:, bodies], form.loads @ model.beside.T])[:, inputs]
         self.poles = form.poles
-        self.shape = (model.n_meshes, *sides.shape)
+        self.shape = (model.n_meshes, *inputs.shape)
         self.residues = np.einsum("ai,imp->ampi", out, into).reshape(-1, form.poles.size)
 
     def at(self, share: Array) -> Complex:

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.periodic_load import harmonic_loads, within_period
-from dynamics.drivetrain.static_loop import line_ratios
+from dynamics.drivetrain.static_loop import PortModel, line_ratios, port_model
 from dynamics.drivetrain.twist_rows import TwistRows
-from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
+from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_equations import input_torques
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.waveform import Waveform
 
@@ -29,10 +30,13 @@ class SectionTorques:
 
     system: LinearSystem
     rows: TwistRows
-    laws: tuple[MeshLaw, ...]
-    packed: tuple[PackedMeshes, ...]
+    model: PortModel
     ratios: Array
     """(n,) speed of each freedom per speed of the drive freedom."""
+    loads: Array
+    """(m, n) loads on the freedoms of unit torques of the meshes: on pinion and wheel of each, then beside them."""
+    into: Complex
+    """(n_states, m) the same on the modes."""
     seen: Complex
     """(r, n_states) twist rate of each row per modal state."""
     flexibility: Array
@@ -48,13 +52,12 @@ class SectionTorques:
         base = 2.0 * np.pi / (count * float(wave.time[1] - wave.time[0]))
         loads = self._mesh_loads(wave)
         spectrum = np.fft.rfft(loads, axis=1) / count
-        cells = round(self.laws[0].teeth_1 * point.speed / base)  # mesh periods in the period
+        cells = round(self.model.laws[0].teeth_1 * point.speed / base)  # mesh periods in the period
         top = min(count // 4, cells * (point.harmonics.shape[1] - 1))
         drive_speed = point.speed / float(self.ratios[self.system.mesh_ports[0, 0]])
         omega = base * np.arange(1, top + 1)
         form = self.system.form
-        ports = self.system.mesh_ports.ravel()
-        states = form.loads[:, ports] @ spectrum[:, 1 : top + 1]
+        states = self.into @ spectrum[:, 1 : top + 1]
         states += self._driven(point, base, drive_speed, top)
         states /= 1j * omega - form.poles[:, None]
         rate = self.seen @ states
@@ -65,13 +68,14 @@ class SectionTorques:
         return np.asarray(np.fft.irfft(coefficients * count, count, axis=1))
 
     def _mesh_loads(self, wave: Waveform) -> Array:
-        """Torque (2 n_meshes, count) on the bodies of every mesh, pinion first."""
+        """Torques (m, count) as of ``loads``."""
         found = []
-        for m, packed in enumerate(self.packed):
+        for m, packed in enumerate(self.model.packed):
             motion = wave.angle[m], wave.approach[m], wave.omega_1[m], wave.omega_2[m]
-            reaction = evaluate_mesh(packed, *motion)
-            found += [reaction.torque_1, reaction.torque_2]
-        return np.array(found)
+            acting = input_torques(self.model, m, evaluate_mesh(packed, *motion))
+            found.append([torque for torque, *_ in acting])
+        ports, beside = np.split(np.array(found), [2], axis=1)
+        return np.vstack([ports.reshape(-1, wave.time.size), beside.reshape(-1, wave.time.size)])
 
     def _driven(self, point: CurvePoint, base: float, drive_speed: float, top: int) -> Complex:
         """Modal loads (n_states, top) of loads that alternate with a shaft, in phase with the pinion.
@@ -88,7 +92,9 @@ class SectionTorques:
         lead = float(np.mean(wave.angle[0] / pinion - drive_speed * (wave.time - wave.time[0])))
         turns = drive_speed / base
         asked = (
-            turns / point.motion.periods if point.motion.periods else 1.0 / (self.laws[0].teeth_1 * pinion)
+            turns / point.motion.periods
+            if point.motion.periods
+            else 1.0 / (self.model.laws[0].teeth_1 * pinion)
         )
         held = within_period(self.system.periodic_loads, self.ratios, asked)
         for harmonic, load in harmonic_loads(held, self.ratios, turns, drive_speed).items():
@@ -102,7 +108,7 @@ class SectionTorques:
     ) -> Array:
         system = self.system
         load = system.twist_load * point.twist - system.damping @ self.ratios * drive_speed
-        np.add.at(load, system.mesh_ports.ravel(), mesh)
+        load += self.loads.T @ mesh
         load[system.drive_dof] += point.drive_torque
         for name, torque in drag_torques.items():
             load = load + system.drag_loads[name] * torque
@@ -114,12 +120,15 @@ def section_torques(system: LinearSystem, laws: Sequence[MeshLaw], rows: TwistRo
     """Torques of the sections of a system with the mesh laws of its periodic states."""
     scale = float(np.max(np.abs(np.diag(system.stiffness))))
     held = system.stiffness + scale * system.rigid @ system.rigid.T
+    model = port_model(system, laws)
+    loads = np.vstack([np.eye(len(held))[system.mesh_ports.ravel()], model.beside])
     return SectionTorques(
         system=system,
         rows=rows,
-        laws=tuple(laws),
-        packed=tuple(pack_meshes([law]) for law in laws),
+        model=model,
         ratios=line_ratios(system, laws),
+        loads=loads,
+        into=system.form.loads @ loads.T,
         seen=rows.rows @ system.form.velocity_shapes,
         flexibility=np.asarray(np.linalg.solve(held.T, rows.rows.T).T, float),
     )
