@@ -135,10 +135,9 @@ class DeviationResponse:
             here = changes[residue]
             torque = here.torque[:, reach + h].copy()
             if residue == 0.0:
-                torque[: loop.bodies.size] += loop.torque[:, h]
-            whole: Complex = np.zeros(len(loop.system.inertia), np.complex128)
-            whole[loop.bodies] = torque[: loop.bodies.size]
-            for row, amplitude in zip(here.rows, torque[loop.bodies.size :]):
+                torque[: loop.n_inputs] += loop.torque[:, h]
+            whole = loop.loads(torque[: loop.n_inputs])
+            for row, amplitude in zip(here.rows, torque[loop.n_inputs :]):
                 whole += amplitude * row
             sides = 2.0 if order else 1.0
             found.append(OrderLoads(order=order, omega=order * loop.speed, torque=sides * whole))
@@ -152,8 +151,8 @@ class DeviationResponse:
         waves = [(torque, self._wave(residue, number, torque)) for torque in torques]
         waves = [(torque, wave) for torque, wave in waves if np.any(wave)]
         rows = np.array([torque.load for torque, _ in waves]).reshape(-1, len(self.loop.system.inertia))
-        bodies = np.zeros((self.loop.bodies.size, number.size), complex)
-        given = np.vstack([bodies, *(wave for _, wave in waves)])
+        inputs = np.zeros((self.loop.n_inputs, number.size), complex)
+        given = np.vstack([inputs, *(wave for _, wave in waves)])
         if self.steps:
             forces = sum(
                 (cycle.of_class(residue, number) for cycle in self.cycles), start=self.forcing.none(reach)
@@ -183,7 +182,7 @@ class DeviationResponse:
 class _Class(NamedTuple):
     """Changes of the loads of one class, two-sided.
 
-    torque : (n_bodies + k, 2 reach + 1) on the bodies, then of k further loads; rows : (k, n) of these
+    torque : (n_inputs + k, 2 reach + 1) on the inputs, then of k further loads; rows : (k, n) of these
     """
 
     torque: Complex

@@ -17,9 +17,12 @@ from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.mesh.force import evaluate_mesh, pack_meshes
+from dynamics.drivetrain.static_loop import port_model
+from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.orders.tooth_excitation import Motion
+from dynamics.response.harmonic_equations import input_torques
+from dynamics.response.harmonic_newton import mesh_inputs
 from dynamics.response.response_curve import CurvePoint
 
 Array = NDArray[np.float64]
@@ -40,10 +43,11 @@ class MeshPeriodic:
 
     base : the motion; speed : of the pinion of the first mesh [rad/s]; start : phi at the first sample [rad]
     cell_order : cells per turn of that pinion; meshes : (n_meshes,) mesh periods of each mesh in a cell
-    bodies : (n_bodies,) freedoms of the gear bodies; sides : (n_meshes, 2) place of pinion and wheel among them
+    model : its ports; bodies : (n_bodies,) freedoms of the gear bodies; inputs : (n_meshes, k) of `mesh_inputs`
     approach : (n_meshes, n_bodies) approach per angle [m/rad]
-    waves : (3, n_meshes, 2, n) derivatives of the torques on pinion and wheel over approach, its rate and pinion angle
-    torque : (n_bodies, n) harmonics of the torques on the bodies, those of order h at index h
+    waves : (3, n_meshes, k, n) derivatives of the torques on the inputs over approach, its rate and pinion angle; those
+        of friction beside the ports over the angle are left out
+    torque : (n_inputs, n) harmonics of the torques on the inputs, those of order h at index h
     """
 
     def __init__(
@@ -53,15 +57,14 @@ class MeshPeriodic:
         self.system, self.ideal, self.twist_held = system, tuple(ideal), twist_held
         self.base = base
         self._classes: dict[tuple[float, int], HillSystem] = {}
-        self.packed = tuple(pack_meshes([law]) for law in self.ideal)
+        self.model = port_model(system, self.ideal)
+        self.packed = self.model.packed
         wave = base.wave
         self.speed = base.speed
-        self.bodies = np.array(list(dict.fromkeys(system.mesh_ports.ravel().tolist())), np.int64)
-        place = {int(dof): i for i, dof in enumerate(self.bodies)}
-        self.sides = np.array([[place[int(dof)] for dof in ports] for ports in system.mesh_ports])
-        self.approach = np.zeros((len(self.ideal), self.bodies.size))
-        for m, law in enumerate(self.ideal):
-            self.approach[m, self.sides[m]] = law.base_radius_1, -law.base_radius_2
+        self.bodies = self.model.dofs[: self.model.n_bodies]
+        self.inputs = mesh_inputs(self.model)
+        self.n_inputs = self.bodies.size + len(self.model.beside)
+        self.approach = self.model.approach[:, :-1]
         self.motions = tuple(
             Motion(*map(np.ascontiguousarray, of_mesh))
             for of_mesh in zip(wave.angle, wave.approach, wave.omega_1, wave.omega_2)
@@ -77,17 +80,29 @@ class MeshPeriodic:
         self._linearise()
 
     def _linearise(self) -> None:
-        torque = np.zeros((self.bodies.size, self.samples))
-        self.waves = np.empty((3, len(self.ideal), 2, self.samples))
+        torque = np.zeros((self.n_inputs, self.samples))
+        self.waves = np.zeros((3, *self.inputs.shape, self.samples))
         for m, (packed, motion) in enumerate(zip(self.packed, self.motions)):
             reaction = evaluate_mesh(packed, *motion)
-            torque[self.sides[m, 0]] += reaction.torque_1
-            torque[self.sides[m, 1]] += reaction.torque_2
-            self.waves[0, m] = reaction.torque_1_per_approach, reaction.torque_2_per_approach
-            self.waves[1, m] = reaction.torque_1_per_rate, reaction.torque_2_per_rate
-            self.waves[2, m] = reaction.torque_1_per_angle, reaction.torque_2_per_angle
+            acting = np.array(input_torques(self.model, m, reaction))
+            np.add.at(torque, self.inputs[m], acting[:, 0])
+            self.waves[:2, m] = acting[:, 1:].swapaxes(0, 1)
+            self.waves[2, m, :2] = reaction.torque_1_per_angle, reaction.torque_2_per_angle
         self.torque = self.harmonics(torque)
         self._tangent = self.harmonics(self.waves)
+
+    def on_inputs(self, m: int, outputs: Complex) -> Complex:
+        """What torques on pinion and wheel and the normal force times the base radius of the pinion (3, ...) of a mesh
+        are on its inputs (k, ...)."""
+        first, second, normal = outputs
+        ratio = self.ideal[m].base_radius_2 / self.ideal[m].base_radius_1
+        return np.array([first, second, first + normal, second - ratio * normal])[: self.inputs.shape[1]]
+
+    def loads(self, torque: Complex) -> Complex:
+        """Loads on all freedoms (n,) of torques on the inputs (n_inputs,)."""
+        whole: Complex = np.asarray(self.model.beside.T @ torque[self.bodies.size :], np.complex128)
+        whole[self.bodies] += torque[: self.bodies.size]
+        return whole
 
     def harmonics(self, values: Array | Complex, residue: float | Array = 0.0) -> Complex:
         """Two-sided coefficients (..., n) in phi, of order h at index h, of samples (..., n) over one cell.
@@ -114,21 +129,22 @@ class MeshPeriodic:
         return np.asarray((np.arange(-reach, reach + 1) + residue) * self.cell_order * self.speed)
 
     def receptance(self, omega: Array, rows: Array | None = None) -> Complex:
-        """Of the bodies to themselves and to loads on rows (k, n) of all freedoms, (n, n_bodies, n_bodies + k).
+        """Of the bodies to the inputs and to loads on rows (k, n) of all freedoms, (n, n_bodies, n_inputs + k).
 
         At signed frequencies (n,); nothing at frequency zero.
         """
         still = omega == 0.0
         form, size = self.system.form, np.where(still, 1.0, np.abs(omega))
         found = form.receptance(size, self.bodies)
-        if rows is not None and len(rows):
-            found = np.concatenate([found, form.receptance_to(size, self.bodies, rows)], axis=2)
+        further = self.model.beside if rows is None else np.vstack([self.model.beside, rows])
+        if len(further):
+            found = np.concatenate([found, form.receptance_to(size, self.bodies, further)], axis=2)
         found = np.where((omega < 0.0)[:, None, None], found.conj(), found)
         found[still] = 0.0
         return np.asarray(found)
 
     def tangent(self, reach: int) -> Complex:
-        """(3, n_meshes, 2, n, n) harmonics of the torques per harmonics of approach, rate and pinion angle."""
+        """(3, n_meshes, k, n, n) harmonics of the torques per harmonics of approach, rate and pinion angle."""
         number = np.arange(-reach, reach + 1)
         return np.asarray(self._tangent[..., np.subtract.outer(number, number)])
 
@@ -138,7 +154,7 @@ class MeshPeriodic:
         if left:
             tangent, n = self.tangent(reach), 2 * reach + 1
             omega = np.concatenate([self.omega(residue, reach) for residue in left])
-            receptance = self.receptance(omega).reshape(len(left), n, *2 * (self.bodies.size,))
+            receptance = self.receptance(omega).reshape(len(left), n, self.bodies.size, -1)
             for residue, own in zip(left, receptance):
                 self._classes[residue, reach] = HillSystem(self, residue, tangent, own)
         return [self._classes[residue, reach] for residue in residues]
@@ -147,7 +163,7 @@ class MeshPeriodic:
 class ClassSolution(NamedTuple):
     """Two-sided changes of one class at cell orders -reach to reach beyond its residue.
 
-    torque : (n_loads, n) on the bodies [N m], then of the further loads; approach : (n_meshes, n) [m]
+    torque : (n_loads, n) on the inputs [N m], then of the further loads; approach : (n_meshes, n) [m]
     angle : (n_meshes, n) of the pinions, their mean left out [rad]
     """
 
@@ -162,7 +178,7 @@ class HillSystem:
     def __init__(self, loop: MeshPeriodic, residue: float, tangent: Complex, receptance: Complex) -> None:
         """Prepare a class.
 
-        tangent : ``loop.tangent(reach)``; receptance : at ``loop.omega(residue, reach)``, of the bodies to themselves
+        tangent : ``loop.tangent(reach)``; receptance : at ``loop.omega(residue, reach)``, of the bodies to the inputs
         and to further loads
         """
         self.loop, self.n = loop, tangent.shape[-1]
@@ -173,24 +189,22 @@ class HillSystem:
         self.tangent = tangent[0] + tangent[1] * (1j * self.omega)
         self.per_angle = tangent[2]
         self.gain = loop.approach @ receptance[:, : self.n_bodies]
-        self.pinion = receptance[:, loop.sides[:, 0]]
-        split = self.gain[:, :, loop.sides].transpose(1, 0, 2, 3)[..., None]
+        self.pinion = receptance[:, loop.inputs[:, 0]]
+        split = self.gain[:, :, loop.inputs].transpose(1, 0, 2, 3)[..., None]
         size = self.n_meshes * self.n
-        block = split[:, :, :, 0] * self.tangent[:, 0].swapaxes(0, 1) + split[:, :, :, 1] * self.tangent[
-            :, 1
-        ].swapaxes(0, 1)
-        block = np.eye(size) - block.reshape(size, size)
+        block = sum(split[:, :, :, k] * self.tangent[:, k].swapaxes(0, 1) for k in range(split.shape[3]))
+        block = np.eye(size) - np.asarray(block).reshape(size, size)
         self.factors = lu_factor(block if self.still < 0 else self._with_mean(block), check_finite=False)
 
     def solve(self, forces: Complex, given: Complex) -> ClassSolution:
-        """Answer to what acts on the gears of each mesh (n_meshes, 2, n) and on bodies and rows (n_loads, n) [N m]."""
+        """Answer to what acts on the inputs of each mesh (n_meshes, k, n) and on inputs and rows (n_loads, n) [N m]."""
         acting = forces
         for step in range(ANGLE_STEPS + 1):
             torque = given.copy()
-            np.add.at(torque, self.loop.sides, acting)
+            np.add.at(torque, self.loop.inputs, acting)
             known = (self.gain @ torque.T[:, :, None])[:, :, 0].T.ravel()
-            approach = self._solve(known, torque[: self.n_bodies], acting)
-            np.add.at(torque, self.loop.sides, (self.tangent @ approach[:, None, :, None])[..., 0])
+            approach = self._solve(known, torque[: self.loop.n_inputs], acting)
+            np.add.at(torque, self.loop.inputs, (self.tangent @ approach[:, None, :, None])[..., 0])
             angle = (self.pinion @ torque.T[:, :, None])[:, :, 0].T
             if step < ANGLE_STEPS:
                 acting = forces + (self.per_angle @ angle[:, None, :, None])[..., 0]
@@ -215,10 +229,10 @@ class HillSystem:
             matrix[at[m], size + ports[m]] = -law.base_radius_1, law.base_radius_2
         self.scale = float(np.abs(system.stiffness).max())
         matrix[size : size + dofs, size : size + dofs] = system.stiffness / self.scale
-        for m in range(self.n_meshes):
-            for side in range(2):
-                row = self.tangent[m, side, still] / self.scale
-                matrix[size + ports[m, side], m * self.n : (m + 1) * self.n] -= row
+        for m, inputs in enumerate(loop.inputs):
+            for at_input, row in zip(inputs, self.tangent[m, :, still] / self.scale):
+                load = loop.loads(np.eye(loop.n_inputs)[at_input])
+                matrix[size : size + dofs, m * self.n : (m + 1) * self.n] -= np.outer(load, row)
         matrix[size + system.drive_dof, size + dofs] = -1.0
         matrix[size : size + dofs, size + dofs + 1] = -system.twist_load / self.scale
         matrix[size + dofs, size + system.drive_dof] = 1.0
@@ -233,7 +247,7 @@ class HillSystem:
         load = np.zeros(size + dofs + 2, complex)
         load[:size] = known
         load[np.arange(self.n_meshes) * self.n + self.still] = 0.0
-        load[size + loop.bodies] = torque[:, self.still] / self.scale
+        load[size : size + dofs] = loop.loads(torque[:, self.still]) / self.scale
         if not loop.twist_held:
             # the mean torque on the first pinion stays
             load[-1] = -acting[0, 0, self.still] / self.scale

@@ -20,6 +20,7 @@ from dynamics.mesh.tables import pack_meshes
 from dynamics.orders.hill_system import ClassSolution, MeshPeriodic
 from dynamics.orders.tooth_excitation import Motion
 from dynamics.orders.tooth_forcing import ToothForcing
+from dynamics.response.harmonic_equations import input_torques
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -36,7 +37,7 @@ HISTORY = 8
 class CycleForces(NamedTuple):
     """Forces of the gears of one cycle on the linear equations, tooth deviations included.
 
-    cells : mesh periods in the cycle; spectrum : (n_meshes, 2, cells n) two-sided, order j / cells of the cell at j
+    cells : mesh periods in the cycle; spectrum : (n_meshes, k, cells n) two-sided, order j / cells of the cell at j
     change : by which the approach still moved in the last step, relative to its whole deviation [-]
     """
 
@@ -45,7 +46,7 @@ class CycleForces(NamedTuple):
     change: float
 
     def of_class(self, residue: float, number: Integers) -> Complex:
-        """Forces of a class (n_meshes, 2, n_number); zero where the cycle has no such orders."""
+        """Forces of a class (n_meshes, k, n_number); zero where the cycle has no such orders."""
         share = residue * self.cells
         if abs(share - round(share)) > 1e-6:
             return np.zeros((*self.spectrum.shape[:2], number.size), complex)
@@ -87,16 +88,16 @@ class _Cycle:
         for law, meshes, motion in zip(loop.ideal, loop.meshes, loop.motions):
             angle, *others = (np.tile(values, cells) for values in motion)
             self.base.append(Motion(angle + cell * (meshes / law.teeth_1), *others))
-        known = np.empty((len(loop.ideal), 2, self.n))
+        known = np.empty((*loop.inputs.shape, self.n))
         for m, packed in enumerate(loop.packed):
             reaction = evaluate_mesh(packed, *(values[: self.n] for values in self.base[m]))
-            known[m] = reaction.torque_1, reaction.torque_2
+            known[m] = [torque for torque, *_ in input_torques(loop.model, m, reaction)]
         self.known = np.tile(known, cells)
         number = np.arange(-self.reach, self.reach + 1)
         self.number = number
         classes = np.arange(cells // 2 + 1) / cells
         self.systems = loop.classes(classes.tolist(), self.reach)
-        self.first = np.zeros((classes.size, len(loop.ideal), 2, number.size), complex)
+        self.first = np.zeros((classes.size, *loop.inputs.shape, number.size), complex)
         for m, side in gears:
             self.first[:, m] += forcing.of_cycle(m, side, cells, number)
 
@@ -121,8 +122,8 @@ class _Cycle:
         return result
 
     def _answer(self, forces: Sequence[Complex] | Complex) -> Array:
-        """Motion that forces of every class (n_classes, n_meshes, 2, n_number) make, see `_in_time`."""
-        nothing = np.zeros((self.loop.bodies.size, self.number.size), complex)
+        """Motion that forces of every class (n_classes, n_meshes, k, n_number) make, see `_in_time`."""
+        nothing = np.zeros((self.loop.n_inputs, self.number.size), complex)
         return self._in_time(
             [system.solve(of_class, nothing) for system, of_class in zip(self.systems, forces)]
         )
@@ -149,7 +150,7 @@ class _Cycle:
         return np.asarray(np.fft.ifft(shifted, axis=-1).real * count)
 
     def _beyond(self, approach: Array, rate: Array, angle: Array, speed: Array) -> Array:
-        """True torques less those of equal teeth and tangents times change (n_meshes, 2, count)."""
+        """True torques less those of equal teeth and tangents times change (n_meshes, k, count)."""
         forces = np.empty(self.known.shape)
         for m, (law, packed) in enumerate(zip(self.loop.ideal, self.packed)):
             theta_1, reach, omega_1, omega_2 = self.base[m]
@@ -157,7 +158,7 @@ class _Cycle:
             reaction = evaluate_mesh(
                 packed, theta_1 + angle[m], reach + approach[m], omega_1 + speed[m], omega_2 + slower
             )
-            forces[m] = reaction.torque_1, reaction.torque_2
+            forces[m] = [torque for torque, *_ in input_torques(self.loop.model, m, reaction)]
         linear = (
             self.waves[0] * approach[:, None] + self.waves[1] * rate[:, None] + self.waves[2] * angle[:, None]
         )

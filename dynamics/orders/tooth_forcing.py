@@ -28,11 +28,11 @@ class ToothForcing:
         self._sensitivities: dict[int, Flanks] = {}
 
     def none(self, reach: int) -> Complex:
-        """No forces (n_meshes, 2, 2 reach + 1)."""
-        return np.zeros((len(self.laws), 2, 2 * reach + 1), complex)
+        """No forces (n_meshes, k, 2 reach + 1)."""
+        return np.zeros((*self.loop.inputs.shape, 2 * reach + 1), complex)
 
     def of_class(self, residue: float, number: Integers) -> Complex:
-        """Forces of all gears in a class (n_meshes, 2, n_number), two-sided [N m]."""
+        """Forces of all gears in a class (n_meshes, k, n_number), two-sided [N m]."""
         forces = self.none(int(number[-1]))
         for m, side in self.gears:
             teeth = _teeth(self.laws[m], side).number
@@ -45,25 +45,26 @@ class ToothForcing:
         return forces
 
     def of_cycle(self, m: int, side: int, cells: int, number: Integers) -> Complex:
-        """Forces of one gear in the classes 0, 1 / cells ... up to a half (n_classes, 2, n_number)."""
+        """Forces of one gear in the classes 0, 1 / cells ... up to a half (n_classes, k, n_number)."""
         teeth = _teeth(self.laws[m], side).number
         waves = np.arange(1, teeth)
         place = waves * int(self.loop.meshes[m]) * cells // teeth % cells
         waves, place = waves[2 * place <= cells], place[2 * place <= cells]
         excited = self._excitation(m, side, waves)
-        forces = np.zeros((cells // 2 + 1, 2, number.size), complex)
+        forces = np.zeros((cells // 2 + 1, self.loop.inputs.shape[1], number.size), complex)
         values = self.loop.harmonics(excited, place[:, None] / cells)[..., number]
         np.add.at(forces, place, values.swapaxes(0, 1))
         return forces
 
     def _excitation(self, m: int, side: int, waves: Integers) -> Complex:
-        """Torques on pinion and wheel by each wave over the teeth of a gear (2, n_waves, n) along the cell."""
-        excited = np.zeros((2, waves.size, self.loop.samples), complex)
+        """Torques on the inputs by each wave over the teeth of a gear (k, n_waves, n) along the cell."""
+        excited = np.zeros((self.loop.inputs.shape[1], waves.size, self.loop.samples), complex)
         for back, sensitivity in enumerate(self._sensitivity(m)):
             if sensitivity is not None:
                 own = _teeth(self.laws[m], side, bool(back))
                 pattern = tooth_pattern(own.deviation, own.scale, own.number, waves)
-                excited += excitation(sensitivity, self.loop.ideal[m], pattern, own.first)[:2]
+                outputs = excitation(sensitivity, self.loop.ideal[m], pattern, own.first)
+                excited += self.loop.on_inputs(m, outputs)
         return excited
 
     def _sensitivity(self, m: int) -> Flanks:

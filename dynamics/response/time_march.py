@@ -41,7 +41,7 @@ CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
 SEGMENT = 1000
 """Samples after which the contact tables are those of the speed that has come."""
-BESIDE_EVERY = 4
+BESIDE_EVERY = 2
 """Steps in which tooth forces beside the line of action are linear at most; accounts see them in every step."""
 NO_LOADS = DriveLoads()
 

@@ -6,6 +6,7 @@ modes marched to a tested steady state, and receptances with alternating frequen
 """
 
 import math
+from dataclasses import replace
 from typing import get_args
 
 import numpy as np
@@ -13,11 +14,13 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import DampedRate
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.rig import prototype, prototype_laws
+from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
 
 RPM = math.pi / 30.0
 
@@ -64,6 +67,24 @@ def test_both_methods_agree_at_some_speeds(acts_on: DampedRate) -> None:
     apart = deviations(speeds, acts_on=acts_on)
     assert np.quantile(apart, 0.5 if acts_on == "contact_closing_rate" else 0.9) < 0.01
     assert apart.max() < 0.03
+
+
+def test_friction_acts_across_the_line_of_action_in_both() -> None:
+    """On shafts that bend on their films, with three times the usual friction: 1e-3, where friction along the line of
+    action, as only twisting gears know it, is 1.2 % off. Of the FZG rig it took 0.1 from a K_V of 1.27."""
+    speed, load = 1500.0 * RPM, LoopLoad(torque=180.0)
+    system, laws = seen().system(films(speed)), prototype_laws(friction=0.12)
+    run = periodic_by_time(system, laws, speed=speed, load=load)
+    flank = np.sign(run.mean_torque)
+    peak = np.maximum(flank * run.greatest_torque, flank * run.least_torque) / np.abs(run.mean_torque)
+    assert run.steady
+    balanced = SweepSettings(methods=("harmonic_balance",))
+
+    def by_balance(of: LinearSystem) -> NDArray[np.float64]:
+        return periodic_response(of, laws, [speed], load, settings=balanced).points[0].dynamic_factor
+
+    assert by_balance(system) == pytest.approx(peak, rel=1e-3)
+    assert by_balance(replace(system, mesh_wrench=None))[0] < 0.99 * peak[0]
 
 
 @pytest.mark.slow

@@ -128,17 +128,13 @@ def test_waterfalls_cover_the_mesh_order_of_the_highest_speed_up_and_down() -> N
 
 @pytest.mark.parametrize(
     ("find", "relative", "of_mean"),
-    [(solved_twisting, 0.05, 2e-4), (solved, 0.02, 2e-3)],
+    [(solved_twisting, 0.05, 2e-4), (solved, 0.05, 2e-4)],
     ids=["twist", "bend"],
 )
 def test_mesh_orders_of_the_time_run_are_those_of_the_periodic_response(
     find: Callable[[], SolvedRig], relative: float, of_mean: float
 ) -> None:
-    """The march and harmonic balance at the held stage: first three mesh orders, no other line as high.
-
-    On shafts that bend tooth friction acts across the line of action in the march and along the ports in harmonic
-    balance: 0.2 % of the mean.
-    """
+    """The march and harmonic balance at the held stage: first three mesh orders, no other line as high."""
     found = find()
     for one in held_spectra(found.rig, found.run):
         order, amplitude = np.array(one.order), np.array(one.amplitude)
