@@ -37,8 +37,7 @@ ORDER = 2.0
 TABLES_LEAVE_OUT = (0.02, 0.2)
 """Error of a dynamic factor or least share by the contact tables, in all and per dynamic part, against contacts solved
 from influence numbers in every step of a time integration (`tests/contact_in_loop`): held stages and peaks of K_V of
-the shipped rigs are within it where no contact is lost, peaks of the main rig by 0.11 of 0.50; tables are mostly higher.
-"""
+the shipped rigs are within it where no contact is lost, the main rig with 0.11 of 0.50; tables are mostly higher."""
 RPM = math.pi / 30.0
 Value = Callable[[CurvePoint, int], float]
 Place = tuple[str, float, float, str]

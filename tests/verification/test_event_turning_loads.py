@@ -38,7 +38,7 @@ SPEED, TORQUE, CUTOFF = 200.0 * math.pi, 180.0, 20e3
 
 
 def smooth_laws() -> list[MeshLaw]:
-    """Without friction, which the harmonic balance has along its ports and the march across the line of action."""
+    """Without friction, which acts beside the ports."""
     return [law._replace(friction=0.0) for law in prototype_laws()]
 
 
