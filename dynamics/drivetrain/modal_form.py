@@ -51,13 +51,14 @@ class ModalForm:
 
         omega : (n_omega,) [rad/s], all > 0; dofs : (n_dofs,). Returns (n_omega, n_dofs, n_dofs) [rad/(N m)].
         """
-        return self._receptance(omega, dofs, self.loads[:, dofs])
+        return self.receptance_to(omega, dofs, self.loads[:, dofs])
 
-    def receptance_to(self, omega: Array, dofs: NDArray[np.int64], rows: Array) -> Complex:
-        """Displacement of some freedoms per unit of loads on rows (k, n) of all freedoms, (n_omega, n_dofs, k)."""
-        return self._receptance(omega, dofs, self.loads @ rows.T)
+    def into(self, rows: Array) -> Complex:
+        """(n_states, k) modal loads of unit loads on rows (k, n) of all freedoms."""
+        return times(rows, self.loads.T).T
 
-    def _receptance(self, omega: Array, dofs: NDArray[np.int64], into: Complex) -> Complex:
+    def receptance_to(self, omega: Array, dofs: NDArray[np.int64], into: Complex) -> Complex:
+        """Displacement of some freedoms per modal loads ``into`` (n_states, k), (n_omega, n_dofs, k)."""
         out = self.velocity_shapes[dofs]
         s = 1j * np.asarray(omega)
         gain = 1.0 / (s[:, None] - self.poles)

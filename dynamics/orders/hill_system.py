@@ -77,6 +77,8 @@ class MeshPeriodic:
             [round(law.teeth_1 * ratio / self.cell_order) for law, ratio in zip(self.ideal, ratios)]
         )
         self.start = float(np.mean(wave.angle[0] - self.speed * step * np.arange(self.samples)))
+        beside = system.form.into(self.model.beside)
+        self._into = np.hstack([system.form.loads[:, self.bodies], beside])
         self._linearise()
 
     def _linearise(self) -> None:
@@ -135,10 +137,8 @@ class MeshPeriodic:
         """
         still = omega == 0.0
         form, size = self.system.form, np.where(still, 1.0, np.abs(omega))
-        found = form.receptance(size, self.bodies)
-        further = self.model.beside if rows is None else np.vstack([self.model.beside, rows])
-        if len(further):
-            found = np.concatenate([found, form.receptance_to(size, self.bodies, further)], axis=2)
+        into = self._into if rows is None else np.hstack([self._into, form.into(rows)])
+        found = form.receptance_to(size, self.bodies, into)
         found = np.where((omega < 0.0)[:, None, None], found.conj(), found)
         found[still] = 0.0
         return np.asarray(found)

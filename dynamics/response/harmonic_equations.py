@@ -93,10 +93,7 @@ class HarmonicEquations:
         order = np.arange(1, grid.top + 1)
         bodies = model.dofs[: model.n_bodies]
         omega = np.asarray(self.base * order, float)
-        self.receptance = problem.form.receptance(omega, bodies)
-        if len(model.beside):
-            beside = problem.form.receptance_to(omega, bodies, model.beside)
-            self.receptance = np.concatenate([self.receptance, beside], axis=2)
+        self.receptance = problem.form.receptance_to(omega, bodies, problem.into)
         self._inputs = mesh_inputs(model)
         self.newton = HarmonicNewton(problem, grid, self.base, self.receptance)
         self._drag = model.drag(speed, drag_torques)

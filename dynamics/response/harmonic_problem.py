@@ -1,6 +1,7 @@
 """What a harmonic balance solves: the loop with its load, the grid of frequencies and samples, the coefficients."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,12 @@ class BalanceProblem:
     load: LoopLoad
     periodic_loads: tuple[PeriodicLoad, ...] = ()
     ratios: Array | None = None
+
+    @cached_property
+    def into(self) -> Complex:
+        """(n_states, n_inputs) modal loads of unit torques on the inputs of the meshes: bodies, then beside the ports."""
+        bodies = self.model.dofs[: self.model.n_bodies]
+        return np.hstack([self.form.loads[:, bodies], self.form.into(self.model.beside)])
 
     def driven(self, grid: HarmonicGrid, base: float) -> Complex:
         """Windup of the mesh bodies (n_bodies, top + 1) that the periodic loads would make without the meshes.

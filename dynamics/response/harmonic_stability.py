@@ -80,7 +80,7 @@ class _Line:
         self.stiff, self.damp = reactions.per_approach[:, :, lag], reactions.per_rate[:, :, lag]
         bodies, inputs = model.dofs[: model.n_bodies], mesh_inputs(model)
         out = model.approach[:, :-1] @ form.velocity_shapes[bodies]
-        into = np.hstack([form.loads[:, bodies], form.loads @ model.beside.T])[:, inputs]
+        into = problem.into[:, inputs]
         self.poles = form.poles
         self.shape = (model.n_meshes, *inputs.shape)
         self.residues = np.einsum("ai,imp->ampi", out, into).reshape(-1, form.poles.size)

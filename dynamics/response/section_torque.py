@@ -128,7 +128,7 @@ def section_torques(system: LinearSystem, laws: Sequence[MeshLaw], rows: TwistRo
         model=model,
         ratios=line_ratios(system, laws),
         loads=loads,
-        into=system.form.loads @ loads.T,
+        into=system.form.into(loads),
         seen=rows.rows @ system.form.velocity_shapes,
         flexibility=np.asarray(np.linalg.solve(held.T, rows.rows.T).T, float),
     )
