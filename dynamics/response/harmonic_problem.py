@@ -74,7 +74,7 @@ class BalanceProblem:
 
     @cached_property
     def into(self) -> Complex:
-        """(n_states, n_inputs) modal loads of unit torques on the inputs of the meshes: bodies, then beside the ports."""
+        """(n_states, n_inputs) modal loads of unit torques on the inputs of the meshes (`mesh_inputs`)."""
         bodies = self.model.dofs[: self.model.n_bodies]
         return np.hstack([self.form.loads[:, bodies], self.form.into(self.model.beside)])
 
