@@ -34,7 +34,9 @@ from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 from rigdesign.run.solver_errors import solver_errors
 
-BY_LOADS = ("specimen.root_stress*", "strength.root_safety*", "flank.*")
+STRESSED = ("specimen.root_stress*", "strength.root_safety*")
+"""Checks that follow torque and face width in proportion, about."""
+BY_LOADS = (*STRESSED, "flank.*")
 """Checks that follow the loads at given temperatures."""
 BY_HEAT = (
     "temperature.*",
@@ -66,7 +68,7 @@ SHOWN = 3
 class Candidate:
     """An input that may turn a check: paths that move together, the text before and after its number.
 
-    power : with which the share of a limit follows the input, about; None where it is not known beforehand
+    power : with which the share that a stress uses of its limit follows the input, about; None where it is not known
     """
 
     paths: tuple[str, ...]
@@ -88,9 +90,9 @@ class Candidate:
         """As the case writes it."""
         return f"{value:g} {self.unit}"
 
-    def first_move(self, used: float) -> float:
+    def first_move(self, target: Check, used: float) -> float:
         """Logarithm of the factor tried first for a check that uses a share of its limit."""
-        if self.power is None:
+        if self.power is None or not target.is_one_of(STRESSED):
             return math.log(PROBE)
         move = -math.log(used) / self.power
         return math.copysign(min(max(abs(move), CLOSE), math.log(FARTHEST)), move)
@@ -283,7 +285,7 @@ def _factor(case: Case, candidate: Candidate, search: Search, target: Check) -> 
         return math.log(used) if used and math.isfinite(used) else None
 
     before, y_before = 0.0, math.log(stated)
-    here = candidate.first_move(math.exp(y_before - goal))
+    here = candidate.first_move(target, math.exp(y_before - goal))
     for _ in range(STEPS):
         y_here = at(here)
         if y_here is not None and abs(y_here) < CLOSE:
