@@ -10,17 +10,14 @@ import pickle
 import shutil
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
 from rigdesign import load_case
 from rigdesign.reanalysis.flips import with_flips
-from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
-from tests.contact_in_loop.rig import LoopedContact, contact_in_loop
 from thermal.fe.kernel_cache import cache_folder
 
 VARIABLE = "RIGDESIGN_TEST_RUN_FOLDER"
@@ -65,35 +62,12 @@ def shared(name: str, make: Callable[[], T]) -> T:
         return found
 
 
-@dataclass(frozen=True)
-class ShippedRun:
-    """A shipped case as `rigdesign check` computes it, and its dynamic factors with the contact solved in the loop."""
-
-    result: RunResult
-    contact_in_loop: tuple[LoopedContact, ...]
-
-
 def shipped_run(name: str) -> RunResult:
     """A shipped case as `rigdesign check` computes it at its default fidelity."""
-    return shipped(name).result
-
-
-def shipped(name: str) -> ShippedRun:
-    """The same; of the prototype with the contact in the loop."""
-    return shared(f"{name}-shipped", lambda: _shipped(name))
-
-
-def _shipped(name: str) -> ShippedRun:
-    looped: list[LoopedContact] = []
-
-    def solve_in_loop(solved: SolvedRig, result: RunResult) -> RunResult:
-        if solved.run is not None and name == "uhcf_prototype":
-            looped.extend(contact_in_loop(solved.rig, solved.run))
-        return result
-
-    follow_ups = {"flips": with_flips, "contact_in_loop": solve_in_loop}
-    result = run_case(load_case(CASES / name), "standard", follow_ups=follow_ups)
-    return ShippedRun(result, tuple(looped))
+    return shared(
+        f"{name}-shipped",
+        lambda: run_case(load_case(CASES / name), "standard", follow_ups={"flips": with_flips}),
+    )
 
 
 def quick_run(name: str, file: str = "case.toml") -> RunResult:

@@ -1,16 +1,23 @@
 """Contact solved in the loop of the prototype against its contact tables: inside the error that the loads carry."""
 
+from functools import cache
+
 import pytest
 
+from rigdesign.case import load_case
 from rigdesign.run.load_convergence import TABLES_LEAVE_OUT
-from tests.builders.shared_runs import shipped
-from tests.contact_in_loop.rig import LoopedContact
+from rigdesign.run.main import solve_case
+from tests.builders.paths import CASES
+from tests.contact_in_loop.rig import LoopedContact, contact_in_loop
 
-pytestmark = pytest.mark.whole_run
+pytestmark = pytest.mark.slow
 
 
+@cache
 def found() -> tuple[LoopedContact, ...]:
-    return shipped("uhcf_prototype").contact_in_loop
+    solved = solve_case(load_case(CASES / "uhcf_prototype"), "standard")
+    assert solved.run is not None
+    return contact_in_loop(solved.rig, solved.run)
 
 
 def test_held_stage_and_peaks_of_both_meshes_are_solved_and_settle() -> None:
