@@ -84,7 +84,7 @@ def test_every_case_and_variant_runs_at_its_default(name: str, tmp_path: Path) -
     )
 
 
-@pytest.mark.parametrize(("name", "fails"), [("uhcf_prototype", 5), ("loop_1to1", 3)])
+@pytest.mark.parametrize(("name", "fails"), [("uhcf_prototype", 5), ("loop_1to1", 4)])
 def test_the_terminal_says_what_decides_on_one_screen(
     name: str, fails: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
