@@ -41,12 +41,12 @@ def test_mesh_and_shaft_orders_meet_the_modes_of_the_loop() -> None:
 
 
 def test_the_distance_names_the_mode_of_the_loop_nearest_to_the_held_speed() -> None:
-    """Bending of the pinion shaft meets the mesh at 2430 rpm, 3 % below the held speed; the curve has its peak there,
-    though a quick run solves few speeds."""
+    """Bending of the pinion shaft meets the mesh at 2430 rpm, 3 % below the held speed; the curve has a peak there, too
+    small to be dangerous: the next that is stands 20 % away."""
     result = hunting()
     assert result.dynamics is not None
     check = next(check for check in result.checks if check.id == "dynamics.resonance_distance.test")
-    assert check.value == pytest.approx(0.031, abs=0.002) and check.verdict == "fail"
+    assert check.value == pytest.approx(0.199, abs=0.004) and check.verdict == "pass"
     assert "closed loop that the mesh excites: mode 37 (test_pinion bending" in check.reason
     assert "2.7 % away" in check.reason
 
