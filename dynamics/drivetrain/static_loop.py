@@ -40,10 +40,10 @@ class PortModel:
     ratios : (n,) speed of every port relative to the drive freedom
     packed : law tables of every mesh; elastic : the same without damping, whose force jumps at first touch
     base_radii : (n_meshes, 2) [m]; offsets : (n_meshes,) [m]
-    beside : (2 n_meshes, n_freedoms) rows of the system on which friction of pinion and wheel acts beside the ports,
-        mesh by mesh (`MeshWrench.friction_rows`); none where gears only rotate
-    beside_at_rest : (n, 2 n_meshes) port torques that unit torques on these rows are at rest
-    path_shares : (n_meshes, 2) torque on them per path torque on the pinion less that torque
+    loads : (n_inputs, n_freedoms) rows of the system on which the meshes act: gear bodies, then friction of pinion and
+        wheel beside the ports, mesh by mesh (`MeshWrench.friction_rows`), which is none where gears only rotate
+    at_rest : (n, n_inputs) port torques that unit torques on these rows are at rest
+    path_shares : (n_meshes, 2) torque on friction rows per path torque on the pinion less that torque
     """
 
     dofs: NDArray[np.int64]
@@ -60,8 +60,8 @@ class PortModel:
     laws: tuple[MeshLaw, ...]
     base_radii: Array
     offsets: Array
-    beside: Array
-    beside_at_rest: Array
+    loads: Array
+    at_rest: Array
     path_shares: Array
 
     @property
@@ -137,7 +137,9 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         approach[m, pinions[m]], approach[m, wheels[m]] = law.base_radius_1, -law.base_radius_2
     packed = tuple(pack_meshes([law]) for law in laws)
     wrench = system.mesh_wrench
-    beside = np.zeros((0, len(system.inertia))) if wrench is None else wrench.friction_rows(laws)
+    loads = np.eye(len(system.inertia))[bodies]
+    if wrench is not None:
+        loads = np.vstack([loads, wrench.friction_rows(laws)])
     return PortModel(
         dofs=kept,
         pinions=pinions,
@@ -153,8 +155,8 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         laws=tuple(laws),
         base_radii=np.array([(law.base_radius_1, law.base_radius_2) for law in laws]),
         offsets=np.array([law.offset for law in laws]),
-        beside=beside,
-        beside_at_rest=np.array([reduce(row) for row in beside]).reshape(-1, kept.size).T,
+        loads=loads,
+        at_rest=np.array([reduce(row) for row in loads]).T,
         path_shares=np.zeros((len(laws), 2)) if wrench is None else wrench.numbers(laws)[:, 1:3],
     )
 

@@ -63,7 +63,7 @@ class MeshPeriodic:
         self.speed = base.speed
         self.bodies = self.model.dofs[: self.model.n_bodies]
         self.inputs = mesh_inputs(self.model)
-        self.n_inputs = self.bodies.size + len(self.model.beside)
+        self.n_inputs = len(self.model.loads)
         self.approach = self.model.approach[:, :-1]
         self.motions = tuple(
             Motion(*map(np.ascontiguousarray, of_mesh))
@@ -77,8 +77,7 @@ class MeshPeriodic:
             [round(law.teeth_1 * ratio / self.cell_order) for law, ratio in zip(self.ideal, ratios)]
         )
         self.start = float(np.mean(wave.angle[0] - self.speed * step * np.arange(self.samples)))
-        beside = system.form.into(self.model.beside)
-        self._into = np.hstack([system.form.loads[:, self.bodies], beside])
+        self._into = system.form.into(self.model.loads)
         self._linearise()
 
     def _linearise(self) -> None:
@@ -102,9 +101,7 @@ class MeshPeriodic:
 
     def loads(self, torque: Complex) -> Complex:
         """Loads on all freedoms (n,) of torques on the inputs (n_inputs,)."""
-        whole: Complex = np.asarray(self.model.beside.T @ torque[self.bodies.size :], np.complex128)
-        whole[self.bodies] += torque[: self.bodies.size]
-        return whole
+        return np.asarray(self.model.loads.T @ torque, np.complex128)
 
     def harmonics(self, values: Array | Complex, residue: float | Array = 0.0) -> Complex:
         """Two-sided coefficients (..., n) in phi, of order h at index h, of samples (..., n) over one cell.
@@ -231,8 +228,8 @@ class HillSystem:
         matrix[size : size + dofs, size : size + dofs] = system.stiffness / self.scale
         for m, inputs in enumerate(loop.inputs):
             for at_input, row in zip(inputs, self.tangent[m, :, still] / self.scale):
-                load = loop.loads(np.eye(loop.n_inputs)[at_input])
-                matrix[size : size + dofs, m * self.n : (m + 1) * self.n] -= np.outer(load, row)
+                load = np.outer(loop.model.loads[at_input], row)
+                matrix[size : size + dofs, m * self.n : (m + 1) * self.n] -= load
         matrix[size + system.drive_dof, size + dofs] = -1.0
         matrix[size : size + dofs, size + dofs + 1] = -system.twist_load / self.scale
         matrix[size + dofs, size + system.drive_dof] = 1.0

@@ -111,8 +111,7 @@ class HarmonicEquations:
         miss = moved_by(self.receptance, torque[:, 1:]) - state.moving
         if self._driven.any():
             miss += self._driven * np.exp(1j * self._lead * state.rest[model.pinions[0]])
-        mean = np.append(torque[: model.n_bodies, 0].real, 0.0)
-        mean += model.beside_at_rest @ torque[model.n_bodies :, 0].real
+        mean = model.at_rest @ torque[:, 0].real
         balance = model.stiffness @ state.rest - mean - model.twist * state.twist - self._drag
         balance[-1] -= state.drive
         asked = 0.0
@@ -171,7 +170,7 @@ def input_torques(model: PortModel, m: int, reaction: MeshReaction) -> tuple[tup
         (reaction.torque_1, reaction.torque_1_per_approach, reaction.torque_1_per_rate),
         (reaction.torque_2, reaction.torque_2_per_approach, reaction.torque_2_per_rate),
     )
-    if not len(model.beside):
+    if len(model.loads) == model.n_bodies:
         return ports
     normal = reaction.force_front - reaction.force_back, reaction.force_per_approach, reaction.force_per_rate
     beside = []

@@ -38,7 +38,7 @@ def mesh_sides(model: PortModel) -> NDArray[np.int64]:
 def mesh_inputs(model: PortModel) -> NDArray[np.int64]:
     """(n_meshes, k) inputs of each mesh: ports of pinion and wheel and, where gears do not only rotate, its friction
     beside them; these are counted after the bodies."""
-    beside = model.n_bodies + np.arange(len(model.beside)).reshape(model.n_meshes, -1)
+    beside = np.arange(model.n_bodies, len(model.loads)).reshape(model.n_meshes, -1)
     return np.hstack([mesh_sides(model), beside])
 
 
@@ -166,9 +166,8 @@ class HarmonicNewton:
         matrix[rest : rest + size, rest : rest + size] = model.stiffness
         for m in range(n_meshes):
             for own, at in zip(tangent[m], self.inputs[m]):
-                beside = at - model.n_bodies
-                load = np.eye(size)[at] if beside < 0 else model.beside_at_rest[:, beside]
-                matrix[rest : rest + size, m * n : (m + 1) * n] -= np.outer(load, own[mean])
+                at_rest = np.outer(model.at_rest[:, at], own[mean])
+                matrix[rest : rest + size, m * n : (m + 1) * n] -= at_rest
         matrix[rest + size - 1, rest + size] = -1.0
         matrix[rest : rest + size, rest + size + 1] = -model.twist
         # reference angle stays, torque of the control mesh or twist is met

@@ -75,8 +75,7 @@ class BalanceProblem:
     @cached_property
     def into(self) -> Complex:
         """(n_states, n_inputs) modal loads of unit torques on the inputs of the meshes (`mesh_inputs`)."""
-        bodies = self.model.dofs[: self.model.n_bodies]
-        return np.hstack([self.form.loads[:, bodies], self.form.into(self.model.beside)])
+        return self.form.into(self.model.loads)
 
     def driven(self, grid: HarmonicGrid, base: float) -> Complex:
         """Windup of the mesh bodies (n_bodies, top + 1) that the periodic loads would make without the meshes.

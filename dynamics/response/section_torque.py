@@ -17,6 +17,7 @@ from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_equations import input_torques
+from dynamics.response.harmonic_newton import mesh_inputs
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.waveform import Waveform
 
@@ -33,10 +34,8 @@ class SectionTorques:
     model: PortModel
     ratios: Array
     """(n,) speed of each freedom per speed of the drive freedom."""
-    loads: Array
-    """(m, n) loads on the freedoms of unit torques of the meshes: on pinion and wheel of each, then beside them."""
     into: Complex
-    """(n_states, m) the same on the modes."""
+    """(n_states, n_inputs) modal loads of unit torques on the inputs of the meshes (`mesh_inputs`)."""
     seen: Complex
     """(r, n_states) twist rate of each row per modal state."""
     flexibility: Array
@@ -68,14 +67,13 @@ class SectionTorques:
         return np.asarray(np.fft.irfft(coefficients * count, count, axis=1))
 
     def _mesh_loads(self, wave: Waveform) -> Array:
-        """Torques (m, count) as of ``loads``."""
-        found = []
-        for m, packed in enumerate(self.model.packed):
+        """Torque (n_inputs, count) on the inputs of the meshes."""
+        loads = np.zeros((len(self.model.loads), wave.time.size))
+        for m, (packed, inputs) in enumerate(zip(self.model.packed, mesh_inputs(self.model))):
             motion = wave.angle[m], wave.approach[m], wave.omega_1[m], wave.omega_2[m]
-            acting = input_torques(self.model, m, evaluate_mesh(packed, *motion))
-            found.append([torque for torque, *_ in acting])
-        ports, beside = np.split(np.array(found), [2], axis=1)
-        return np.vstack([ports.reshape(-1, wave.time.size), beside.reshape(-1, wave.time.size)])
+            for at, (torque, *_) in zip(inputs, input_torques(self.model, m, evaluate_mesh(packed, *motion))):
+                loads[at] += torque
+        return loads
 
     def _driven(self, point: CurvePoint, base: float, drive_speed: float, top: int) -> Complex:
         """Modal loads (n_states, top) of loads that alternate with a shaft, in phase with the pinion.
@@ -108,7 +106,7 @@ class SectionTorques:
     ) -> Array:
         system = self.system
         load = system.twist_load * point.twist - system.damping @ self.ratios * drive_speed
-        load += self.loads.T @ mesh
+        load += self.model.loads.T @ mesh
         load[system.drive_dof] += point.drive_torque
         for name, torque in drag_torques.items():
             load = load + system.drag_loads[name] * torque
@@ -121,14 +119,12 @@ def section_torques(system: LinearSystem, laws: Sequence[MeshLaw], rows: TwistRo
     scale = float(np.max(np.abs(np.diag(system.stiffness))))
     held = system.stiffness + scale * system.rigid @ system.rigid.T
     model = port_model(system, laws)
-    loads = np.vstack([np.eye(len(held))[system.mesh_ports.ravel()], model.beside])
     return SectionTorques(
         system=system,
         rows=rows,
         model=model,
         ratios=line_ratios(system, laws),
-        loads=loads,
-        into=system.form.into(loads),
+        into=system.form.into(model.loads),
         seen=rows.rows @ system.form.velocity_shapes,
         flexibility=np.asarray(np.linalg.solve(held.T, rows.rows.T).T, float),
     )

@@ -66,17 +66,13 @@ SHOWN = 3
 
 @dataclass(frozen=True)
 class Candidate:
-    """An input that may turn a check: paths that move together, the text before and after its number.
-
-    power : with which the share that a stress uses of its limit follows the input, about; None where it is not known
-    """
+    """An input that may turn a check: paths that move together, the text before and after its number."""
 
     paths: tuple[str, ...]
     title: str
     stated: float
     unit: str
     offset: float = 0.0
-    power: float | None = None
 
     def moved(self, factor: float) -> float:
         """Value whose excess over the offset is ``factor`` times the stated one, to four digits."""
@@ -91,10 +87,11 @@ class Candidate:
         return f"{value:g} {self.unit}"
 
     def first_move(self, target: Check, used: float) -> float:
-        """Logarithm of the factor tried first for a check that uses a share of its limit."""
-        if self.power is None or not target.is_one_of(STRESSED):
+        """Logarithm of the factor tried first for a check that uses a share of its limit: stresses grow with the torque
+        and fall with the width, all others are probed."""
+        if not target.is_one_of(STRESSED):
             return math.log(PROBE)
-        move = -math.log(used) / self.power
+        move = math.log(used) if self.paths[0].endswith(".face_width") else -math.log(used)
         return math.copysign(min(max(abs(move), CLOSE), math.log(FARTHEST)), move)
 
 
@@ -203,7 +200,7 @@ def _used(check: Check) -> float | None:
 def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iterator[Candidate]:
     """Inputs of the design that may move the checks; gears of one box with the same width move together."""
     written = solved.case.origin.value_of
-    for title, paths, in_heat, power in _inputs(solved.case, targets, heat):
+    for title, paths, in_heat in _inputs(solved.case, targets, heat):
         by_text: dict[str, list[str]] = {}
         for path in paths:
             by_text.setdefault(written.get(path, ""), []).append(path)
@@ -215,31 +212,22 @@ def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iter
             own = [path.split(".")[3] for path in together if path.endswith(".face_width")]
             offset = BASE.get(unit, 0.0) if in_heat else 0.0
             if abs(value - offset) > LEAST_EXCESS * abs(value):
-                name = f"{title}{' and '.join(own)}"
-                yield Candidate(tuple(together), name, value, unit, offset, None if heat else power)
+                yield Candidate(tuple(together), f"{title}{' and '.join(own)}", value, unit, offset)
 
 
-def _inputs(
-    case: Case, targets: Sequence[Check], heat: bool
-) -> Iterator[tuple[str, list[str], bool, float | None]]:
-    """Title and paths of the inputs by what the checks follow, whether they are temperatures, and `Candidate.power`."""
-    yield "test torque", ["schedule.test_torque"], False, 1.0
+def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[str, list[str], bool]]:
+    """Title and paths of the inputs by what the checks follow, and whether they are temperatures."""
+    yield "test torque", ["schedule.test_torque"], False
     if any(target.id == "oil.room_temperature" for target in targets):
-        yield "air flow of the room", ["rig_heat.room.air_flow"], False, None
+        yield "air flow of the room", ["rig_heat.room.air_flow"], False
     for name, box in case.gearboxes.items():
         own = f"gearboxes.{name}"
         if heat and box.housing is not None:
-            yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], True, None
-            yield (
-                f"bearing oil inlet temperature of {name}",
-                [f"{own}.bearing_oil.inlet_temperature"],
-                True,
-                None,
-            )
-            yield f"oil flow of {name}", [f"{own}.oil.flow"], False, None
+            yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], True
+            yield f"bearing oil inlet temperature of {name}", [f"{own}.bearing_oil.inlet_temperature"], True
+            yield f"oil flow of {name}", [f"{own}.oil.flow"], False
         if any(target.is_one_of(BY_LOADS) and f".{name}." in target.id for target in targets):
-            widths = [f"{own}.gears.{gear}.face_width" for gear in box.gears]
-            yield f"face width of {name} ", widths, False, -1.0
+            yield f"face width of {name} ", [f"{own}.gears.{gear}.face_width" for gear in box.gears], False
 
 
 def _flips(case: Case, candidate: Candidate, search: Search) -> list[tuple[float, Flip]]:
