@@ -69,7 +69,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -277,14 +277,13 @@ def _fill_row(
     for i in range(R_CLOSING, R_START):
         rows[row + i] = 0.0
     contract_first(tables.cells, (kinds.cells + cell * CELL) & POSITIVE, CELL, curves, rows, row + R_CURVES)
-    if tables.counts[m, C_PLANES] == 1:
-        _add_friction(tables, m, kinds, 0, 1.0, cell, weights, sliding, rows, row)
-        _add_closing(tables, m, kinds, 0, 1.0, cell, weights, rows, row)
-        return
-    for side, share in ((0, 1.0 - plane.share), (1, plane.share)):
+    tilts = tables.counts[m, C_PLANES] > 1
+    for side in range(2 if tilts else 1):
+        share = 1.0 if not tilts else plane.share if side == 1 else 1.0 - plane.share
         _add_friction(tables, m, kinds, side, share, cell, weights, sliding, rows, row)
         _add_closing(tables, m, kinds, side, share, cell, weights, rows, row)
-    _tilt_row(tables, kinds, plane, cell, weights, rows, row)
+    if tilts:
+        _tilt_row(tables, kinds, plane, cell, weights, rows, row)
 
 
 @inlined

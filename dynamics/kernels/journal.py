@@ -37,7 +37,13 @@ def load(eccentricity: float, width_ratio: float, nodes: Array, quotient: Array)
         load over that of a short bearing
     """
     node = node_of(eccentricity)
-    piece = min(max(int(np.searchsorted(nodes, node)) - 1, 0), len(nodes) - 2)
+    piece, beyond = 0, len(nodes) - 1
+    while beyond - piece > 1:
+        middle = (piece + beyond) // 2
+        if nodes[middle] < node:
+            piece = middle
+        else:
+            beyond = middle
     x = node - nodes[piece]
     power = ((quotient[0, piece] * x + quotient[1, piece]) * x + quotient[2, piece]) * x + quotient[3, piece]
     return short_bearing_load(eccentricity, width_ratio) * exp(power)

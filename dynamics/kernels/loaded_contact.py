@@ -153,16 +153,18 @@ def _uncoupled(problem: ContactProblem, force: float) -> float:
     for i in range(n):
         slope = _local_slope(force / n, problem.local[i, 0], problem.local[i, 1])
         stiffness[i] = problem.weight[i] / (problem.compliance[i, i] + slope)
-    order = np.argsort(opens)
-    total, moment = 0.0, 0.0
-    x = float(opens[order[0]])
-    for place in range(n):
-        i = order[place]
-        if place > 0 and opens[i] >= x:
+    total, moment, x = 0.0, 0.0, np.inf
+    for _ in range(n):
+        i = 0  # the next to touch
+        for k in range(1, n):
+            if opens[k] < opens[i]:
+                i = k
+        if opens[i] >= x:
             break
         total += stiffness[i] * problem.weight[i]
         moment += stiffness[i] * problem.weight[i] * opens[i]
-        x = float((force + moment) / total)
+        x = (force + moment) / total
+        opens[i] = np.inf
     return x
 
 
@@ -185,9 +187,12 @@ def _residuals(
         if forces[j] > 0.0:
             for i in range(n):
                 left[i] -= problem.compliance[j, i] * forces[j]
-    left -= closing
+    most = 0.0
+    for i in range(n):
+        left[i] -= closing[i]
+        most = max(most, abs(left[i]))
     missing = 0.0 if math.isnan(wanted) else (wanted - total) / wanted
-    return np.abs(left).max() / scale, missing
+    return most / scale, missing
 
 
 @njit(cache=True)
@@ -204,18 +209,21 @@ def _direction(
 
     missing : force that is to be added [N]; held : the approach stays
     """
-    n = len(forces)
-    touching = np.nonzero(closing > 0.0)[0]
-    m = len(touching)
+    n, m = len(forces), 0
+    touching = np.empty(n, np.int64)
+    for i in range(n):
+        if closing[i] > 0.0:
+            touching[m] = i
+            m += 1
     if m == 0:
         if held:
-            step[:] = left
+            _copy(left, step)
             return 0.0, 0.0, CONVERGED
         return 0.0, 0.0, NO_FORCE
-    matrix, weight = np.empty((m, m)), problem.weight[touching]
-    by_rest, by_approach = left[touching], weight.copy()
+    matrix, by_rest, by_approach = np.empty((m, m)), np.empty(m), np.empty(m)
     for p in range(m):
         i = touching[p]
+        by_rest[p], by_approach[p] = left[i], problem.weight[i]
         for q in range(p, m):
             matrix[q, p] = problem.compliance[touching[q], i]
         matrix[p, p] += _local_slope(forces[i], problem.local[i, 0], problem.local[i, 1])
@@ -223,14 +231,25 @@ def _direction(
         return 0.0, 0.0, NOT_POSITIVE
     _solve(matrix, by_rest)
     _solve(matrix, by_approach)
-    tangent, pressed = np.sum(weight * by_approach), np.sum(weight * by_rest)
+    tangent, pressed = 0.0, 0.0
+    for p in range(m):
+        tangent += problem.weight[touching[p]] * by_approach[p]
+        pressed += problem.weight[touching[p]] * by_rest[p]
     dx = 0.0 if held else (missing - pressed) / tangent
-    step[:] = left + problem.weight * dx
+    for i in range(n):
+        step[i] = left[i] + problem.weight[i] * dx
     for p in range(m):
         more = by_rest[p] + dx * by_approach[p]
         for i in range(n):
             step[i] -= problem.compliance[touching[p], i] * more
     return dx, tangent, CONVERGED
+
+
+@njit(cache=True)
+def _copy(values: Array, into: Array) -> None:
+    """Entry by entry: what numba makes of ``into[:] = values`` takes seconds to compile, for its error message."""
+    for i in range(len(values)):
+        into[i] = values[i]
 
 
 @njit(cache=True)
@@ -243,10 +262,13 @@ def _forces(problem: ContactProblem, closing: Array, forces: Array) -> None:
 @njit(cache=True)
 def _start(problem: ContactProblem, x: float, near: Array) -> tuple[Array, Array]:
     """Forces and closings to start from: the forces given, or those of points that do not know of each other."""
-    n, warm = len(near), np.max(near) > 0.0
-    closing, forces = np.empty(n), near.copy()
+    n, warm = len(near), False
+    closing, forces = np.empty(n), np.empty(n)
     for i in range(n):
-        a, c = problem.local[i]
+        forces[i] = near[i]
+        warm = warm or near[i] > 0.0
+    for i in range(n):
+        a, c = problem.local[i, 0], problem.local[i, 1]
         over = problem.weight[i] * x - problem.gap[i]
         if not warm:
             forces[i] = max(over, 0.0) / (problem.compliance[i, i] + a)
@@ -284,14 +306,17 @@ def press_points(problem: ContactProblem, force: float, approach: float, near: A
         status = NO_CONVERGENCE
         part, merit = 1.0, worst + abs(missing)
         for _ in range(1 if steps < FULL_STEPS else 12):
-            trial[:] = closing + part * step
-            trial_forces[:] = forces
+            for i in range(n):
+                trial[i] = closing[i] + part * step[i]
+            _copy(forces, trial_forces)
             _forces(problem, trial, trial_forces)
             now, lack = _residuals(problem, trial, trial_forces, x + part * dx, force, trial_left)
             if now + abs(lack) < (1.0 - 1e-4 * part) * merit or now + abs(lack) < 10.0 * RESIDUAL:
                 break
             part *= 0.5
-        closing[:], forces[:], left[:] = trial, trial_forces, trial_left
+        _copy(trial, closing)
+        _copy(trial_forces, forces)
+        _copy(trial_left, left)
         x, worst, missing = x + part * dx, now, lack
         steps += 1
     if worst <= RESIDUAL and abs(missing) <= RESIDUAL:

@@ -8,6 +8,8 @@ step guesses the torques (the parabola through the last three), looks at the mes
 and takes a Newton step there (``mesh_solve``). Only where its remainder is too large are the meshes looked at again.
 """
 
+from pathlib import Path
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -79,7 +81,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -121,6 +123,11 @@ def march(
         drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
     return int(_march(tables, modes, wrench, commands, carried, work, steps))
+
+
+def compiled() -> bool:
+    """Whether the march lies compiled on disk."""
+    return any(Path(_march.stats.cache_path).glob("march._march-*.nbi"))
 
 
 @inlined

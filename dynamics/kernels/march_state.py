@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 
 

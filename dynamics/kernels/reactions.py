@@ -48,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -197,21 +197,22 @@ def _mesh_reactions(
     law, counts = meshes.values[0], meshes.counts
     individual = counts[0, INDIVIDUAL] != 0
     table = contacts if individual else meshes.phase_data
+    in_front, behind = np.int64(0), np.int64(1)  # for constants the flanks would be compiled twice
     for n in range(theta_1.shape[0]):
         out[n] = 0.0
         one = MeshState(theta_1[n], reach[n], omega_1[n], omega_2[n])
-        front = _flank_at(meshes, one, 0, contacts, no_pairs)
-        back = _flank_at(meshes, one, 1, contacts, no_pairs)
+        front = _flank_at(meshes, one, in_front, contacts, no_pairs)
+        back = _flank_at(meshes, one, behind, contacts, no_pairs)
         teeth, share = reach[n], 1.0
         if law[BODY] > 0.0:
             teeth, share = tooth_approach(table, Flanks(front, back), law, 0, teeth, teeth)
         rate = law[R1] * omega_1[n] - law[R2] * omega_2[n]
         per_path = 0.0
         if front.n:
-            per_path += _add_flank(table, front, law, 0, Pressing(1.0, teeth, rate, omega_1[n]), out[n])
+            per_path += _add_flank(table, front, law, in_front, Pressing(1.0, teeth, rate, omega_1[n]), out[n])
         if back.n:
             pressing = Pressing(-1.0, -teeth - law[BACKLASH], -rate, omega_1[n])
-            per_path += _add_flank(table, back, law, 1, pressing, out[n])
+            per_path += _add_flank(table, back, law, behind, pressing, out[n])
         # at a fixed approach of the gears the path turns the body as well
         turned = -law[BODY] * share * law[R1] * per_path
         out[n, 8] += out[n, 4] * turned

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 
 MOST_SETS = 64

@@ -20,7 +20,7 @@ from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_a
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 13bed2b9
+# compiled from sources 0f340077
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -33,8 +33,9 @@ def _press_side(
     tables: ContactTables, m: int, state: FlankState, sliding: Sliding, pressing: Pressing, rows: Array
 ) -> Sums:
     """Hold one flank at its state and sum it there."""
-    held = hold_path(tables, m, state, sliding, pressing.reach, rows, 0)
-    return press_rows(rows, 0, held.n, tables.values, m, pressing)
+    first = np.int64(0)  # for a constant everything would be compiled once more
+    held = hold_path(tables, m, state, sliding, pressing.reach, rows, first)
+    return press_rows(rows, first, held.n, tables.values, m, pressing)
 
 
 def table_reactions(tables: ContactTables, m: int, states: MeshStates, tilts: Array, out: Array) -> None:

@@ -12,6 +12,8 @@ from types import MappingProxyType
 
 from threadpoolctl import threadpool_limits
 
+from dynamics.kernels.march import compiled
+from dynamics.response.compile_ahead import compile_time_integration
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
@@ -101,18 +103,20 @@ def solve_case(
     schedule_of(wanted)
     for text in missed(wanted):
         say(text)
-    if wanted.mesh_stiffness == "influence_numbers":
-        wanted.prepare_teeth(say, count)
-        lap("influence_numbers")
-    rig = looping_rig(wanted)
-    for name in rig.models:
-        say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
-    lap("rig_and_mesh")
-    with BackgroundMeshing(wanted, rig) as meshing, one_thread():
-        converged = _converged(rig, say)
-        lap("coupling")
-        rigs = meshing.rigs()
-        lap("other_meshes")
+    with BackgroundTasks(_compilation(wanted, say)) as compilation:
+        if wanted.mesh_stiffness == "influence_numbers":
+            wanted.prepare_teeth(say, count)
+            lap("influence_numbers")
+        rig = looping_rig(wanted)
+        for name in rig.models:
+            say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
+        lap("rig_and_mesh")
+        with BackgroundMeshing(wanted, rig) as meshing, one_thread():
+            converged = _converged(rig, say)
+            lap("coupling")
+            rigs = meshing.rigs()
+            lap("other_meshes")
+        _ = compilation.results()
     wanted = rigs[-1]
     if rig.drivetrain is not None:
         require_damping(rig, held_crossings(rig, governing_point(converged)))
@@ -154,6 +158,14 @@ def solve_case(
     lap("load_errors")
     say("assembling the result")
     return solved
+
+
+def _compilation(rig: Rig, say: Progress) -> list[Callable[[], None]]:
+    """Compiling the time integration, which the coupling loop does not need; nothing where it lies on disk."""
+    if rig.drivetrain is None or compiled():
+        return []
+    say("compiling the time integration meanwhile: once after an installation, half a minute")
+    return [compile_time_integration]
 
 
 def _time_runs(rig: Rig, converged: Sequence[PointResult]) -> list[Callable[[], TimeResponse]]:

@@ -277,9 +277,11 @@ def facet_slots(facets: Integers, indptr: Integers, indices: Integers) -> Intege
     for f in range(len(facets)):
         for a in range(n_local):
             row = facets[f, a]
-            columns = indices[indptr[row] : indptr[row + 1]]
             for b in range(n_local):
-                slots[f, a, b] = indptr[row] + np.searchsorted(columns, facets[f, b])
+                at = indptr[row]
+                while indices[at] != facets[f, b]:
+                    at += 1
+                slots[f, a, b] = at
     return slots
 
 

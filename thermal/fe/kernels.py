@@ -212,7 +212,9 @@ def diagonal_blocks(indptr: Integers, indices: Integers, data: Numbers) -> Numbe
     for row in range(len(indptr) - 1):
         for at in range(indptr[row], indptr[row + 1]):
             if indices[at] == row:
-                blocks[row] = data[at]
+                for i in range(3):
+                    for j in range(3):
+                        blocks[row, i, j] = data[at, i, j]
     return blocks
 
 
