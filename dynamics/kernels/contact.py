@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -69,7 +69,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

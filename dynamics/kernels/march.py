@@ -81,7 +81,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

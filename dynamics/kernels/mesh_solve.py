@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 
 

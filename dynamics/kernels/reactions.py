@@ -48,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -209,7 +209,9 @@ def _mesh_reactions(
         rate = law[R1] * omega_1[n] - law[R2] * omega_2[n]
         per_path = 0.0
         if front.n:
-            per_path += _add_flank(table, front, law, in_front, Pressing(1.0, teeth, rate, omega_1[n]), out[n])
+            per_path += _add_flank(
+                table, front, law, in_front, Pressing(1.0, teeth, rate, omega_1[n]), out[n]
+            )
         if back.n:
             pressing = Pressing(-1.0, -teeth - law[BACKLASH], -rate, omega_1[n])
             per_path += _add_flank(table, back, law, behind, pressing, out[n])

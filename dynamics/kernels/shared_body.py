@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources 0f340077
+# compiled from sources 974ce4be
 Array = NDArray[np.float64]
 
 MOST_SETS = 64

@@ -82,7 +82,9 @@ def wrench_modes(
         pieces=pieces,
         push=flat,
         slide_push=push[n:],
-        held=np.ascontiguousarray(np.hstack(outputs)),  # also without any: another order is another compilation
+        held=np.ascontiguousarray(
+            np.hstack(outputs)
+        ),  # also without any: another order is another compilation
         rows=layout.lay(seen.conj()).ravel(),
         by_torque=np.ascontiguousarray(np.stack((-rate[:, :n_fast].T, new[:, :n_fast].T))),
         by_force=np.ascontiguousarray(wrench_columns(model, new - rate).T.real),

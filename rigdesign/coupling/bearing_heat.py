@@ -34,10 +34,8 @@ def body_shares(rig: Rig, name: str, state: BearingState) -> list[tuple[Seat, fl
     return [(seat, conductance / total) for seat, conductance in conductances(rig, name, state.star)]
 
 
-def seat_conditions(
-    rig: Rig, name: str, star: HeatStar, oil_temperature: float, film_kind: str
-) -> Iterator[BoundaryCondition]:
-    """Exchange of the seats through the bearing, and films of both to its oil as it comes, at ``oil_temperature`` [K].
+def seat_conditions(rig: Rig, name: str, star: HeatStar, film_kind: str) -> Iterator[BoundaryCondition]:
+    """Exchange of the seats through the bearing, and films of both to its oil as it comes.
 
     film_kind : of the rows of the films
     """
@@ -46,7 +44,7 @@ def seat_conditions(
         yield Film(
             surface=seat.surface,
             kind=film_kind,
-            fluid_temperature=oil_temperature,
+            fluid_temperature=star.oil_temperature,
             law=on_surface(rig, name, seat, conductance * star.oil / star.total),
         )
     if len(seats) == 2:

@@ -11,7 +11,14 @@ from rigdesign.case.given_film import ConstantFilm, TakenFrom
 from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
 from rigdesign.coupling.enclosures import enclosure_conditions
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
-from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, HousingContext
+from rigdesign.coupling.housing_context import (
+    AIR,
+    BEARING_FILM,
+    BEARING_OIL,
+    GEAR_OIL,
+    HousingContext,
+    OilFilm,
+)
 from rigdesign.coupling.housing_fluids import WettedSurface, fluid_networks
 from rigdesign.coupling.leak_by_side import side_excess
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
@@ -20,7 +27,6 @@ from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import (
     ChamberOil,
-    bearing_feed,
     bearing_oil,
     gear_oil,
 )
@@ -89,12 +95,11 @@ def _with_free_sump(
     chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
     fed = context.box.fed_bearings is not None
     own = (GEAR_OIL,) if fed else (GEAR_OIL, BEARING_OIL, BEARING_FILM)
-    films: list[Film] = []
+    films: list[OilFilm] = []
     rest: list[Condition] = []
     for condition in conditions:
-        film = condition if isinstance(condition, Film) else None
-        if film is not None and film.kind.startswith(own) and film.fluid_temperature == chamber:
-            films.append(film)
+        if isinstance(condition, OilFilm) and condition.kind.startswith(own) and condition.follows == 1.0:
+            films.append(condition)
         else:
             rest.append(condition)
     heat = heat_into_gear_oil(losses, context.name, bearings_fed=fed)
@@ -151,7 +156,8 @@ def _condition(
         state = context.coupling_state
         chamber = ChamberOil.of(context.name, state.oil_outlet, state.oil_supply)
         flanks = gear_flanks(context.rig, context.name, gear, context.point, condition, chamber)
-        return flanks.film(surface, GEAR_OIL)
+        film = flanks.film(surface, GEAR_OIL)
+        return OilFilm(**vars(film), follows=1.0 if context.box.jets is None else 0.0)
     return _film(context, condition, surface)
 
 
@@ -166,7 +172,12 @@ def _film(context: HousingContext, condition: SurfaceFilm, surface: str) -> Film
         law = convection.scaled(law, housing.ambient_film_factor * of_wall)
     usual += side_excess(context.rig, context.name, context.coupling_state, surface, condition.wetted_by)
     temperature = condition.fluid_temperature_given(usual)
-    return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
+    film = Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
+    if kind == AIR:
+        return film
+    return OilFilm(
+        **vars(film), follows=context.follows(condition.wetted_by) if temperature == usual else 0.0
+    )
 
 
 def _wetted(context: HousingContext, condition: SurfaceFilm, surface: str) -> WettedSurface:
@@ -201,9 +212,10 @@ def _bearing_film(context: HousingContext, condition: laws.BearingFilm, surface:
     """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition."""
     part, state = _bearing_of(context, surface)
     oil = bearing_oil(context.rig, context.name)
-    return Film(
+    return OilFilm(
         surface=surface,
         kind=f"{BEARING_FILM}:{part}",
+        follows=0.5,
         fluid_temperature=state.film_temperature,
         law=convection.scaled(
             convection.bearing_film(oil.conductivity(state.film_temperature), 1.0 / state.mean_inverse_gap),
@@ -223,13 +235,14 @@ def _bearing_of(context: HousingContext, surface: str) -> tuple[str, BearingStat
 
 def _joined_bearings(context: HousingContext) -> Iterator[BoundaryCondition]:
     """Conduction through the bearings that are joined to their seats, into shaft, housing and oil."""
-    chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
-    inlet = bearing_feed(context.rig, context.name, chamber).inlet
+    follows = 1.0 if context.box.fed_bearings is None else 0.0
     for part in context.box.bearings:
         full = f"{context.name}.{part}"
         star = context.bearings[full].star
         if star is not None:
-            yield from seat_conditions(context.rig, full, star, inlet, f"{BEARING_FILM}:{part}")
+            for condition in seat_conditions(context.rig, full, star, f"{BEARING_FILM}:{part}"):
+                film = isinstance(condition, Film)
+                yield OilFilm(**vars(condition), follows=follows) if film else condition
 
 
 def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:

@@ -21,11 +21,23 @@ from rigdesign.rig.oil_supply import (
     gear_feed,
     wetted_width,
 )
+from thermal.conditions.boundary import Film
 from thermal.housing.geometry import HousingGeometry
 from thermal.housing.shaft_geometry import ShaftGeometry
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
 """Kinds of films: what takes the heat up, as the heat balance names it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilFilm(Film):
+    """A film to an oil.
+
+    follows : kelvin by which the oil at the surface is warmer where it leaves one kelvin warmer: 0 as it is fed, 1 as
+        it leaves
+    """
+
+    follows: float
 
 
 @dataclass(frozen=True)
@@ -72,6 +84,11 @@ class HousingContext:
         )
         outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
+
+    def follows(self, name: str) -> float:
+        """`OilFilm.follows` of an oil as the case names it; one that is not fed has the temperature of its sump."""
+        kind, _, which = name.rpartition("_")
+        return {"inlet": 0.0, "outlet": 1.0, "mean": 0.5}[which] if kind in self.box.feeds else 1.0
 
     def finds_own_temperature(self, fluid: str | None) -> bool:
         """Whether a fluid is a volume or stream of the housing."""

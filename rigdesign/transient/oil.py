@@ -2,8 +2,8 @@
 
 The steady conditions know the outlet temperatures of the coupled run. Over time the oil leaves with what it has
 taken up: each oil is a stream with one outlet temperature, each bearing film a stream of its own that ends in the
-oil of the bearings. What a film feels of inlet and outlet is read from the steady conditions by moving the outlet
-by one kelvin. At a held stage the two descriptions have the same steady state.
+oil of the bearings. A film feels as much of inlet and outlet as that of the steady conditions (`OilFilm.follows`). At a
+held stage the two descriptions have the same steady state.
 
 Without oil the streams stop. Chambers then are volumes of air: while the rig turns, what is left of the oil still
 wets the walls; at standstill their films are those of still air. No oil carries friction heat away any more: that
@@ -12,13 +12,13 @@ of the teeth stays in the gears, that of the bearings in the oil of their films.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from rigdesign.case.jets import injected_flow
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL, OilFilm
 from rigdesign.coupling.housing_fluids import without_oils
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
@@ -34,8 +34,6 @@ from thermal.films.law import FilmCoefficient, FilmLaw
 
 OIL_ONLY = ("oil_acceleration", "squeeze")
 """Losses that end with the oil."""
-MOVED = 1.0
-"""Step [K] of the outlet by which the share of the inlet in each film is read."""
 THERMOSTAT = 1e6
 """Conductance that ties a held sump to its temperature [W/K]: 10 kW move it by 10 mK."""
 HEATER_AND_COOLER = "heater and cooler"
@@ -44,42 +42,30 @@ FEED = "feed"
 LEAK = "gear oil leaked"
 
 
-@dataclass(frozen=True)
-class _Stream:
-    """Films of one volume."""
-
-    volume: str
-    feed: str
-    films: tuple[VolumeFilm, ...]
-    supplies: tuple[Supply, ...]
-
-
 def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tuple[Condition, ...]:
     """Conditions of the housing of gearbox ``name`` at one speed and torque.
 
     oil : whether the rig is fed
     """
     losses = state.losses if oil else tuple(_dry(p) for p in state.losses if p.loss.kind not in OIL_ONLY)
-    given = _steady(rig, name, state, losses)
-    moved = _steady(rig, name, _warmer(state), losses)
     floor = rig.case.transient.still_film
     turning = state.point.speed > 0.0
     bodies: list[Condition] = []
-    wetted: list[tuple[Film, float]] = []
-    for condition, other in zip(given, moved, strict=True):
-        if not isinstance(condition, Film) or not isinstance(other, Film):
+    wetted: list[OilFilm] = []
+    for condition in _steady(rig, name, state, losses):
+        if not isinstance(condition, Film):
             bodies.append(_led_to_oils(condition))
             continue
         film = _floored(condition, floor)
-        if film.kind == AIR:
+        if not isinstance(film, OilFilm):
             bodies.append(film)
             continue
         if not (oil or turning or film.kind.startswith(BEARING_FILM)) and film is condition:
             film = replace(film, law=still(floor))
-        wetted.append((film, (other.fluid_temperature - condition.fluid_temperature) / MOVED))
+        wetted.append(film)
     nodes = bearing_nodes(rig, name, state, losses)
     seated = {f"{BEARING_FILM}:{part}" for part in nodes}
-    films = [(film, slope) for film, slope in wetted if film.kind not in seated]
+    films = [film for film in wetted if film.kind not in seated]
     rest = [c for c in bodies if getattr(c, "kind", "") not in (BEARING_SEATS, BEARING_LOSS)]
     gears = _gear_network(rig, name, state, losses, films, oil)
     if rig.case.gearboxes[name].fed_bearings is None:
@@ -140,16 +126,6 @@ def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss
     return [condition for condition in conditions if not isinstance(condition, StoredHeat)]
 
 
-def _warmer(state: PointLosses) -> PointLosses:
-    """The same state with every oil outlet and film one step warmer."""
-    outlets = {stream: value + MOVED for stream, value in state.coupling_state.oil_outlet.items()}
-    films = {
-        bearing: replace(film, film_temperature=film.film_temperature + 0.5 * MOVED)
-        for bearing, film in state.bearings.items()
-    }
-    return replace(state, coupling_state=replace(state.coupling_state, oil_outlet=outlets), bearings=films)
-
-
 def _dry(placed: PlacedLoss) -> PlacedLoss:
     """A loss no oil carries away: friction of the teeth stays in the gears."""
     if placed.split is None:
@@ -168,7 +144,7 @@ def _gear_network(
     name: str,
     state: PointLosses,
     losses: Sequence[PlacedLoss],
-    wetted: Sequence[tuple[Film, float]],
+    wetted: Sequence[OilFilm],
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
@@ -177,7 +153,7 @@ def _gear_network(
         return _sump_network(rig, name, box.sump, state, losses, wetted)
     fed = replace(gear_feed(rig, name, outlet, state.coupling_state.oil_supply), flow=wall_flow(box))
     feed = f"{GEAR_OIL} {FEED}"
-    stream = _films(GEAR_OIL, feed, fed.inlet, wetted, oil, _gear_kinds(rig, name))
+    films, supplies = _films(GEAR_OIL, feed, fed.inlet, wetted, oil, _gear_kinds(rig, name))
     power = _gear_heat(rig, name, losses)
     # oil that goes from the meshes straight to the outlet takes its part of their heat along
     flow = fed.mass_flow
@@ -186,8 +162,8 @@ def _gear_network(
     return StreamNetwork(
         specific_heat=fed.oil.heat_capacity(fed.mean(outlet)),
         volumes=(Volume(name=GEAR_OIL, power=power),),
-        films=stream.films,
-        supplies=(Supply(name=feed, temperature=fed.inlet), *stream.supplies),
+        films=films,
+        supplies=(Supply(name=feed, temperature=fed.inlet), *supplies),
         streams=(
             Stream(source=feed, target=GEAR_OIL, mass_flow=flow),
             Stream(source=GEAR_OIL, target=None, mass_flow=flow),
@@ -203,7 +179,7 @@ def _sump_network(
     sump: DipOil,
     state: PointLosses,
     losses: Sequence[PlacedLoss],
-    wetted: Sequence[tuple[Film, float]],
+    wetted: Sequence[OilFilm],
 ) -> StreamNetwork:
     """The sump as one volume that stores heat; held, it is tied to the temperature of its heater and cooler."""
     chamber = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
@@ -211,7 +187,7 @@ def _sump_network(
     lubricant = gear_oil(rig, name)
     heat = _gear_heat(rig, name, losses)
     specific_heat = lubricant.heat_capacity(chamber)
-    stream = _films(GEAR_OIL, feed, chamber, wetted, False, _gear_kinds(rig, name))
+    films, _ = _films(GEAR_OIL, feed, chamber, wetted, False, _gear_kinds(rig, name))
     return StreamNetwork(
         specific_heat=specific_heat,
         volumes=(
@@ -221,7 +197,7 @@ def _sump_network(
                 heat_capacity=lubricant.density(chamber) * sump.volume * specific_heat,
             ),
         ),
-        films=stream.films,
+        films=films,
         supplies=()
         if sump.sump_temperature is None
         else (Supply(name=feed, temperature=sump.sump_temperature),),
@@ -236,7 +212,7 @@ def _bearing_network(
     name: str,
     state: PointLosses,
     losses: Sequence[PlacedLoss],
-    wetted: Sequence[tuple[Film, float]],
+    wetted: Sequence[OilFilm],
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
@@ -268,13 +244,13 @@ def _bearing_network(
             *(Volume(name=f"{BEARING_FILM}:{part}", power=friction[part]) for part in box.bearings),
         ),
         films=(
-            *(film for part in parts for film in part.films),
+            *(film for films, _ in parts for film in films),
             *(film for node in nodes.values() for film in node.films),
         ),
         supplies=(
             Supply(name=feed, temperature=fed.inlet),
             *(() if leak is None else (Supply(name=LEAK, temperature=leak[0]),)),
-            *(supply for part in parts for supply in part.supplies),
+            *(supply for _, supplies in parts for supply in supplies),
         ),
         streams=_bearing_streams(feed, flows, each, 0.0 if leak is None else leak[1]) if oil else (),
     )
@@ -316,24 +292,24 @@ def _films(
     kind: str,
     feed: str,
     inlet: float,
-    wetted: Sequence[tuple[Film, float]],
+    wetted: Sequence[OilFilm],
     oil: bool,
     kinds: tuple[str, ...] = (),
-) -> _Stream:
+) -> tuple[tuple[VolumeFilm, ...], tuple[Supply, ...]]:
     """Films of one kind on their volume, or of several ``kinds``: each feels as much of the inlet as the steady one."""
     films, supplies = [], []
-    for film, slope in wetted:
+    for film in wetted:
         if film.kind not in (kinds or (kind,)):
             continue
         if not oil:
             films.append(VolumeFilm(surface=film.surface, volume=kind, kind=film.kind, law=film.law))
-        elif slope == 0.0:
+        elif film.follows == 0.0:
             place = f"{film.surface} fluid"
             supplies.append(Supply(name=place, temperature=film.fluid_temperature))
             films.append(_fed(film, kind, place, film.fluid_temperature, 1.0))
         else:
-            films.append(_fed(film, kind, feed, inlet, 1.0 - slope))
-    return _Stream(kind, feed, tuple(films), tuple(supplies))
+            films.append(_fed(film, kind, feed, inlet, 1.0 - film.follows))
+    return tuple(films), tuple(supplies)
 
 
 def _fed(film: Film, volume: str, supply: str, temperature: float, share: float) -> VolumeFilm:

@@ -18,6 +18,7 @@ from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_heat import conductances
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads
+from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.losses import rotating_losses
@@ -39,6 +40,7 @@ from rigdesign.transient.oil import oil_conditions
 from tests.builders.rolling_rig import FED, GREASE, SPLASH, rolling_case
 from tests.builders.shaft_weight import weight_on_bearing
 from tests.builders.static_deflection import static_deflection
+from thermal.conditions.boundary import Film
 from thermal.conduction.steady import solve_steady
 
 OIL = OilSupply(
@@ -139,6 +141,19 @@ def test_over_time_a_held_stage_is_the_steady_one_and_without_oil_the_seats_take
         losses.bearings["test.pinion_front"].power, rel=1e-4
     )
     assert not [row for row in dry.balance.rows if row.kind in ("bearing_seats", "bearing_loss")]
+
+
+def test_seats_feel_the_oil_as_a_circuit_feeds_it() -> None:
+    """A supply 10 K above what the case states: the films of the seats must have it as the bearing has."""
+    rig, losses = _solved(FED)
+    supply = {"test.bearing_oil": losses.bearings["test.pinion_front"].star.oil_temperature + 10.0}  # type: ignore[union-attr]
+    state = replace(losses.coupling_state, oil_supply=supply)
+    warm = _losses(rig, losses.point, state, mesh_models(rig, losses.point, state))
+    conditions = boundary_conditions(rig, "test", warm, radiation_included=True)
+    fed = {
+        c.fluid_temperature for c in conditions if isinstance(c, Film) and c.kind.startswith("bearing_film:")
+    }
+    assert fed == set(supply.values())
 
 
 def test_fits_and_temperatures_make_the_operating_clearance(tmp_path: Path) -> None:
