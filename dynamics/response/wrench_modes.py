@@ -78,13 +78,12 @@ def wrench_modes(
     seen, rate = model.wrench_outputs, model.wrench_through_rate / step
     new = (seen @ hold).real + model.wrench_through + rate
     n_fast = 2 * model.n_meshes
+    # all in one order, with forces beside the ports and without: another one is compiled anew
     return WrenchModes(
         pieces=pieces,
         push=flat,
         slide_push=push[n:],
-        held=np.ascontiguousarray(
-            np.hstack(outputs)
-        ),  # also without any: another order is another compilation
+        held=np.ascontiguousarray(np.hstack(outputs)),
         rows=layout.lay(seen.conj()).ravel(),
         by_torque=np.ascontiguousarray(np.stack((-rate[:, :n_fast].T, new[:, :n_fast].T))),
         by_force=np.ascontiguousarray(wrench_columns(model, new - rate).T.real),
