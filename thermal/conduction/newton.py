@@ -1,21 +1,18 @@
-"""Newton's method on the equations of thermal.conduction.terms, and the field it starts from.
+"""Newton's method on the equations of thermal.conduction.terms.
 
-`newton` iterates on the residual and Jacobian of a problem with multigrid inside: conjugate gradients where the
-Jacobian is symmetric, GMRES where mean temperatures add to it. `linear_start` solves the problem on the corner
-nodes first, on which an iteration costs a tenth: what is left to the second-order space is small and nearly
-linear. Source: Deuflhard, Newton Methods for Nonlinear Problems, ch. 8.1 (nested iteration).
+Residual and Jacobian of a problem with multigrid inside: conjugate gradients where the Jacobian is symmetric, GMRES
+where mean temperatures add to it. It starts from one temperature everywhere as well as from a field on the corner
+nodes, which takes longer to find than it saves: where facets are curved, cells with straight edges are another problem.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
 from thermal.conduction.terms import ConductionProblem, Linearisation, Preconditioner
 from thermal.errors import ThermalInputError, ThermalNotConverged
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import LinearSolution, LinearSpace, conjugate_gradient, gmres
+from thermal.fe.solver import LinearSolution, conjugate_gradient, gmres
 
 CONTRACTION = 0.1
 """Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
@@ -25,12 +22,6 @@ WORN = 14
 
 SMALLEST_STEP = 1e-2
 """Share of a Newton step that is taken even if the residual rises."""
-
-START = 1e-3
-"""Residual on the linear space, relative to the heat turned over, with which the second-order space goes on."""
-
-START_STEPS = 8
-"""Newton steps on the linear space at most; what they have reached is only a start."""
 
 
 @dataclass(frozen=True)
@@ -93,46 +84,7 @@ def newton(
         if step.iterations > WORN and not made and problem.storage is None:
             preconditioner = None
         whole = linear.whole(residual, step.values)
-        field, residual, turned = _line_search(problem, field, whole, residual, _norm)
-
-
-def linear_start(problem: ConductionProblem, field: FloatArray) -> FloatArray:
-    """A start (n_nodes + m,) for `newton`: the solution on the linear space, near to `START`, from ``field``.
-
-    The residual is that of the second-order space, weighted with the linear shape functions. Where an iteration
-    stalls the field so far is handed back.
-    """
-    n, up = problem.n_nodes, problem.elements.prolongation
-    down = sparse.csr_array(up.T)
-    fixed = problem.fixed[problem.elements.corners]
-
-    def norm(residual: FloatArray) -> float:
-        on_corners = np.where(fixed, 0.0, down @ residual[:n])
-        return float(np.abs(on_corners).sum() + np.abs(residual[n:]).sum())
-
-    out, turned = problem.heat_out(field)
-    residual = problem.residual(out)
-    space: LinearSpace | None = None
-    for _ in range(START_STEPS):
-        if norm(residual) <= START * turned:
-            break
-        matrix, parts = problem.linear_matrix(field), problem.small_parts(field)
-        if space is None:
-            space = LinearSpace(matrix, fixed, np.ones((len(fixed), 1)))
-        low_rank = None if parts.low_rank is None else parts.low_rank.under(down)
-        linear = Linearisation(low_rank, None, fixed, matrix, None)
-        space.set_low_rank(low_rank)
-        load = np.where(fixed, 0.0, down @ parts.load(residual))
-        try:
-            step = _solved(linear, load, space, START)
-        except ThermalNotConverged:
-            break
-        whole = parts.whole(residual, np.where(problem.fixed, 0.0, up @ step.values))
-        try:
-            field, residual, turned = _line_search(problem, field, whole, residual, norm)
-        except ThermalInputError:  # of a film law
-            break
-    return field
+        field, residual, turned = _line_search(problem, field, whole, residual)
 
 
 def _solved(
@@ -142,10 +94,6 @@ def _solved(
     if linear.symmetric:
         return conjugate_gradient(linear.matrix, load, preconditioner, tolerance=tolerance)
     return gmres(linear, load, preconditioner, tolerance=tolerance)
-
-
-def _norm(residual: FloatArray) -> float:
-    return float(np.linalg.norm(residual))
 
 
 def _hottest(problem: ConductionProblem, field: FloatArray) -> str:
@@ -171,13 +119,12 @@ def _line_search(
     temperature: FloatArray,
     step: FloatArray,
     residual: FloatArray,
-    norm: Callable[[FloatArray], float],
 ) -> tuple[FloatArray, FloatArray, float]:
     """Halve the step until temperatures are positive, every film law can be evaluated and the residual falls.
 
     Return field, residual and heat turned over. What a law raises is passed on if no part of the step helps.
     """
-    before = norm(residual)
+    before = float(np.linalg.norm(residual))
     share = 1.0
     while True:
         trial = temperature + share * step
@@ -190,6 +137,6 @@ def _line_search(
                     raise
             else:
                 after = problem.residual(out)
-                if last or norm(after) <= (1.0 - 1e-4 * share) * before:
+                if last or np.linalg.norm(after) <= (1.0 - 1e-4 * share) * before:
                     return trial, after, turned
         share *= 0.5

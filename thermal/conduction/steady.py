@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from thermal.conduction.balance import HeatBalance, heat_balance
 from thermal.conduction.condition_checks import Condition, check_conditions
-from thermal.conduction.newton import linear_start, newton
+from thermal.conduction.newton import newton
 from thermal.conduction.setup import ConductionSetup as ConductionSetup
 from thermal.conduction.terms import ConductionProblem, Preconditioner
 from thermal.errors import ThermalNotConverged
@@ -52,8 +52,7 @@ def solve_steady(
     setup : mesh and conductivities, with what does not depend on the conditions at hand
     conditions : at least one for every surface on the boundary, see thermal.conditions.boundary, contact, enclosure,
         streams
-    initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None. From
-        one value the problem is solved on the linear space first
+    initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None
     near : solution on this mesh under conditions not far off, to start from in field and preconditioner
     tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to ten times it
 
@@ -64,8 +63,6 @@ def solve_steady(
     problem = ConductionProblem(setup, conditions)
     start = problem.start(initial if near is None else near.temperature)
     problem.check_paths(start)
-    if near is None and (initial is None or isinstance(initial, float | int)):
-        start = linear_start(problem, start)
     result = newton(problem, start, tolerance, max_steps, None if near is None else near.preconditioner)
     n = problem.n_nodes
     temperature, volumes = result.field[:n], dict(zip(problem.volumes.index, result.field[n:].tolist()))

@@ -52,11 +52,14 @@ OFF_REST = 1.0
 
 
 @dataclass(frozen=True)
-class SmallParts:
-    """What mean temperatures and volumes add to the Jacobian around one field, volumes eliminated."""
+class Linearisation:
+    """The Jacobian around one field, volumes eliminated: what a Newton step solves with."""
 
+    matrix: sparse.csr_array
     low_rank: LowRank | None
+    """What mean temperatures and volumes add."""
     elimination: Elimination | None
+    conductivity_slope: Operator | None
     fixed: BoolArray
     """(n_nodes,)"""
 
@@ -74,14 +77,6 @@ class SmallParts:
         if self.elimination is None:
             return step
         return np.append(step, self.elimination.volume_step(residual[len(step) :], step))
-
-
-@dataclass(frozen=True)
-class Linearisation(SmallParts):
-    """The Jacobian around one field: what a Newton step solves with."""
-
-    matrix: sparse.csr_array
-    conductivity_slope: Operator | None
 
     @property
     def symmetric(self) -> bool:
@@ -276,29 +271,24 @@ class ConductionProblem:
         joints = self.contacts.matrix(temperature)
         if joints is not None:
             matrix = sparse.csr_array(matrix + joints)
-        parts = self.small_parts(field)
-        return Linearisation(
-            low_rank=parts.low_rank,
-            elimination=parts.elimination,
-            fixed=self.fixed,
-            matrix=constrain(matrix, self.fixed, overwrite=True),
-            conductivity_slope=slope,
-        )
-
-    def small_parts(self, field: FloatArray) -> SmallParts:
-        """What mean temperatures and volumes add to the Jacobian at a field."""
-        temperature, volumes = field[: self.n_nodes], field[self.n_nodes :]
         columns = self.walls.columns(temperature) + self.contacts.columns(temperature)
         for terms in self.enclosures:
             columns += terms.columns(temperature)
         elimination = None
         if len(self.volumes):
+            volumes = field[self.n_nodes :]
             stored = (
                 np.zeros(len(volumes)) if self.storage is None else self.storage.rate * self.storage.volumes
             )
             elimination = eliminate(self.volumes, temperature, volumes, stored)
             columns += elimination.columns
-        return SmallParts(self._low_rank(columns), elimination, self.fixed)
+        return Linearisation(
+            matrix=constrain(matrix, self.fixed, overwrite=True),
+            low_rank=self._low_rank(columns),
+            elimination=elimination,
+            conductivity_slope=slope,
+            fixed=self.fixed,
+        )
 
     def _low_rank(self, columns: list[tuple[Column, Column]]) -> LowRank | None:
         columns = [(left, right) for left, right in columns if len(left[0]) and len(right[0])]

@@ -144,10 +144,6 @@ class LinearSpace:
             y = (y - solved @ (inner @ y)).astype(np.float32)
         return y * self._free
 
-    def __call__(self, residual: FloatArray) -> FloatArray:
-        """Apply it to a residual (n,)."""
-        return _in_single(self.cycle, residual)
-
 
 def _in_single(cycle: Callable[[Numbers], Numbers], residual: FloatArray) -> FloatArray:
     """Apply a cycle in single precision to a residual of any size."""

@@ -13,14 +13,13 @@ from scipy import sparse
 from thermal.errors import ThermalNotConverged
 from thermal.fe import kernels
 from thermal.fe.arrays import FloatArray
-from thermal.fe.multigrid import HeldMatrix, LinearSpace, TwoLevelMultigrid
+from thermal.fe.multigrid import HeldMatrix, TwoLevelMultigrid
 from thermal.fe.products import BoolArray, LowRank, Matrix, Product
 
 __all__ = [
     "BoolArray",
     "HeldMatrix",
     "LinearSolution",
-    "LinearSpace",
     "LowRank",
     "Matrix",
     "Operator",

@@ -1,4 +1,4 @@
-"""Newton's method: which linear solver serves which Jacobian, and what a start on the linear space saves."""
+"""Newton's method: which linear solver serves which Jacobian, and from where it starts."""
 
 import numpy as np
 import pytest
@@ -46,29 +46,17 @@ def test_the_jacobian_decides_on_the_solver(
 
 
 @pytest.mark.parametrize("power", [0.0, 0.3])
-def test_a_start_on_the_linear_space_saves_steps(
-    mesh: NamedMesh, power: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    started = solved(mesh, power, initial=400.0)
-    monkeypatch.setattr("thermal.conduction.steady.linear_start", lambda problem, field: field)
-    plain = solved(mesh, power, initial=400.0)
-    assert_allclose(started.temperature, plain.temperature, rtol=1e-9)
-    assert len(started.linear_iterations) <= len(plain.linear_iterations) - 2
-    assert sum(started.linear_iterations) <= 0.75 * sum(plain.linear_iterations)
+def test_any_one_temperature_leads_to_the_field(mesh: NamedMesh, power: float) -> None:
+    """Radiation at 1400 K from 250 K on: the step is halved where it overshoots."""
+    near = solved(mesh, power, initial=1400.0)
+    for start in (250.0, 400.0, 3000.0):
+        found = solved(mesh, power, initial=start)
+        assert_allclose(found.temperature, near.temperature, rtol=1e-9)
+        assert len(found.linear_iterations) <= len(near.linear_iterations) + 6
 
 
-def test_a_start_solves_the_linear_space(mesh: NamedMesh) -> None:
-    problem = ConductionProblem(ConductionSetup(mesh, {"box": 45.0}), glowing(0.3))
-    field = newton.linear_start(problem, problem.start(400.0))
-    out, turned = problem.heat_out(field)
-    left = np.abs(problem.elements.prolongation.T @ problem.residual(out)).sum()
-    assert left <= newton.START * turned
-    assert_allclose(field, solved(mesh, 0.3).temperature, rtol=0.01)
-
-
-def test_a_given_field_is_taken_as_it_is(mesh: NamedMesh, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_given_field_is_taken_as_it_is(mesh: NamedMesh) -> None:
     exact = solved(mesh)
-    monkeypatch.setattr("thermal.conduction.steady.linear_start", unused)
     assert (
         solve_steady(ConductionSetup(mesh, {"box": 45.0}), glowing(), exact.temperature).linear_iterations
         == ()
