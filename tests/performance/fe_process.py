@@ -75,7 +75,7 @@ def main(what: str, folder: Path, again: bool) -> None:
         marks.append(time.process_time())
         values, iterations = solution.values, [(solution.iterations,)]
         if again:
-            second_solution = elastic.solve(temperature + 5.0, given["cold"], start=solution.values)
+            second_solution = elastic.solve(temperature + 5.0, given["cold"])
             iterations.append((second_solution.iterations,))
     marks.append(time.process_time())
     np.save(folder / "values.npy", values)
