@@ -26,12 +26,17 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
+from dynamics.contact.face import FaceGrid
+from dynamics.contact.flank_gap import flank_gap
+from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
 from dynamics.flank.field import FlankField
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
+from dynamics.mesh.pair_gap import PairGap
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.records.gauge_stress import ElasticGear
@@ -41,7 +46,6 @@ from rigdesign.strain_gauge.gauge_curve import GaugeCurve
 from rigdesign.validation.p1_contact import (
     Divided,
     coarse,
-    contact_of,
     corner_load,
     cycle_at,
     elastic_contact,
@@ -70,6 +74,23 @@ SLOPE_STEP, MOST_STEP = 0.25, 4.0
 """Change of the helix angle for a slope, and the largest correction by it [deg]."""
 HELICES = np.arange(0.5, 35.01, 0.5)
 """Helix angles looked at [deg]."""
+
+
+def contact_of(
+    pair: GearPair,
+    micro: tuple[Microgeometry, Microgeometry],
+    coupling: float = USUAL_COUPLING,
+    n_face: int = 21,
+    n_positions: int = 128,
+) -> LoadedMesh:
+    """Loaded mesh on Weber and Banaschek's teeth; ``coupling`` : of the slices, in normal modules."""
+    grid = FaceGrid.over(pair.face_width, n_face)
+    first, second = (
+        SliceCompliance(pair=pair, index=i, grid=grid, coupling_length=coupling * pair.normal_module)
+        for i in (0, 1)
+    )
+    gap = flank_gap(PairGap.of_pair(pair, micro))
+    return LoadedMesh(pair=pair, gears=(first, second), grid=grid, gap=gap, n_positions=n_positions)
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,7 @@ from rigdesign.strain_gauge.bridge import Bridge
 from rigdesign.strain_gauge.placement import (
     GaugePlacement,
     RootRegion,
-    StressField,
     check_inside,
-    grid_average,
 )
 from rigdesign.strain_gauge.surface_stress import SurfaceStress
 
@@ -58,10 +56,6 @@ class MeasuringPoint:
     def strain_factor(self) -> float:
         """Indicated strain over strain along the fillet [-]: transverse sensitivity and misalignment."""
         return self.bridge.gauge.indicated(self.surface.strain_ratio, self.placement.misalignment)
-
-    def averaged(self, field: StressField) -> Array:
-        """Stress along the fillet, mean over the grid (...,) [Pa]."""
-        return grid_average(field, self.bridge.gauge, self.placement)
 
     def ratio(self, stress: float | Array, temperature: float | Array | None = None) -> Array:
         """Bridge output U_B / U_E [V/V], not balanced, at stresses (n,) along the fillet [Pa]."""

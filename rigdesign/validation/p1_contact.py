@@ -21,7 +21,6 @@ from dynamics.contact.face import FaceGrid
 from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.mesh_cycle import ContactPattern, MeshCycle
-from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.influence.gear_body import SectionDivision
@@ -91,23 +90,6 @@ def pinion_gauges(
     return {
         name.split(".")[2].upper(): stress_at(gauge, cycle, pinion, pair, 0) for name, gauge in gauges.items()
     }
-
-
-def contact_of(
-    pair: GearPair,
-    micro: tuple[Microgeometry, Microgeometry],
-    coupling: float = USUAL_COUPLING,
-    n_face: int = 21,
-    n_positions: int = 128,
-) -> LoadedMesh:
-    """Loaded mesh on Weber and Banaschek's teeth; ``coupling`` : of the slices, in normal modules."""
-    grid = FaceGrid.over(pair.face_width, n_face)
-    first, second = (
-        SliceCompliance(pair=pair, index=i, grid=grid, coupling_length=coupling * pair.normal_module)
-        for i in (0, 1)
-    )
-    gap = flank_gap(PairGap.of_pair(pair, micro))
-    return LoadedMesh(pair=pair, gears=(first, second), grid=grid, gap=gap, n_positions=n_positions)
 
 
 def cycle_at(mesh: LoadedMesh, torque: float) -> MeshCycle:
