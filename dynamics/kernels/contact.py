@@ -42,7 +42,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

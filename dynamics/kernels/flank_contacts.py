@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -69,7 +69,7 @@ from dynamics.kernels.contact_table import (
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first, contract_lines
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

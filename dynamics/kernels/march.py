@@ -81,7 +81,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -10,7 +10,7 @@ from dynamics.kernels.mesh_solve import correct, left_open, move_others
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import MISSING, N_SPACE, PORT, TAU
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6

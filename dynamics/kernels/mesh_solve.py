@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
 )
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -140,7 +140,7 @@ def _add_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
     wheel = at + PORT
     r_1, r_2 = values[m, V_R1], values[m, V_R2]
     first = held.first[m, 1] & POSITIVE
-    pressing = _pressing(space, at, values, m, np.int64(1))
+    pressing = _pressing(space, at, values, m, int(np.int64(1)))
     sums = press_rows(held.rows, first, held.counts[m, 1], values, m, pressing)
     space[at + REACTION] += r_1 * sums.a_1
     space[wheel + REACTION] -= r_2 * sums.a_2

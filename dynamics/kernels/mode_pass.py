@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 8
 """Numbers in a vector."""

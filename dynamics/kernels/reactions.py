@@ -48,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -197,7 +197,7 @@ def _mesh_reactions(
     law, counts = meshes.values[0], meshes.counts
     individual = counts[0, INDIVIDUAL] != 0
     table = contacts if individual else meshes.phase_data
-    in_front, behind = np.int64(0), np.int64(1)  # for constants the flanks would be compiled twice
+    in_front, behind = int(np.int64(0)), int(np.int64(1))  # constants would compile the flanks twice
     for n in range(theta_1.shape[0]):
         out[n] = 0.0
         one = MeshState(theta_1[n], reach[n], omega_1[n], omega_2[n])

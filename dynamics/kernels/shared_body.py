@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 
 MOST_SETS = 64

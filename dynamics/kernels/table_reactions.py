@@ -20,7 +20,7 @@ from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_a
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 974ce4be
+# compiled from sources 5255b10b
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
@@ -33,7 +33,7 @@ def _press_side(
     tables: ContactTables, m: int, state: FlankState, sliding: Sliding, pressing: Pressing, rows: Array
 ) -> Sums:
     """Hold one flank at its state and sum it there."""
-    first = np.int64(0)  # for a constant everything would be compiled once more
+    first = int(np.int64(0))  # for a constant everything would be compiled once more
     held = hold_path(tables, m, state, sliding, pressing.reach, rows, first)
     return press_rows(rows, first, held.n, tables.values, m, pressing)
 
