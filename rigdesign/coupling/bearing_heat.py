@@ -10,8 +10,9 @@ from collections.abc import Iterator
 
 from dynamics.bearing.protocol import BearingState, HeatStar
 from rigdesign.coupling.bearing_seats import HOUSING, SHAFT, Seat, bearing_seats
+from rigdesign.coupling.housing_context import OilFilm
 from rigdesign.rig.model import Rig
-from thermal.conditions.boundary import BoundaryCondition, Exchange, Film, SurfaceSource
+from thermal.conditions.boundary import BoundaryCondition, Exchange, SurfaceSource
 from thermal.films import convection
 from thermal.films.law import FilmLaw
 
@@ -34,16 +35,19 @@ def body_shares(rig: Rig, name: str, state: BearingState) -> list[tuple[Seat, fl
     return [(seat, conductance / total) for seat, conductance in conductances(rig, name, state.star)]
 
 
-def seat_conditions(rig: Rig, name: str, star: HeatStar, film_kind: str) -> Iterator[BoundaryCondition]:
+def seat_conditions(
+    rig: Rig, name: str, star: HeatStar, film_kind: str, follows: float
+) -> Iterator[BoundaryCondition]:
     """Exchange of the seats through the bearing, and films of both to its oil as it comes.
 
-    film_kind : of the rows of the films
+    film_kind : of the rows of the films; follows : `OilFilm.follows` of them
     """
     seats = conductances(rig, name, star)
     for seat, conductance in seats:
-        yield Film(
+        yield OilFilm(
             surface=seat.surface,
             kind=film_kind,
+            follows=follows,
             fluid_temperature=star.oil_temperature,
             law=on_surface(rig, name, seat, conductance * star.oil / star.total),
         )

@@ -172,12 +172,10 @@ def _film(context: HousingContext, condition: SurfaceFilm, surface: str) -> Film
         law = convection.scaled(law, housing.ambient_film_factor * of_wall)
     usual += side_excess(context.rig, context.name, context.coupling_state, surface, condition.wetted_by)
     temperature = condition.fluid_temperature_given(usual)
-    film = Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
     if kind == AIR:
-        return film
-    return OilFilm(
-        **vars(film), follows=context.follows(condition.wetted_by) if temperature == usual else 0.0
-    )
+        return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
+    follows = context.follows(condition.wetted_by) if temperature == usual else 0.0
+    return OilFilm(surface=surface, kind=kind, fluid_temperature=temperature, law=law, follows=follows)
 
 
 def _wetted(context: HousingContext, condition: SurfaceFilm, surface: str) -> WettedSurface:
@@ -240,9 +238,7 @@ def _joined_bearings(context: HousingContext) -> Iterator[BoundaryCondition]:
         full = f"{context.name}.{part}"
         star = context.bearings[full].star
         if star is not None:
-            for condition in seat_conditions(context.rig, full, star, f"{BEARING_FILM}:{part}"):
-                film = isinstance(condition, Film)
-                yield OilFilm(**vars(condition), follows=follows) if film else condition
+            yield from seat_conditions(context.rig, full, star, f"{BEARING_FILM}:{part}", follows)
 
 
 def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from threadpoolctl import threadpool_limits
 
 from dynamics.kernels.march import compiled
-from dynamics.response.compile_ahead import compile_time_integration
+from dynamics.response.time_march import compile_time_integration
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite

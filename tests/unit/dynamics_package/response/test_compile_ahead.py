@@ -4,10 +4,9 @@ import numpy as np
 
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.kernels.march import _march, compiled
-from dynamics.response.compile_ahead import compile_time_integration
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.response.time_march import TimeMarch, compile_time_integration
 from tests.builders.rig import prototype_laws
 from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
 
