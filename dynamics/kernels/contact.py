@@ -19,10 +19,11 @@ individual teeth every contact is looked up on the path and such a table is writ
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, NoReturn, TypeVar
 
 import numpy as np
 from numba import njit
+from numba.core.registry import CPUDispatcher
 from numpy.typing import NDArray
 
 from dynamics.kernels.mesh_tables import (
@@ -42,7 +43,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources 5255b10b
+# compiled from sources f65a9a42
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -52,15 +53,28 @@ LOOSE = {"reassoc", "contract", "nsz", "arcp"}
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+class _Inlined(CPUDispatcher):  # type: ignore[misc]
+    """A compiled function without a wrapper for Python, a call from which would end the process."""
+
+    def __call__(self, *_: object) -> NoReturn:
+        raise TypeError(f"{self.py_func.__name__} has no wrapper for Python: call it from a compiled function")
+
+
 def inlined(function: Function) -> Function:
     """Compile what becomes part of its compiled caller, and is called from nowhere else.
 
     Arrays are neither made nor counted in it; no wrappers, which take a tenth of the time and serve calls from Python.
+
+    Raises
+    ------
+    TypeError
+        When Python calls it.
     """
     compiled: Function = njit(  # type: ignore[call-overload]
         cache=True, fastmath=LOOSE, error_model="numpy", forceinline=True, _nrt=False,
         no_cpython_wrapper=True, no_cfunc_wrapper=True,
     )(function)  # fmt: skip
+    compiled.__class__ = _Inlined  # type: ignore[assignment]
     return compiled
 
 

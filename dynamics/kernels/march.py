@@ -81,7 +81,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 5255b10b
+# compiled from sources f65a9a42
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 5255b10b
+# compiled from sources f65a9a42
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -10,7 +10,7 @@ from dynamics.kernels.mesh_solve import correct, left_open, move_others
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import MISSING, N_SPACE, PORT, TAU
 
-# compiled from sources 5255b10b
+# compiled from sources f65a9a42
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6

@@ -33,7 +33,7 @@ from dynamics.kernels.contact_table import (
 )
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 5255b10b
+# compiled from sources f65a9a42
 Array = NDArray[np.float64]
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg
+from numba import njit
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.kernels.mesh_solve import left_open
@@ -34,6 +35,7 @@ from dynamics.response.propagator import discretise
 from dynamics.response.time_march import MarchDiverged, TimeMarch
 from tests.builders.mesh import chain, spur_law, two_bodies
 
+left_open_at = njit(lambda space, at: left_open(space, at))
 OPEN = spur_law(backlash=1.0, offset=-0.5)
 """A mesh whose flanks never touch: the linear part alone."""
 
@@ -269,8 +271,13 @@ def test_a_step_of_a_mesh_is_off_its_tangent_by_what_bends(changes: dict[int, fl
     for place, value in changes.items():
         space[place] = value
     moved = 1.5e-9
-    left = left_open(space, 0)
+    left = left_open_at(space, 0)
     assert left == (pytest.approx(1e12 * moved**2 + 5e4 * moved * 2e-4) if known else np.inf)
     assert space[TEETH] == pytest.approx(30e-6 + moved, rel=1e-12)
     assert space[GIVEN] == pytest.approx(3e-9 - 30e-6 - moved, rel=1e-12)
     assert space[NET] == pytest.approx(100.0 + 1e9 * moved - 1e4 * 2e-4)
+
+
+def test_a_kernel_without_a_wrapper_says_so_where_python_calls_it() -> None:
+    with pytest.raises(TypeError, match="left_open has no wrapper for Python"):
+        left_open(np.zeros(N_SPACE), 0)
