@@ -43,7 +43,7 @@ from dynamics.kernels.mesh_tables import (
     VECTOR,
 )
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -53,11 +53,13 @@ LOOSE = {"reassoc", "contract", "nsz", "arcp"}
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class _Inlined(CPUDispatcher):  # type: ignore[misc]
+class _Inlined(CPUDispatcher):
     """A compiled function without a wrapper for Python, a call from which would end the process."""
 
     def __call__(self, *_: object) -> NoReturn:
-        raise TypeError(f"{self.py_func.__name__} has no wrapper for Python: call it from a compiled function")
+        raise TypeError(
+            f"{self.py_func.__name__} has no wrapper for Python: call it from a compiled function"
+        )
 
 
 def inlined(function: Function) -> Function:

@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -34,7 +34,7 @@ from dynamics.kernels.mesh_workspace import (
     UPPER,
 )
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

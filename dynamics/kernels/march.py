@@ -81,7 +81,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -10,7 +10,7 @@ from dynamics.kernels.mesh_solve import flank_powers
 from dynamics.kernels.mesh_workspace import N_SPACE
 from dynamics.kernels.wrench import WrenchModes, rubbed_beside
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]

@@ -48,7 +48,7 @@ from dynamics.kernels.mesh_tables import (
 )
 from dynamics.kernels.shared_body import Flanks, no_contacts, tooth_approach
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

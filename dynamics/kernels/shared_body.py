@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources f65a9a42
+# compiled from sources 86a47cef
 Array = NDArray[np.float64]
 
 MOST_SETS = 64
