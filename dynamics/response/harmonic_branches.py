@@ -76,9 +76,10 @@ class BranchSearch:
 
     def on_one_branch(self) -> HarmonicStates:
         """Stable states by two walks, from the first speed to the last and back, without a trace: for maps, where many
-        are asked."""
-        for order in (range(len(self._speeds)), range(len(self._speeds) - 1, -1, -1)):
-            self._walk_over(order)
+        are asked, and for a speed alone."""
+        self._walk_over(range(len(self._speeds)))
+        if len(self._speeds) > 1:
+            self._walk_over(range(len(self._speeds) - 1, -1, -1))
         return self.states
 
     def run(self) -> HarmonicStates:

@@ -197,7 +197,7 @@ class BranchTrace:
         ahead, speed_ahead, speed = at
         try:
             back = equations.step(residual, reactions)
-            along = equations.step(self._per_speed(equations, residual, state), reactions)
+            along = equations.step_again(self._per_speed(equations, residual, state), reactions)
         except np.linalg.LinAlgError:
             return None
         away = state.plus(ahead, -1.0).plus(back)

@@ -134,6 +134,10 @@ class HarmonicEquations:
         """Newton step that takes a residual away; LinAlgError where the linearised equations are singular."""
         return HarmonicState(*self.newton.step(reactions, *residual))
 
+    def step_again(self, residual: Residual, reactions: MeshHarmonics) -> HarmonicState:
+        """The same for another residual, by the matrix of the step before."""
+        return HarmonicState(*self.newton.step_again(reactions, *residual))
+
     def solution(self, state: HarmonicState, error: float, iterations: int) -> HarmonicSolution:
         """A state as a solution."""
         return HarmonicSolution(

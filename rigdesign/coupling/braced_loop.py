@@ -133,7 +133,8 @@ def respond(
     near: HarmonicSolution | None = None,
     harmonics: int = LEAST_HARMONICS,
 ) -> CurvePoint:
-    """Periodic response at one operating point.
+    """Periodic response at one operating point; where a walk finds no stable one, time integration tells sooner what
+    the motion is than branches traced from other speeds.
 
     harmonics : of the common mesh period at least
     near : state of a circuit that differs little, to start from
@@ -146,7 +147,7 @@ def respond(
     point, setting = circuit.point, circuit.bracing
     controlled = setting.mode == "torque_controlled"
     settings = SweepSettings(
-        period=rig.case.numerics.response_period, cutoff=rig.highest_mode, harmonics=harmonics
+        period=rig.case.numerics.response_period, cutoff=rig.highest_mode, harmonics=harmonics, branches=False
     )
     if near is not None:
         settings = replace(settings, start=near, tolerance=NEAR_TOLERANCE)
