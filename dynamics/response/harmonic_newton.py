@@ -53,7 +53,7 @@ class HarmonicNewton:
     def __init__(self, problem: BalanceProblem, grid: HarmonicGrid, base: float, receptance: Complex) -> None:
         self.problem, self.grid, self.base = problem, grid, base
         self.receptance = receptance
-        self._factors: _Paired | None = None
+        self._factors: _Factors | None = None
         self._known: Complex | None = None
         self.inputs = mesh_inputs(problem.model)
         approach = problem.model.approach[:, :-1]
@@ -87,12 +87,14 @@ class HarmonicNewton:
             self._sideband(reactions, approach_miss, residue, torque)
         return miss + moved_by(self.receptance, torque), rest, drive, twist
 
-    def _tangent(self, reactions: MeshHarmonics, order: NDArray[np.int64], omega: Array) -> Complex:
-        """(n_meshes, k, n, n): harmonics of the torques on its inputs per harmonics of approach."""
-        n = order.size
-        lags = np.arange(1 - n, n)
+    def _tangent(
+        self, reactions: MeshHarmonics, rows: NDArray[np.int64], columns: NDArray[np.int64], omega: Array
+    ) -> Complex:
+        """(n_meshes, k, r, n): harmonics ``rows`` (r,) of the torques on its inputs per harmonics ``columns`` (n,) of
+        approach, both running on by one; omega : (n,) [rad/s] of the columns."""
+        lags = np.arange(rows[0] - columns[-1], rows[-1] - columns[0] + 1)
         stiff, damp = (
-            sliding_window_view(spectrum[:, :, lags], n, axis=2)[..., ::-1]
+            sliding_window_view(spectrum[:, :, lags], columns.size, axis=2)[..., ::-1]
             for spectrum in (reactions.per_approach, reactions.per_rate)
         )
         return np.asarray(stiff + damp * (1j * omega))
@@ -104,80 +106,91 @@ class HarmonicNewton:
         gain[index == 0] = 0.0
         return np.asarray(gain)
 
-    def _block(self, tangent: Complex, gain: Complex) -> Complex:
-        """Identity less gain times tangent, ordered mesh by mesh: (n_meshes n, n_meshes n)."""
+    def _coupled(self, tangent: Complex, gain: Complex) -> Complex:
+        """(n_meshes, r, n_meshes n) approach of each mesh at harmonics of ``gain`` (r, n_meshes, n_inputs) per approach
+        of all, by tangents (n_meshes, k, r, n)."""
         n_meshes, n = self.problem.model.n_meshes, tangent.shape[-1]
-        block = np.eye(n_meshes * n, dtype=complex)
+        coupled = np.zeros((n_meshes, len(gain), n_meshes * n), complex)
         for row in range(n_meshes):
             for mesh, inputs in enumerate(self.inputs):
-                coupled = sum(gain[:, row, at, None] * own for at, own in zip(inputs, tangent[mesh]))
-                block[row * n : (row + 1) * n, mesh * n : (mesh + 1) * n] -= coupled
-        return block
+                for at, own in zip(inputs, tangent[mesh]):
+                    coupled[row, :, mesh * n : (mesh + 1) * n] += gain[:, row, at, None] * own
+        return coupled
 
     def _torques(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
-        """Torque on every input (n_inputs, n) from the change of approach (n_meshes, n)."""
-        torque = np.zeros((self.receptance.shape[2], approach.shape[1]), complex)
-        np.add.at(torque, self.inputs, np.einsum("mpkl,ml->mpk", tangent, approach))
+        """Torque on every input (n_inputs, r) from the change of approach (n_meshes, n)."""
+        torque = np.zeros((self.receptance.shape[2], tangent.shape[2]), complex)
+        np.add.at(torque, self.inputs, (tangent @ approach[:, None, :, None])[..., 0])
         return torque
 
     def _meshing(
         self, reactions: MeshHarmonics, approach_miss: Complex, balance: Array, asked: float
     ) -> tuple[Complex, Array, float, float]:
         """Class of the mesh harmonics, solved with the mean windup, drive torque and twist."""
-        model, grid = self.problem.model, self.grid
-        n_meshes, size = model.n_meshes, model.ratios.size
-        order = np.arange(-grid.harmonics, grid.harmonics + 1)
-        n, mean = order.size, grid.harmonics
-        rest = n_meshes * n
+        grid = self.grid
+        n_meshes, size, top = self.problem.model.n_meshes, self.problem.model.ratios.size, grid.harmonics
         if self._factors is None or self._known is None:
-            self._known, matrix = self._linearised(reactions, order)
-            self._factors = _Paired(matrix, n_meshes, n)
-        tangent = self._known
-        right = np.zeros(rest + size + 2, complex)
-        at = order[mean + 1 :] * grid.cells - 1
-        for m in range(n_meshes):
-            right[m * n + mean + 1 : (m + 1) * n] = approach_miss[m, at]
-            right[m * n : m * n + mean] = approach_miss[m, at].conj()[::-1]
-        right[rest : rest + size] = -balance
+            self._known, matrix = self._linearised(reactions)
+            self._factors = _Factors(matrix)
+        miss = approach_miss[:, grid.cells - 1 :: grid.cells][:, :top].ravel()
+        singles = np.concatenate([np.zeros(n_meshes), -balance, [0.0, 0.0]])
         if self.problem.load.torque is not None:
-            right[rest + size + 1] = asked
-        solution = self._factors.solve(right)
-        approach = solution[:rest].reshape(n_meshes, n)
-        torque = self._torques(tangent, approach)
-        tail = solution[rest:].real
-        return torque[:, mean + 1 :], tail[:size], float(tail[size]), float(tail[size + 1])
+            singles[-1] = asked
+        found = self._factors.solve(np.concatenate([miss.real, miss.imag, singles]))
+        cosine, sine, rest = np.split(found, [n_meshes * top, 2 * n_meshes * top])
+        moving = (cosine + 1j * sine).reshape(n_meshes, top)
+        approach = np.hstack([moving[:, ::-1].conj(), rest[:n_meshes, None], moving])
+        tail = rest[n_meshes:]
+        return self._torques(self._known, approach), tail[:size], float(tail[size]), float(tail[size + 1])
 
-    def _linearised(self, reactions: MeshHarmonics, order: NDArray[np.int64]) -> tuple[Complex, Complex]:
-        """Tangents of the meshes and matrix of the equations of `_meshing`."""
+    def _linearised(self, reactions: MeshHarmonics) -> tuple[Complex, Array]:
+        """Tangents at the positive harmonics, and matrix of the equations of `_meshing`.
+
+        Motions are real: harmonics of opposite sign are conjugate, a + ib and a - ib, and so are their equations. Of
+        each pair the one of the positive harmonic is kept, as its real and imaginary part for a and b: a quarter of
+        the work. Unknowns: a of all meshes, b of all meshes, mean approaches, mean windup, drive torque and twist.
+        """
         model, grid = self.problem.model, self.grid
-        n_meshes, size, n, mean = model.n_meshes, model.ratios.size, order.size, grid.harmonics
-        omega = self.base * grid.cells * order
-        tangent = self._tangent(reactions, order, np.asarray(omega, float))
-        flat = np.arange(n_meshes) * n + mean
-        total = n_meshes * n + size + 2
-        matrix = np.zeros((total, total), complex)
-        matrix[: n_meshes * n, : n_meshes * n] = self._block(tangent, self._gain_at(order * grid.cells))
+        n_meshes, size, top = model.n_meshes, model.ratios.size, grid.harmonics
+        order = np.arange(-top, top + 1)
+        omega = np.asarray(self.base * grid.cells * order, float)
+        whole = self._tangent(reactions, order[top:], order, omega)
+        mean, tangent = whole[:, :, 0], whole[:, :, 1:]
+        pairs = n_meshes * top
+        matrix = np.zeros((2 * pairs + n_meshes + size + 2,) * 2)
+        coupled = self._coupled(tangent, self._gain_at(order[top + 1 :] * grid.cells))
+        moving = -self._by_parts(coupled.reshape(pairs, n_meshes, order.size))
+        known = 2 * pairs + n_meshes
+        matrix[:pairs, :known], matrix[pairs : 2 * pairs, :known] = moving.real, moving.imag
+        diagonal = np.arange(2 * pairs + n_meshes)
+        matrix[diagonal, diagonal] += 1.0
         # the mean approach follows from the mean windup
-        rest = n_meshes * n
-        matrix[flat, :] = 0.0
-        matrix[flat, flat] = 1.0
-        matrix[flat, rest : rest + size] = -model.approach
+        matrix[2 * pairs : known, known : known + size] = -model.approach
         # balance of mean torques
-        matrix[rest : rest + size, rest : rest + size] = model.stiffness
+        rest = slice(known, known + size)
+        acting = np.zeros((size, n_meshes, order.size), complex)
         for m in range(n_meshes):
-            for own, at in zip(tangent[m], self.inputs[m]):
-                at_rest = np.outer(model.at_rest[:, at], own[mean])
-                matrix[rest : rest + size, m * n : (m + 1) * n] -= at_rest
-        matrix[rest + size - 1, rest + size] = -1.0
-        matrix[rest : rest + size, rest + size + 1] = -model.twist
+            acting[:, m] = model.at_rest[:, self.inputs[m]] @ mean[m]
+        matrix[rest, :known] = -self._by_parts(acting).real
+        matrix[rest, rest] = model.stiffness
+        matrix[known + size - 1, known + size] = -1.0
+        matrix[rest, known + size + 1] = -model.twist
         # reference angle stays, torque of the control mesh or twist is met
-        matrix[rest + size, rest + size - 1] = 1.0
+        matrix[known + size, known + size - 1] = 1.0
         if self.problem.load.torque is None:
-            matrix[rest + size + 1, rest + size + 1] = 1.0
+            matrix[known + size + 1, known + size + 1] = 1.0
         else:
-            c = self.problem.load.control_mesh
-            matrix[rest + size + 1, c * n : (c + 1) * n] = -tangent[c, 0, mean]
+            control = np.zeros((1, n_meshes, order.size), complex)
+            control[0, self.problem.load.control_mesh] = -mean[self.problem.load.control_mesh, 0]
+            matrix[known + size + 1, :known] = self._by_parts(control).real[0]
         return tangent, matrix
+
+    def _by_parts(self, rows: Complex) -> Complex:
+        """Rows (r, n_meshes, n) per signed harmonics as rows (r, n_meshes n) per a, b and mean of `_linearised`."""
+        top = self.grid.harmonics
+        after, before = rows[:, :, top + 1 :], rows[:, :, top - 1 :: -1] if top else rows[:, :, :0]
+        parts = after + before, 1j * (after - before), rows[:, :, top]
+        return np.hstack([part.reshape(len(rows), -1) for part in parts])
 
     def _sideband(self, reactions: MeshHarmonics, miss: Complex, residue: int, torque: Complex) -> None:
         """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_inputs, top)."""
@@ -185,8 +198,9 @@ class HarmonicNewton:
         j = np.arange(-grid.harmonics, grid.harmonics)
         index = residue + grid.cells * j
         omega = self.base * index
-        tangent = self._tangent(reactions, j, np.asarray(omega, float))
-        block = self._block(tangent, self._gain_at(index))
+        tangent = self._tangent(reactions, j, j, np.asarray(omega, float))
+        block = -self._coupled(tangent, self._gain_at(index)).reshape(model.n_meshes * j.size, -1)
+        block.flat[:: len(block) + 1] += 1.0
         known = miss[:, np.abs(index) - 1]
         known = np.where(index < 0, known.conj(), known)
         approach = np.linalg.solve(block, known.ravel()).reshape(model.n_meshes, j.size)
@@ -196,46 +210,20 @@ class HarmonicNewton:
         torque[:, -index[~positive] - 1] = change[:, ~positive].conj()
 
 
-class _Paired:
-    """A system for real motions in real numbers, a quarter of the work, factorised once.
+class _Factors:
+    """A system of real equations, factorised once, each equation scaled by its largest factor."""
 
-    The first unknowns are ``n_meshes`` spectra of ``n`` signed harmonics, the rest are real. Harmonics of opposite
-    sign are conjugate, a + ib and a - ib, and so are their equations: of each pair one is kept, as its real and
-    imaginary part for a and b.
-    """
-
-    def __init__(self, matrix: Complex, n_meshes: int, n: int) -> None:
+    def __init__(self, matrix: Array) -> None:
         """Raises LinAlgError for a singular matrix."""
-        mean = n // 2
-        start = np.arange(n_meshes)[:, None] * n + mean
-        positive, negative = ((start + sign * np.arange(1, mean + 1)).ravel() for sign in (1, -1))
-        single = np.append(start.ravel(), np.arange(n_meshes * n, len(matrix)))
-
-        def of_parts(rows: Complex) -> Complex:
-            after, before = rows[:, positive], rows[:, negative]
-            return np.hstack([after + before, 1j * (after - before), rows[:, single]])
-
-        pairs = of_parts(matrix[positive])
-        real = np.vstack([pairs.real, pairs.imag, of_parts(matrix[single]).real])
-        self._positive, self._negative, self._single = positive, negative, single
-        self._scale = np.abs(real).max(axis=1)
+        self._scale = np.abs(matrix).max(axis=1)
         if not self._scale.all():  # a mesh that carries the torque does not touch
             raise np.linalg.LinAlgError("singular matrix")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LinAlgWarning)
-            self._factors = lu_factor(real / self._scale[:, None], check_finite=False)
+            self._factors = lu_factor(matrix / self._scale[:, None], overwrite_a=True, check_finite=False)
         if not np.all(np.diag(self._factors[0])):
             raise np.linalg.LinAlgError("singular matrix")
 
-    def solve(self, right: Complex) -> Complex:
+    def solve(self, right: Array) -> Array:
         """Unknowns for a right-hand side."""
-        load = np.concatenate(
-            [right[self._positive].real, right[self._positive].imag, right[self._single].real]
-        )
-        found = lu_solve(self._factors, load / self._scale, check_finite=False)
-        size = self._positive.size
-        cosine, sine, others = np.split(found, [size, 2 * size])
-        solution = np.empty(len(right), complex)
-        solution[self._positive], solution[self._negative] = cosine + 1j * sine, cosine - 1j * sine
-        solution[self._single] = others
-        return solution
+        return np.asarray(lu_solve(self._factors, right / self._scale, check_finite=False))

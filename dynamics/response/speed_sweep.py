@@ -33,8 +33,8 @@ DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | Non
 LONG_SEARCH, SHORT_SEARCH = 2.0, 0.5
 """Simulated time in which a steady state is sought at most [s]; the short one where none of the asked period exists."""
 TRACED_GAP = 2
-"""Neighbouring speeds without a state from which on branches are traced. A speed alone is integrated in time, in a third
-of the time of its traces: on the FZG rig and a rig of defaults one of seven found a state."""
+"""Neighbouring speeds without a state from which on branches are traced. A speed alone is integrated in time, in a
+third of the time of its traces: on the FZG rig and a rig of defaults one of seven found a state."""
 
 
 @dataclass(frozen=True, kw_only=True)
