@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig, qr
+from scipy.linalg import qr
 
 from dynamics.elastic_rig.assembly import ElasticModel
 from dynamics.elastic_rig.freedoms import FAMILIES
@@ -92,7 +92,7 @@ def damped_modes(rig: ReducedElasticRig, state: RunningState, highest: float | N
     system[np.arange(size), size + free + np.arange(size)] = scale
     system[size:, :size] = -stiffness[:, held] / scale
     system[size:, size:] = -(turned.T @ matrices.damping @ turned)
-    poles, vectors = eig(system)
+    poles, vectors = np.linalg.eig(system)
     oscillating = poles.imag > OSCILLATING * np.abs(poles)
     real = poles[np.abs(poles.imag) <= OSCILLATING * np.abs(poles)].real
     if highest is not None:

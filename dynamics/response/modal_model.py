@@ -313,7 +313,7 @@ def _branch_modes(
     for more in (0.0, PARTING, 100.0 * PARTING):
         parted = own.copy()
         parted[moving] *= 1.0 + more
-        values, vectors = scipy.linalg.eig(parted)
+        values, vectors = np.linalg.eig(parted)
         try:
             inverse = np.linalg.inv(vectors)
         except np.linalg.LinAlgError:
