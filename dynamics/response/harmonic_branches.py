@@ -61,15 +61,13 @@ class BranchSearch:
         drags: Drags,
         speeds: Array,
         start: HarmonicSolution | None = None,
-        least_gap: int = 1,
     ) -> None:
         """Prepare a search.
 
         problem, drags : at a speed of the drive freedom [rad/s]; speeds : (n,) of it, in the order of the walk
         start : state near that of the first speed, from which the walk begins
-        least_gap : neighbouring speeds without a state from which on branches are traced through them
         """
-        self._start, self._least_gap = start, least_gap
+        self._start = start
         self._walk, self._problem, self._drags, self._speeds = walk, problem, drags, speeds
         self._over_speed = SpeedProblem(problem=problem, drags=drags)
         self._open: dict[int, bool] = {}
@@ -151,7 +149,7 @@ class BranchSearch:
         missing = sorted(
             set(self.states.reasons) - self.states.not_mesh_periodic, key=lambda i: self._speeds[i]
         )
-        for gap in (one for one in _runs(missing, self._speeds) if len(one) >= self._least_gap):
+        for gap in _runs(missing, self._speeds):
             for rising in (True, False):
                 if all(i in self.states.found or i in self.states.not_mesh_periodic for i in gap):
                     break

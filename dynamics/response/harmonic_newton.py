@@ -188,7 +188,7 @@ class HarmonicNewton:
     def _by_parts(self, rows: Complex) -> Complex:
         """Rows (r, n_meshes, n) per signed harmonics as rows (r, n_meshes n) per a, b and mean of `_linearised`."""
         top = self.grid.harmonics
-        after, before = rows[:, :, top + 1 :], rows[:, :, top - 1 :: -1] if top else rows[:, :, :0]
+        after, before = rows[:, :, top + 1 :], rows[:, :, top - 1 :: -1]
         parts = after + before, 1j * (after - before), rows[:, :, top]
         return np.hstack([part.reshape(len(rows), -1) for part in parts])
 

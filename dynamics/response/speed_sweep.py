@@ -2,9 +2,9 @@
 
 Harmonic balance is used where its harmonics reach 1.5 times the highest oscillating mode that the propagator
 keeps. It follows the stable branches over the speeds (``dynamics.response.harmonic_branches``): a walk in the order
-given, round turning points by arclength where neighbouring speeds have no state, and back for a second stable
-response. Where no mesh-periodic response lasts, ``dynamics.response.periodic_response`` marches in time and says what
-the motion is: steady, subharmonic, quasi-periodic or chaotic.
+given, round turning points by arclength, and back for a second stable response. Where no mesh-periodic response lasts,
+``dynamics.response.periodic_response`` marches in time and says what the motion is: steady, subharmonic, quasi-periodic
+or chaotic.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -32,9 +32,6 @@ DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | Non
 
 LONG_SEARCH, SHORT_SEARCH = 2.0, 0.5
 """Simulated time in which a steady state is sought at most [s]; the short one where none of the asked period exists."""
-TRACED_GAP = 2
-"""Neighbouring speeds without a state from which on branches are traced. A speed alone is integrated in time, in a
-third of the time of its traces: on the FZG rig and a rig of defaults one of seven found a state."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,7 +228,6 @@ def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) ->
         lambda speed: drags(speed * ratio) if callable(drags) else drags,
         np.array(speeds) / ratio,
         _held(settings.start, loops.load),
-        TRACED_GAP if "time_integration" in settings.methods else 1,
     )
     return search.run() if settings.branches else search.on_one_branch()
 

@@ -132,12 +132,14 @@ def respond(
     circuit: LoadedCircuit,
     near: HarmonicSolution | None = None,
     harmonics: int = LEAST_HARMONICS,
+    traced: bool = True,
 ) -> CurvePoint:
-    """Periodic response at one operating point; where a walk finds no stable one, time integration tells sooner what
-    the motion is than branches traced from other speeds.
+    """Periodic response at one operating point.
 
     harmonics : of the common mesh period at least
     near : state of a circuit that differs little, to start from
+    traced : seek it on branches from other speeds where it is not found at once; else what a time integration comes to,
+        which tells sooner
 
     Raises
     ------
@@ -147,7 +149,10 @@ def respond(
     point, setting = circuit.point, circuit.bracing
     controlled = setting.mode == "torque_controlled"
     settings = SweepSettings(
-        period=rig.case.numerics.response_period, cutoff=rig.highest_mode, harmonics=harmonics, branches=False
+        period=rig.case.numerics.response_period,
+        cutoff=rig.highest_mode,
+        harmonics=harmonics,
+        branches=traced,
     )
     if near is not None:
         settings = replace(settings, start=near, tolerance=NEAR_TOLERANCE)

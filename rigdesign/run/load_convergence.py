@@ -53,6 +53,8 @@ class _Loaded:
     coupling_state: CouplingState = field(repr=False)
     drags: Mapping[str, float]
     setting: BracingState
+    in_run: bool = False
+    """Passed by the time run, whose motion is that of a time integration where it is not plain."""
 
     @property
     def place(self) -> Place:
@@ -63,7 +65,7 @@ class _Loaded:
         """Of each rig; nothing where one of them finds none."""
         systems: dict[tuple[int, int], LinearSystem] = {}
         try:
-            return tuple(respond(rig, self._circuit(rig, systems)) for rig in rigs)
+            return tuple(respond(rig, self._circuit(rig, systems), traced=not self.in_run) for rig in rigs)
         except DynamicsNotConverged:
             return ()
 
@@ -155,7 +157,7 @@ def _at(solved: SolvedRig, mesh: int, stage: str, speed: float, torque: float) -
         torque=share * test.point.torque,
     )
     state = test.last.coupling_state.with_torque_share(share)
-    return _Loaded(point, state, {}, BracingState(mode="torque_controlled"))
+    return _Loaded(point, state, {}, BracingState(mode="torque_controlled"), in_run=True)
 
 
 def _row(solved: SolvedRig, wanted: _Wanted, responses: tuple[CurvePoint, ...]) -> DiscretisationRow:
