@@ -72,7 +72,8 @@ def _kernels() -> tuple[int, int]:
     for name, module in list(sys.modules.items()):
         if name.startswith(KERNELS):
             for value in list(vars(module).values()):
-                if (stats := getattr(value, "stats", None)) is not None and value.__module__ == name:
+                stats = None if isinstance(value, type) else getattr(value, "stats", None)
+                if stats is not None and value.__module__ == name:
                     loaded += sum(stats.cache_hits.values())
                     compiled += sum(stats.cache_misses.values())
     return loaded, compiled
