@@ -96,10 +96,11 @@ def modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Array) -
             shapes[:, :n_elastic].T @ skew @ (shapes[:, :n_elastic] / frequency)
         )
     poles, right = np.linalg.eig(state)  # numpy's, a quarter faster than scipy's
+    loads = np.vstack((np.zeros((n_elastic, n)), shapes.T))
     return ModalForm(
-        poles=poles.astype(complex),
+        poles=np.asarray(poles, complex),
         velocity_shapes=times(shapes, right[n_elastic:]),
-        loads=np.linalg.solve(right, np.vstack((np.zeros((n_elastic, n)), shapes.T))).astype(complex),
+        loads=np.asarray(np.linalg.solve(right, loads), complex),
         rigid=modes.shapes[:, :n_rigid],
     )
 

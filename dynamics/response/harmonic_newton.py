@@ -136,8 +136,8 @@ class HarmonicNewton:
         singles = np.concatenate([np.zeros(n_meshes), -balance, [0.0, 0.0]])
         if self.problem.load.torque is not None:
             singles[-1] = asked
-        found = self._factors.solve(np.concatenate([miss.real, miss.imag, singles]))
-        cosine, sine, rest = np.split(found, [n_meshes * top, 2 * n_meshes * top])
+        solution = self._factors.solve(np.concatenate([miss.real, miss.imag, singles]))
+        cosine, sine, rest = np.split(solution, [n_meshes * top, 2 * n_meshes * top])
         moving = (cosine + 1j * sine).reshape(n_meshes, top)
         approach = np.hstack([moving[:, ::-1].conj(), rest[:n_meshes, None], moving])
         tail = rest[n_meshes:]

@@ -38,7 +38,7 @@ STATED = ("case", "inputs", "assumptions", "timings_s", "warnings", "overrides")
 """What a result repeats of its case, or that says nothing of the rig."""
 
 
-@pytest.mark.parametrize("name", [pytest.param("fzg", marks=pytest.mark.slow), *NAMES[1:]])
+@pytest.mark.parametrize("name", NAMES)
 def test_a_number_is_read_or_said_to_have_no_effect(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reads are recorded from the build of the rig to the result, without those of the audits of the inputs."""
     case, read = load_case(CASES / name), set[tuple[int, str]]()

@@ -19,7 +19,7 @@ def resident():
     return int(line.split()[1]) / 1024
 
 case = load_case(sys.argv[1])
-for number in range(3):
+for number in range(4):
     changed = {"gearboxes.test.gears.pinion.flank.profile_crowning": f"{8 + number} um", "numerics.curve_speeds": 10}
     run_case(case.with_values(changed), "quick")
     print(resident())
@@ -33,5 +33,5 @@ def test_memory_of_checks_in_one_process_comes_to_a_stop() -> None:
     done = subprocess.run(
         [sys.executable, "-c", CHECKS, str(CASES / "loop_1to1")], cwd=ROOT, capture_output=True, text=True, check=True
     )  # fmt: skip
-    _, second, third = map(float, done.stdout.split())
-    assert third < 700.0 and third - second < 30.0
+    _, second, _, fourth = map(float, done.stdout.split())
+    assert fourth < 700.0 and fourth - second < 40.0
