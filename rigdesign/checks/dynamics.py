@@ -121,7 +121,7 @@ def near_crossings(solved: SolvedRig, mesh: int, within: float) -> list[tuple[fl
     found = [
         (min(abs(crossing.speed * RPM - own) / own for own in speeds), crossing)
         for crossing in solved.loads.loop_crossings
-        if crossing.kind == "mesh" and crossing.order_of == label and crossing.excited
+        if crossing.kind == "mesh" and crossing.order_of == label
     ]
     return sorted((item for item in found if item[0] <= within), key=lambda item: item[0])
 

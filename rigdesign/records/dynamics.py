@@ -189,11 +189,14 @@ def numbered(modes: Sequence[LoopMode]) -> list[tuple[int, LoopMode]]:
 
 
 def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[ModeCrossing]:
-    """Crossings of the closed loop's modes with mesh and shaft orders, up to a speed of the first pinion [rad/s]."""
+    """Crossings of the closed loop's modes with orders of meshes that excite them and of shafts, up to a speed of the
+    first pinion [rad/s]."""
     assert rig.drivetrain is not None
     listed = dict(numbered(modes))
     highest = rig.drive_speed(1.0) / rig.pinion_speed(1.0) * top
     for crossing in loop_crossings(rig.drivetrain, list(listed.values()), highest, HARMONICS):
+        if crossing.kind == "mesh" and crossing.gain < LEAST_GAIN:
+            continue
         yield ModeCrossing(
             kind=crossing.kind,
             order_of=rig.mesh_labels[crossing.source] if crossing.kind == "mesh" else crossing.source,
@@ -204,7 +207,6 @@ def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[
             harmonic=crossing.harmonic,
             speed=crossing.own_speed,
             gain=crossing.gain,
-            excited=crossing.gain >= LEAST_GAIN,
         )
 
 

@@ -5,7 +5,7 @@ are those of every speed. Torsional resonances of the shafts are far narrower th
 the speeds of a curve were chosen: around their peaks the response is solved at more speeds.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -24,13 +24,17 @@ from rigdesign.records.loop_states import LoopState, dwell_speeds, is_around, ne
 from rigdesign.results.vibration import TorqueOverSpeed, TorquePlace, TorqueSwing
 from rigdesign.rig.model import Rig
 
-ROUNDS = 5
-"""Halvings of the speed step around a peak of a section: of 57 rpm to 2."""
+ROUNDS = 3
+"""Times at which the response is solved where peaks are expected, each nearer to them."""
+FINE = 3e-4
+"""Share of a speed within which a peak is not looked for again: less than half the bandwidth of steel that damps
+itself. The highest peaks of the prototype's sections are within 0.2 % of those with steps halved nine times."""
 LEAST_SHARE = 0.1
 """Half peak-to-peak torque of a peak that is looked at more closely, per mean torque of the first mesh."""
 FLAT = 0.03
 """Share of a peak by which it stands above the lower of the speeds beside it, below which it is found."""
 
+Array = NDArray[np.float64]
 Swings = Mapping[TorquePlace, TorqueSwing]
 Solve = Callable[[Sequence[float]], ResponseCurve]
 """Periodic responses at speeds of the first pinion [rad/s], rising."""
@@ -89,7 +93,7 @@ def torques_over_speed(
     found = {point.speed: (point, loop.swings(point)) for point in points}
     asked: set[float] = set()
     for _ in range(ROUNDS if solve is not None else 0):
-        speeds = sorted(_around_peaks(found) - asked)
+        speeds = _expected_peaks(found, asked)
         if not speeds or solve is None:
             break
         asked.update(speeds)
@@ -112,21 +116,28 @@ Found = Mapping[float, tuple[CurvePoint, Swings]]
 
 def _peaks(found: Found) -> Iterator[float]:
     """Speeds at which the alternating torque of a place has a peak that counts."""
-    speeds, inner = _table(found)
+    speeds, _, inner = _table(found)
     return (speeds[i] for i in np.flatnonzero(inner.any(axis=1)))
 
 
-def _around_peaks(found: Found) -> set[float]:
-    """Speeds half way from every peak that is not flat to its neighbours."""
-    speeds, peaks = _table(found, FLAT)
-    new: set[float] = set()
-    for i in np.flatnonzero(peaks.any(axis=1)):
-        new |= {0.5 * (speeds[i - 1] + speeds[i]), 0.5 * (speeds[i] + speeds[i + 1])}
-    return new
+def _expected_peaks(found: Found, asked: Collection[float]) -> list[float]:
+    """Rising speeds, not known yet, where peaks that are not flat are expected: near a resonance the inverse square of
+    an amplitude is a parabola over speed, whatever the damping."""
+    speeds, swing, peaks = _table(found, FLAT)
+    known = np.array(sorted({*speeds, *asked}))
+    new: list[float] = []
+    for i, place in zip(*np.nonzero(peaks), strict=True):
+        (below, at, over), near = speeds[i - 1 : i + 2], swing[i - 1 : i + 2, place] / swing[i, place]
+        inverse = np.maximum(near, 1e-3) ** -2.0
+        left, right = (inverse[0] - inverse[1]) / (at - below), (inverse[2] - inverse[1]) / (over - at)
+        top = at + 0.5 * (left * (over - at) - right * (at - below)) / (left + right)
+        if np.abs(np.append(known, new) - top).min() > FINE * top:
+            new.append(float(top))
+    return sorted(new)
 
 
-def _table(found: Found, above: float = 0.0) -> tuple[list[float], NDArray[np.bool_]]:
-    """Rising speeds (n,), and whether each place peaks there (n, n_places); ends are no peaks.
+def _table(found: Found, above: float = 0.0) -> tuple[list[float], Array, NDArray[np.bool_]]:
+    """Rising speeds (n,), half peak-to-peak of each place, and whether it peaks there (n, n_places); ends are no peaks.
 
     above : share of a peak by which it stands above one of the speeds beside it at least
     """
@@ -137,7 +148,7 @@ def _table(found: Found, above: float = 0.0) -> tuple[list[float], NDArray[np.bo
     middle = swing[1:-1]
     peaks[1:-1] = (middle >= swing[:-2]) & (middle > swing[2:]) & (middle > least[1:-1, None])
     peaks[1:-1] &= middle - np.minimum(swing[:-2], swing[2:]) >= above * middle
-    return speeds, peaks
+    return speeds, swing, peaks
 
 
 def mesh_swing(point: CurvePoint, mesh: int) -> TorqueSwing:

@@ -70,7 +70,7 @@ def light_dwells(rig: Rig, crossings: Iterable[ModeCrossing], limit: float) -> I
     meshes = {rig.mesh_labels[name]: mesh for mesh, name in enumerate(rig.mesh_names)}
     for stage in dwell_stages(rig):
         for crossing in listed:
-            if crossing.kind != "mesh" or not crossing.excited or crossing.damping_ratio >= limit:
+            if crossing.kind != "mesh" or crossing.damping_ratio >= limit:
                 continue
             own = own_ratio(rig, meshes[crossing.order_of]) * rig.pinion_speed(stage.speed_end)
             found = LightDwell(stage.name, own, crossing)

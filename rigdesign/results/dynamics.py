@@ -147,9 +147,9 @@ class DynamicsResult:
     tooth_histories: list[ToothTurnHistory] = field(default_factory=list)
     """Of every loaded gear at the held stage that speaks for the rig."""
     loop_crossings: list[dict[str, Any]] = field(default_factory=list)
-    """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain, excited}: mesh and shaft
-    orders that meet a mode of the closed loop; order_of: gearbox or shaft, speed_rpm that of its pinion or its own;
-    excited: the mesh reaches the mode."""
+    """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain}: mesh orders that meet
+    a mode of the closed loop which the mesh excites, and shaft orders that meet one; order_of: gearbox or shaft,
+    speed_rpm that of its pinion or its own."""
     campbell: dict[str, Any] | None = None
     """Modes of the closed loop over speed, bearings as they run there: {speed_rpm (of the first pinion), modes:
     [{mode, shape, driven_by, frequency_Hz, damping_ratio, gain: {gearbox}}], orders: [{kind, of, harmonic,

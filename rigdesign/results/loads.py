@@ -74,7 +74,7 @@ class MeshResonance:
 
 @dataclass(frozen=True, kw_only=True)
 class ModeCrossing:
-    """A mesh or shaft order that meets a mode of the closed loop."""
+    """A mesh or shaft order that meets a mode of the closed loop; a mesh excites it."""
 
     kind: Literal["mesh", "shaft"]
     order_of: str
@@ -88,8 +88,6 @@ class ModeCrossing:
     speed: float
     """Of the pinion of the mesh, or of the shaft [rad/s]."""
     gain: float
-    excited: bool
-    """The mesh reaches the mode."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -191,6 +191,18 @@ def _grouped_digits() -> "type[ScalarFormatter]":
     return GroupedDigits
 
 
+def panels_in_pairs(height: float, count: int, parts: int = 1) -> tuple["Figure", Any]:
+    """A figure with two panels side by side and as many lines of them, height [inch] each, as ``count`` needs, and its
+    axes (count, parts), the parts of a panel below each other."""
+    lines = -(-count // 2)
+    figure = new_figure(height * lines)
+    axes = figure.subplots(lines * parts, min(2, count), squeeze=False)
+    panels = axes.reshape(lines, parts, -1).swapaxes(1, 2).reshape(-1, parts)
+    for spare in panels[count:].ravel():
+        spare.set_axis_off()
+    return figure, panels[:count]
+
+
 def gearbox_title(axes: "Axes", text: str, style: CurveStyle) -> None:
     """The title of a plot that shows one gearbox, behind a piece of line in the style of that gearbox."""
     from matplotlib.lines import Line2D

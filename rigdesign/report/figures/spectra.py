@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, words
+from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, panels_in_pairs, words
 from rigdesign.report.numbers import unit_text
 from rigdesign.report.palette import INK, MUTED, TEMPERATURE_COLOURS, CurveStyle
 
@@ -25,12 +25,12 @@ def waterfall_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
     """A panel for each gearbox: frequency across, speed upwards, amplitude as colour; mesh orders named at the edge."""
     from matplotlib.colors import LogNorm
 
-    figure = new_figure(3.9)
-    panels = figure.subplots(1, len(rows), squeeze=False)[0]
+    figure, panels = panels_in_pairs(3.9, len(rows))
+    lines = figure.get_figheight() / 3.9
     top = max(max(map(max, row["amplitude_Nm"])) for row in rows)
     bottom = top * 10.0**-DECADES
     norm = LogNorm(bottom, top)
-    for axes, row in zip(panels, rows, strict=True):
+    for axes, row in zip(panels[:, 0], rows, strict=True):
         amplitude = np.maximum(np.array(row["amplitude_Nm"]), bottom)
         speed, frequency = np.array(row["pinion_speed_rpm"]), KHZ * np.array(row["frequency_Hz"])
         image = axes.pcolormesh(
@@ -49,10 +49,12 @@ def waterfall_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
         gearbox_title(
             axes, f"Gearbox {words(row['gearbox'])}, stage {words(row['stage'])}", styles[row["gearbox"]]
         )
-    bar = figure.colorbar(image, ax=list(panels), pad=0.015, fraction=0.05)
+    figure.subplots_adjust(
+        left=0.085, right=0.87, top=1.0 - 0.12 / lines, bottom=0.13 / lines, wspace=0.24, hspace=0.32
+    )
+    beside = figure.add_axes((0.895, 0.13 / lines, 0.014, 1.0 - 0.25 / lines))
+    bar = figure.colorbar(image, cax=beside)
     bar.set_label(f"amplitude of the dynamic torque [{unit_text('Nm')}]")
-    figure.subplots_adjust(left=0.085, right=0.87, top=0.88, bottom=0.13, wspace=0.24)
-    bar.ax.set_position((0.895, 0.13, 0.014, 0.75))
     return figure
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, words
+from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, panels_in_pairs, words
 from rigdesign.report.numbers import unit_text
 from rigdesign.report.palette import INK, LINES, MUTED, CurveStyle, curve_style
 from rigdesign.results.dynamics import ToothTurnHistory
@@ -80,10 +80,10 @@ def pair_share_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
     """A panel for each gearbox and held stage: share of the mesh force and force over the mean, over the pinion; below
     it the line load over the face where a pair carries most."""
     faces = any(row["face_mm"] for row in rows)
-    figure = new_figure(5.2 if faces else 2.9)
-    grid = figure.subplots(1 + faces, len(rows), squeeze=False)
-    panels = grid[0]
-    for axes, row in zip(panels, rows, strict=True):
+    height = 5.2 if faces else 2.9
+    figure, panels = panels_in_pairs(height, len(rows), 1 + faces)
+    lines = figure.get_figheight() / height
+    for number, ((axes, *below), row) in enumerate(zip(panels, rows, strict=True)):
         style = styles[row["gearbox"]]
         angle = row["rolling_angle_deg"]
         axes.plot(angle, row["share_quasi_static"], color=INK, linewidth=0.9, label="share, quasi-static")
@@ -93,20 +93,23 @@ def pair_share_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
             label="force over the mean force of the mesh",
         )  # fmt: skip
         axes.set_ylim(bottom=0)
-        finish(axes, "rolling angle of the pinion φ [°]", "share of a pair [–]" if axes is panels[0] else "")
+        finish(axes, "rolling angle of the pinion φ [°]", "share of a pair [–]" if number % 2 == 0 else "")
         gearbox_title(axes, f"Gearbox {words(row['gearbox'])}, stage {words(row['stage'])}", style)
-    panels[0].legend(loc="lower center", fontsize=8)
-    if faces:
-        for axes, row in zip(grid[1], rows, strict=True):
-            _line_load(axes, row, styles[row["gearbox"]], first=axes is grid[1][0])
+        for lower in below:
+            _line_load(lower, row, style, number)
+    panels[0, 0].legend(loc="lower center", fontsize=8)
     figure.subplots_adjust(
-        left=0.075, right=0.985, top=0.945 if faces else 0.90, bottom=0.095 if faces else 0.17, wspace=0.14,
+        left=0.075,
+        right=0.985,
+        top=1.0 - (0.055 if faces else 0.10) / lines,
+        bottom=(0.095 if faces else 0.17) / lines,
+        wspace=0.14,
         hspace=0.38,
-    )  # fmt: skip
+    )
     return figure
 
 
-def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first: bool) -> None:
+def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, number: int) -> None:
     """Line load over the face in motion and at rest, at the angle at which a pair carries most."""
     face = row["face_mm"]
     axes.plot(face, row["line_load_quasi_static_N_mm"], color=INK, linewidth=0.9, label="quasi-static")
@@ -115,9 +118,9 @@ def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, *, first
     finish(
         axes,
         f"position from mid-face [mm], at φ = {round(row['most_loaded_angle_deg'], 1) + 0.0:.1f}°",
-        f"line load [{unit_text('N/mm')}]" if first else "",
+        f"line load [{unit_text('N/mm')}]" if number % 2 == 0 else "",
     )
-    if first:
+    if number == 0:
         axes.legend(loc="lower center", fontsize=8)
 
 

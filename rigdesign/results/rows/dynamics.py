@@ -107,7 +107,6 @@ def mode_crossing_row(crossing: ModeCrossing) -> dict[str, Any]:
         "harmonic": crossing.harmonic,
         "speed_rpm": crossing.speed * RPM,
         "gain": crossing.gain,
-        "excited": crossing.excited,
     }
 
 

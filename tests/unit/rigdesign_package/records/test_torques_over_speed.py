@@ -35,7 +35,7 @@ def points(speeds: Sequence[float]) -> Any:
 
 
 def test_a_narrow_peak_is_found_between_the_speeds_of_the_curve() -> None:
-    """Steps of 57 rpm miss it, halved five times they meet it within 2 %; a broad one costs a handful of speeds."""
+    """Steps of 57 rpm miss it; speeds expected from three points meet it. A broad one costs a handful of speeds."""
     coarse = points(range(500, 1500, 57))
     asked: list[float] = []
 
@@ -49,11 +49,12 @@ def test_a_narrow_peak_is_found_between_the_speeds_of_the_curve() -> None:
     shaft = next(curve for curve in curves if curve.place == SHAFT)
     before = max(loop.swings(point)[SHAFT].half_peak_to_peak for point in coarse)
     highest = max(swing.half_peak_to_peak for swing in shaft.swings)
-    assert before < 0.2 * TALL and highest == pytest.approx(TALL, rel=0.02)
+    assert before < 0.2 * TALL and highest == pytest.approx(TALL, rel=1e-3)
     speeds = [point.speed for point in found]
     assert speeds == sorted(speeds) and {point.speed for point in coarse} < set(speeds)
     assert len(shaft.swings) == len(found) < len(coarse) + 4
-    assert len(asked) < 20
+    print(asked, highest)
+    assert len(asked) <= 9
     assert shaft.shear_per_torque == 8e4
 
 

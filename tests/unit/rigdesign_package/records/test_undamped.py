@@ -5,6 +5,8 @@ from dataclasses import replace
 import pytest
 
 from rigdesign.base.errors import CaseError
+from rigdesign.records.curves import LEAST_GAIN
+from rigdesign.records.dynamics import numbered
 from rigdesign.records.undamped import LIGHTLY, UNDAMPED, held_crossings, light_dwells, require_damping
 from rigdesign.results.loads import ModeCrossing
 from tests.builders.solved_loop import solved
@@ -12,9 +14,7 @@ from tests.builders.solved_loop import solved
 RPM = 3500.0 * 3.141592653589793 / 30.0
 
 
-def crossings(
-    damping: float, off: float = 0.0, *, excited: bool = True, kind: str = "mesh"
-) -> tuple[ModeCrossing, ...]:
+def crossings(damping: float, off: float = 0.0, *, kind: str = "mesh") -> tuple[ModeCrossing, ...]:
     """One of the loop near its test speed."""
     found = solved().loads
     assert found is not None
@@ -25,7 +25,6 @@ def crossings(
         harmonic=2,
         speed=RPM * (1.0 + off),
         damping_ratio=damping,
-        excited=excited,
     )
     return (crossing,)
 
@@ -58,18 +57,30 @@ def test_crossings_before_the_dynamic_work_are_those_of_the_loads_up_to_the_high
 
 
 @pytest.mark.parametrize(
-    ("damping", "off", "excited", "kind"),
-    [
-        (2.0 * UNDAMPED, 0.0, True, "mesh"),
-        (0.0, 0.02, True, "mesh"),
-        (0.0, 0.0, False, "mesh"),
-        (0.0, 0.0, True, "shaft"),
-    ],
+    ("damping", "off", "kind"),
+    [(2.0 * UNDAMPED, 0.0, "mesh"), (0.0, 0.02, "mesh"), (0.0, 0.0, "shaft")],
 )
-def test_a_little_damping_distance_or_a_mode_that_no_mesh_excites_is_no_fault(
-    damping: float, off: float, excited: bool, kind: str
+def test_a_little_damping_distance_or_an_order_of_a_shaft_is_no_fault(
+    damping: float, off: float, kind: str
 ) -> None:
-    require_damping(solved().rig, crossings(damping, off, excited=excited, kind=kind))
+    require_damping(solved().rig, crossings(damping, off, kind=kind))
+
+
+def test_a_mode_that_no_mesh_excites_is_no_crossing_of_its_order() -> None:
+    loads = solved().loads
+    assert loads is not None
+    meshes = [crossing for crossing in loads.loop_crossings if crossing.kind == "mesh"]
+    assert all(crossing.gain >= LEAST_GAIN for crossing in meshes)
+    reached = max(crossing.frequency for crossing in meshes)
+    gain = {
+        number: max(mode.mesh_gain)
+        for number, mode in numbered(loads.modes)
+        if 0.0 < mode.frequency < reached
+    }
+    assert {crossing.mode for crossing in meshes} == {
+        number for number, most in gain.items() if most >= LEAST_GAIN
+    } | {crossing.mode for crossing in meshes if crossing.frequency == reached}
+    assert min(gain.values()) < LEAST_GAIN
 
 
 def test_next_to_no_damping_is_found_and_that_of_the_shipped_rig_is_not() -> None:
