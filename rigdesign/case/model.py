@@ -11,11 +11,10 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
-from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.events import Event
-from rigdesign.case.fields import Name, Part, Title
+from rigdesign.case.fields import Name, Part, Text, Title
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
@@ -28,6 +27,24 @@ from rigdesign.case.rig_heat import RigHeatInput
 from rigdesign.case.schedule import ScheduleInput, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
 from rigdesign.case.transient import Transient
+
+# Who answers for a report: nothing of it enters a result.
+
+
+class Document(Part):
+    """What the first page of the report prints above the lines for the signatures."""
+
+    project: Text | None = None
+    """Project or customer the check belongs to."""
+    number: Text | None = None
+    """Number of the document in the reader's own filing."""
+    author: Text | None = None
+    """Who prepared the check."""
+    checked_by: Text | None = None
+    """Who checks it."""
+    approved_by: Text | None = None
+    """Who releases the rig on it."""
+
 
 InputKind = Literal["number", "whole number", "other"]
 """A number with or without a unit; a whole number; a name, a choice, true or false, a table."""

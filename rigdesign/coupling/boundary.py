@@ -20,14 +20,16 @@ from rigdesign.coupling.housing_context import (
     OilFilm,
 )
 from rigdesign.coupling.housing_fluids import WettedSurface, fluid_networks
-from rigdesign.coupling.leak_by_side import side_excess
 from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import (
     ChamberOil,
+    bearing_feed,
     bearing_oil,
+    gear_feed,
     gear_oil,
 )
 from thermal.conditions.boundary import (
@@ -292,3 +294,32 @@ def _seal_sources(context: HousingContext, placed: PlacedLoss) -> list[BoundaryC
         for stem, share in bodies
         if part > 0.0
     ]
+
+
+# Gear oil that leaks into the cold chamber of one side more than into the other: what the oil there is warmer by.
+#
+# The oil of the bearings leaves as one stream; its mean temperature is that of `rigdesign.coupling.oil`. On each side
+# the oil of its own bearings, all warmed alike, mixes with the part of the leak that arrives there.
+
+EVEN = 0.5
+"""Share of a leak that reaches the front where it divides evenly."""
+
+
+def side_excess(rig: Rig, name: str, state: CouplingState, surface: str, fluid: str) -> float:
+    """How much warmer the oil at a surface is than the mixed oil of the bearings [K]; zero for other fluids.
+
+    name : gearbox; fluid : as the case names it, ``bearing_oil_outlet`` or ``bearing_oil_mean``
+    """
+    box = rig.case.gearboxes[name]
+    share, in_front = box.oil_paths.leak_warm_cold, box.oil_paths.leak_front_share
+    side = next((side for side in SIDES if side in surface.split("_")), None)
+    follows = {"bearing_oil_outlet": 1.0, "bearing_oil_mean": 0.5}.get(fluid, 0.0)
+    if not (share and follows) or side is None or in_front == EVEN or box.fed_bearings is None:
+        return 0.0
+    warm, mixed = (state.oil_outlet[f"{name}.{kind}"] for kind in ("gear_oil", "bearing_oil"))
+    leak = share * gear_feed(rig, name, warm, state.oil_supply).capacity_rate
+    each = bearing_feed(rig, name, warm, state.oil_supply).capacity_rate
+    cold = mixed + leak / (each * len(box.bearings)) * (mixed - warm)
+    part = leak * (in_front if side == "front" else 1.0 - in_front)
+    own = each * sum(bearing.side == side for bearing in box.bearings.values())
+    return follows * ((own * cold + part * warm) / (own + part) - mixed) if own + part else 0.0

@@ -1,10 +1,13 @@
 """The housings of a rig in the reduced thermal model: parts of an iteration that take the place of the full ones."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
+from scipy import sparse
 
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.expansion import HousingExpansion
@@ -12,13 +15,29 @@ from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.prediction.expansion_map import ExpansionMap
+from rigdesign.prediction.parallel_fields import fields_in_parallel
 from rigdesign.prediction.places import Weights
-from rigdesign.prediction.reduced_basis import Basis, build_basis
 from rigdesign.rig.model import Rig
+from thermal.conditions.boundary import (
+    BodySource,
+    Exchange,
+    Film,
+    PrescribedTemperature,
+    Radiation,
+    SurfaceSource,
+)
+from thermal.conditions.contact import Contact
+from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conduction.condition_checks import Condition
-from thermal.conduction.reduced import Factor, ReducedConduction
+from thermal.conduction.newton import newton
+from thermal.conduction.reduced import Factor, ReducedConduction, shapes_of
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import TemperatureSolution
+from thermal.conduction.terms import ConductionProblem, Preconditioner
+from thermal.fe.direct_factor import MOST_NODES, DirectFactor
 from thermal.fe.mesh import FloatArray
+from thermal.fe.solver import LowRank
+from thermal.films import convection
 
 HousingNumbers = tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]
 """Basis vectors, their sizes, error, thermal expansion and start of a housing, for another process."""
@@ -142,3 +161,245 @@ class ReducedHousings:
     def parts(self, others: IterationParts) -> IterationParts:
         """Parts of an iteration with the fields and thermal expansion of these housings."""
         return replace(others, field=self.field, expansion=self.expansion, bulk=self.bulk)
+
+
+# Reduced basis of the temperatures of a housing, and the error of the model with it.
+#
+# Basis vectors are fields of the full model: fields under the conditions of some operating points, what each
+# film, joint and source does to them (solutions with the Jacobian), and fields under changed conditions. Changed
+# conditions are drawn at random (see `drawn`); those the model misses most join the basis, until it stays within
+# `WANTED` on draws it has not seen. The largest miss on those last draws is the stated error.
+
+WANTED = 0.08
+"""Error [K] of what is read under which no further basis vectors are sought."""
+LEAST_DIRECTION = 4e-3
+"""Root mean square [K] below which a direction of the sampled fields is left out."""
+DRAWS = 10
+"""Changed conditions per round that may join the basis."""
+UNSEEN = 8
+"""Changed conditions per round that only tell the error."""
+ROUNDS = 4
+"""Rounds at most."""
+FACTOR = 3.0
+"""Largest factor on a kind of film, joint or source in a draw, and on `SINGLE` others."""
+SINGLE = 3
+"""Single conditions that change by much in a draw."""
+LITTLE = 1.2
+"""Largest factor on all others in a draw: what speeds and temperatures do to their laws."""
+SHIFT = 15.0
+"""Largest change of a fluid temperature in a draw [K]."""
+FLUX_RISE = 20.0
+"""Temperature difference [K] that gives the size of the response to a uniform heat flux."""
+TOLERANCE = 1e-6
+"""Heat left over in a full field that joins the basis, relative to the heat turned over."""
+
+
+@dataclass(frozen=True)
+class Basis:
+    """A reduced housing with its error."""
+
+    reduced: ReducedConduction
+    sizes: FloatArray
+    """(m,) temperature that each basis vector reaches [K], strongest first."""
+    error: float
+    """Largest error of a surface or body mean or a sensor in draws that did not join the basis [K]."""
+
+
+class _Kept:
+    """A preconditioner that keeps the small-rank part it was given first: means of a few surfaces hardly matter."""
+
+    def __init__(self, made: Preconditioner) -> None:
+        self._made = made
+
+    def __call__(self, residual: FloatArray) -> FloatArray:
+        return self._made(residual)
+
+    def set_low_rank(self, low_rank: LowRank | None) -> None:
+        """Leave the part as it is."""
+
+
+class FullField:
+    """Full fields of one housing under many conditions, with the factors of one Jacobian."""
+
+    def __init__(
+        self, setup: ConductionSetup, conditions: Sequence[Condition], near: FloatArray | None = None
+    ) -> None:
+        self.setup = setup
+        problem = ConductionProblem(setup, conditions)
+        self._start = problem.start(near)
+        linear = problem.linearise(self._start)
+        points, small = setup.elements.mesh.points, problem.n_nodes <= MOST_NODES
+        made = DirectFactor(linear.matrix, points) if small else problem.multigrid(linear, self._start)
+        made.set_low_rank(linear.low_rank)
+        self._factor = _Kept(made)
+
+    def solve(self, conditions: Sequence[Condition], start: FloatArray | None = None) -> FloatArray:
+        """(n_nodes,) field in equilibrium."""
+        problem = ConductionProblem(self.setup, conditions)
+        found = newton(
+            problem,
+            problem.start(self._start if start is None else start),
+            TOLERANCE,
+            preconditioner=self._factor,
+        )
+        return found.field[: problem.n_nodes]
+
+    def responses(self, conditions: Sequence[Condition], field: FloatArray) -> FloatArray:
+        """(n_nodes, k) changes of a field by each film, joint and source, about as large as they may be.
+
+        They only have to point the right way, so that the preconditioner does.
+        """
+        fixed = ConductionProblem(self.setup, conditions).fixed
+        loads = (np.where(fixed, 0.0, load) for load in self._loads(conditions, field))
+        return np.array([self._factor(load) for load in loads]).T
+
+    def _loads(self, conditions: Sequence[Condition], field: FloatArray) -> Iterator[FloatArray]:
+        surfaces, elements = self.setup.elements.surfaces, self.setup.elements
+        for condition in conditions:
+            match condition:
+                case Film():
+                    surface = surfaces[condition.surface]
+                    value = condition.law(surface.mean(field), condition.fluid_temperature).value
+                    yield value * FLUX_RISE * surface.shares
+                    yield value * surface.load(condition.fluid_temperature - surface.at_points(field))
+                case Radiation():
+                    surface = surfaces[condition.surface]
+                    yield 6.0 * FLUX_RISE * surface.shares
+                    wall = surface.at_points(field)
+                    yield 5.7e-8 * surface.load(condition.surroundings_temperature**4 - wall**4)
+                case Exchange():
+                    a, b = surfaces[condition.surface_a], surfaces[condition.surface_b]
+                    value = condition.law(a.mean(field), b.mean(field)).value
+                    yield value * a.area * FLUX_RISE * (a.shares / a.area - b.shares / b.area)
+                case Contact():
+                    joint = self.setup.joint(condition)
+                    jump = joint.jump
+                    means = (float(joint.mean(side) @ field) for side in (joint.side_a, joint.side_b))
+                    value = condition.law(*means).value
+                    yield -value * (jump.T @ (joint.weights * (jump @ field)))
+                case SurfaceSource():
+                    surface = surfaces[condition.surface]
+                    yield condition.power * surface.shares / surface.area
+                case BodySource():
+                    share = elements.body_load(condition.body)
+                    yield condition.power * share / share.sum()
+        for condition in conditions:
+            if isinstance(condition, Enclosure):
+                yield -EnclosureTerms(elements, condition).heat_out(field)[0]
+        for body in elements.mesh.bodies:
+            share = elements.body_load(body)
+            yield 50.0 * share / share.sum()
+
+
+def build_basis(
+    setup: ConductionSetup,
+    states: Sequence[Sequence[Condition]],
+    readers: Sequence[Weights] = (),
+    seed: int = 5,
+) -> Basis:
+    """The basis of one housing from its conditions at some operating points.
+
+    readers : sensors at points; the error is that of theirs and of the means of all surfaces and bodies
+    seed : of the draws, which are the same for the same seed
+    """
+    fields: list[FloatArray] = []
+    responses: list[FloatArray] = []
+    full = FullField(setup, states[0])
+    for conditions in states:
+        fields.append(full.solve(conditions, fields[-1] if fields else None))
+        full = FullField(setup, conditions, fields[-1])
+        responses.append(full.responses(conditions, fields[-1]))
+    snapshots = np.hstack([np.array(fields).T, *responses])
+    read = _readers(setup, readers)
+    random = np.random.default_rng(seed)
+    for last in [False] * (ROUNDS - 1) + [True]:
+        vectors, sizes = shapes_of(snapshots, LEAST_DIRECTION)
+        reduced = ReducedConduction(setup, vectors)
+        missed = _missed(full, reduced, read, states, random, UNSEEN)
+        error = max(gap for gap, _ in missed)
+        if error <= WANTED or last:
+            break
+        missed += _missed(full, reduced, read, states, random, DRAWS)
+        snapshots = np.hstack([snapshots, np.array([field for _, field in missed]).T])
+    return Basis(reduced, sizes, error)
+
+
+def _readers(setup: ConductionSetup, readers: Sequence[Weights]) -> sparse.csr_array:
+    """(k, n_nodes) means of all surfaces and bodies, and what sensors read."""
+    elements = setup.elements
+    rows = [surface.shares / surface.area for surface in elements.surfaces.values()]
+    for body in elements.mesh.bodies:
+        load = elements.body_load(body)
+        rows.append(load / load.sum())
+    for nodes, weights in readers:
+        row = np.zeros(len(elements.mesh.points))
+        np.add.at(row, nodes, weights)
+        rows.append(row)
+    return sparse.csr_array(np.array(rows))
+
+
+def _missed(
+    full: FullField,
+    reduced: ReducedConduction,
+    read: sparse.csr_array,
+    states: Sequence[Sequence[Condition]],
+    random: np.random.Generator,
+    count: int,
+) -> list[tuple[float, FloatArray]]:
+    """Largest error that is read under randomly changed conditions [K], and the full field; some of them."""
+    start = np.zeros(reduced.size)
+    start[0] = 330.0
+
+    def under(conditions: Sequence[Condition]) -> tuple[float, FloatArray]:
+        found = reduced.field(reduced.solve(conditions, start).coefficients)
+        exact = full.solve(conditions, found)
+        return float(np.abs(read @ (exact - found)).max()), exact
+
+    drawn_ones = [drawn(states[int(random.integers(len(states)))], random) for _ in range(count)]
+    return fields_in_parallel(read.shape[1], [partial(under, conditions) for conditions in drawn_ones])
+
+
+def drawn(conditions: Sequence[Condition], random: np.random.Generator) -> list[Condition]:
+    """Conditions changed at random: one kind and three single ones by much, all of them by a little.
+
+    Fluids of one kind move together, as one stream does.
+    """
+    kind_of = [getattr(condition, "kind", "") for condition in conditions]
+    kinds = sorted(set(kind_of))
+    kind = kinds[int(random.integers(len(kinds)))]
+    single = set(random.integers(len(conditions), size=SINGLE).tolist())
+    shifts = {name: float(random.uniform(-SHIFT, SHIFT)) for name in kinds}
+    common = float(FACTOR ** random.uniform(-1.0, 1.0))
+    changed = []
+    for index, (condition, own) in enumerate(zip(conditions, kind_of)):
+        factor = float(LITTLE ** random.uniform(-1.0, 1.0))
+        if index in single:
+            factor = float(FACTOR ** random.uniform(-1.0, 1.0))
+        elif own == kind:
+            factor *= common
+        changed.append(_changed(condition, factor, shifts[own]))
+    return changed
+
+
+def _changed(condition: Condition, factor: float, shift: float) -> Condition:
+    match condition:
+        case Film():
+            law = convection.scaled(condition.law, factor)
+            return replace(condition, law=law, fluid_temperature=condition.fluid_temperature + shift)
+        case Exchange() | Contact():
+            return replace(condition, law=convection.scaled(condition.law, factor))
+        case Radiation():
+            return replace(
+                condition,
+                emissivity=min(1.0, condition.emissivity * math.sqrt(factor)),
+                surroundings_temperature=condition.surroundings_temperature + shift,
+            )
+        case Enclosure():
+            greyer = min(1.0, math.sqrt(factor))
+            return replace(condition, emissivities=tuple(greyer * e for e in condition.emissivities))
+        case SurfaceSource() | BodySource():
+            return replace(condition, power=condition.power * factor)
+        case PrescribedTemperature():
+            return replace(condition, temperature=condition.temperature + shift)
+        case _:
+            return condition

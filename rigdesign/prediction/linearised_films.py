@@ -3,7 +3,7 @@
 Shafts that bend feel stiffness and damping of their bearings. What leaves the parts of the circuit alone (losses, oil,
 flows) moves these by a per cent or less, and along few ways: the oil gets warmer, the clearance wider, the load larger.
 The coefficients of a bearing near the point are written as a sum of these; the response to each is found once
-(`rigdesign.prediction.linearised_drag`).
+(`rigdesign.prediction.sensitivities`).
 """
 
 from collections.abc import Callable, Mapping

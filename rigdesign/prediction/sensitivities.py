@@ -8,21 +8,24 @@ sources) is solved in the reduced basis (`housing_sensitivities`).
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import islice
+from typing import Any
 
 import numpy as np
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.mesh.law import MeshLaw
 from dynamics.response.response_curve import CurvePoint
-from rigdesign.coupling.braced_loop import LoadedCircuit
+from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, signed_torque
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
+from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.state_vector import SCALES, numbering, scaled, unscaled
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
 from rigdesign.prediction.housings import ReducedField
-from rigdesign.prediction.linearised_drag import Cause, LinearisedDrag
-from rigdesign.prediction.linearised_films import Film
+from rigdesign.prediction.linearised_films import WAYS, Film, LinearisedFilms
 from rigdesign.prediction.model import ORDER_QUANTITIES
 from rigdesign.prediction.order_motion import is_ideal
 from rigdesign.prediction.orders import Orders, shaft_orders
@@ -30,6 +33,214 @@ from rigdesign.prediction.orders import numbers as order_numbers
 from rigdesign.prediction.readings import Readings, count_of
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
+
+# A converged point whose loop changes in nothing but what brakes it: drags and the friction of its teeth.
+#
+# Those move torques by a per cent or less, so that the changes of the periodic response with each of them, found once,
+# add up. Of shafts that bend the same holds for small changes of their films (`LinearisedFilms`) and for what these do
+# to the twist of the bracing. What leaves loop and flanks alone (losses, oil, flows, films) then needs no response of
+# its own.
+
+DRAG_STEP = 1.0
+"""Drag torque over which a difference is taken [N m]."""
+FRICTION_STEP = 0.4
+"""Share of a friction coefficient over which differences are taken, to both sides, for both derivatives."""
+SAME_BRACING = 1e-9
+"""Relative difference of twists or shifts that are the same."""
+LEAST_FRICTION = 0.01
+"""Friction coefficient of which that share is taken at least."""
+
+Cause = tuple[str, str]
+"""``drag`` and a place of the drivetrain, ``friction`` and a mesh, ``bracing`` and its ``twist`` or ``shift``, or one
+of `rigdesign.prediction.linearised_films.WAYS` and a bearing."""
+BRACING_STEP = 1e-3
+"""Share of a twist or shift over which a difference is taken."""
+MOST_BRACING = 1e-2
+"""Share of it up to which the difference serves."""
+
+
+class LinearisedDrag:
+    """Torques, losses and orders of a converged point under other drag torques and frictions.
+
+    last : iteration of the point; reads : readings of the channels; sensitivities : by cause, those that are known
+    already, (2, n) per size and per its square
+    """
+
+    def __init__(
+        self,
+        problem: PointProblem,
+        last: IterationResult,
+        reads: Readings,
+        sensitivities: Mapping[Cause, FloatArray] | None = None,
+    ) -> None:
+        self.problem, self.last = problem, last
+        self._orders = [reading for channel, reading in reads if channel.quantity in ORDER_QUANTITIES]
+        self.sensitivities = dict(sensitivities or {})
+
+    @cached_property
+    def films(self) -> LinearisedFilms | None:
+        """Bearings near those of the point; None for shafts that only twist, or without a power circuit."""
+        if self.problem.bracing is None or self.problem.rig.shaft_model == "torsional":
+            return None
+        return LinearisedFilms(self.problem, self.last)
+
+    def causes(
+        self, rig: Rig, circuit: LoadedCircuit, films: Mapping[Film, float] | None = None
+    ) -> dict[Cause, float] | None:
+        """By how much drags [N m], frictions, films and bracing differ; None where more than they do.
+
+        films : changes of the bearings that the system of the circuit leaves out
+        """
+        own_rig, last = self.problem.rig, self.last
+        point, models, drags = circuit.point, circuit.models, circuit.drags
+        if (
+            circuit.system is not last.system
+            or not self._near_bracing(circuit.bracing)
+            or rig.pinion_speed(point.speed) != own_rig.pinion_speed(last.point.speed)
+            or signed_torque(rig, point) != signed_torque(own_rig, last.point)
+            or not all(_alike(model.law, own.law) for model, own in zip(models, last.models))
+        ):
+            return None
+        found: dict[Cause, float] = {}
+        for place in {**last.drags, **drags}:
+            found["drag", place] = drags.get(place, 0.0) - last.drags.get(place, 0.0)
+        for model, own in zip(models, last.models):
+            found["friction", model.name] = model.law.friction - own.law.friction
+        found |= {(way, bearing): size for (bearing, way), size in (films or {}).items()}
+        if self.films is not None and self.problem.bracing is not None:
+            own_bracing = self.problem.bracing
+            found["bracing", "twist"] = circuit.bracing.twist - own_bracing.twist
+            found["bracing", "shift"] = circuit.bracing.shift - own_bracing.shift
+        return {cause: size for cause, size in found.items() if size != 0.0}
+
+    def response(self, causes: Mapping[Cause, float]) -> CurvePoint:
+        """The response with causes; its motion is that without."""
+        base = self.last.response
+        assert base is not None
+        if not causes:
+            return base
+        moved = self._moved(causes)
+        n = base.mean.size
+        return replace(
+            base,
+            mean=base.mean + moved[:n],
+            friction_power=base.friction_power + moved[n : 2 * n],
+            damping_power=base.damping_power + moved[2 * n : 3 * n],
+            drive_torque=base.drive_torque + float(moved[3 * n]),
+        )
+
+    def orders(self, causes: Mapping[Cause, float]) -> FloatArray:
+        """(n,) numbers of all channels of orders, behind each other."""
+        return np.asarray((self._base + self._moved(causes))[self._first :])
+
+    @cached_property
+    def _base(self) -> FloatArray:
+        return self._numbers(self.last)
+
+    @property
+    def _first(self) -> int:
+        """Place of the first number of orders, behind those of the response."""
+        return 3 * len(self.last.models) + 1
+
+    def _moved(self, causes: Mapping[Cause, float]) -> FloatArray:
+        moved = np.zeros(self._base.size)
+        for cause, size in causes.items():
+            if cause not in self.sensitivities:
+                self.sensitivities[cause] = self._sensitivity(*cause)
+            first, second = self.sensitivities[cause]
+            moved += size * (first + size * second)
+        return moved
+
+    def _sensitivity(self, kind: str, place: str) -> FloatArray:
+        """(2, n) first derivative by a drag [N m] or a friction coefficient, and half the second."""
+        last = self.last
+        if kind == "bracing":
+            return self._one_sided(*self._braced(place))
+        if kind in WAYS:
+            return self._of_film(place, kind)
+        if kind == "drag":
+            more = {**last.drags, place: last.drags.get(place, 0.0) + DRAG_STEP}
+            return self._one_sided(self._solved(last.models, more), DRAG_STEP)
+        number = [model.name for model in last.models].index(place)
+        stated = last.models[number].law.friction
+        step = FRICTION_STEP * max(stated, LEAST_FRICTION)
+        sizes = np.array([-step if stated > step else 2.0 * step, step])
+        moved = [
+            self._solved(_rubbed(last.models, number, stated + size), last.drags) - self._base
+            for size in sizes.tolist()
+        ]
+        return np.linalg.solve(np.stack([sizes, sizes**2], axis=1), np.array(moved))
+
+    def _of_film(self, bearing: str, way: str) -> FloatArray:
+        """(2, n) derivatives by the share of a step of a bearing, from both sides."""
+        assert self.films is not None
+        less, more = (
+            self._in_loop(system=self.films.system((bearing, way), share)) - self._base
+            for share in (-1.0, 1.0)
+        )
+        return np.stack([0.5 * (more - less), 0.5 * (more + less)])
+
+    def _one_sided(self, moved: FloatArray, step: float) -> FloatArray:
+        """(2, n) first derivative by one difference."""
+        first = (moved - self._base) / step
+        return np.stack([first, np.zeros_like(first)])
+
+    def _braced(self, kind: str) -> tuple[FloatArray, float]:
+        """Numbers with another twist [rad] or shift [m], and by how much it differs."""
+        own = self.problem.bracing
+        assert own is not None
+        if kind == "twist":
+            step = BRACING_STEP * own.twist
+            return self._in_loop(bracing=replace(own, twist=own.twist + step)), step
+        step = BRACING_STEP * own.shift
+        return self._in_loop(bracing=replace(own, shift=own.shift + step)), step
+
+    def _near_bracing(self, setting: BracingState) -> bool:
+        """Whether a bracing is that of the point; of shafts that bend, or nearly."""
+        near = SAME_BRACING if self.films is None else MOST_BRACING
+        return _same_bracing(setting, self.problem.bracing, near)
+
+    def _solved(self, models: tuple[MeshModel, ...], drags: Mapping[str, float]) -> FloatArray:
+        return self._in_loop(models=models, drags=drags)
+
+    def _in_loop(self, **changed: Any) -> FloatArray:
+        """Numbers of the loop of the point with some fields of its `IterationResult` changed."""
+        problem = self.problem
+        last = replace(self.last, **{"bracing": problem.bracing, **changed})
+        response = problem.parts.response(problem.rig, last.loop)
+        return self._numbers(replace(last, response=response))
+
+    def _numbers(self, done: IterationResult) -> FloatArray:
+        """Mean torques, losses, drive torque and orders."""
+        response = done.response
+        assert response is not None
+        read = [number for reading in self._orders for number in reading(self.problem.rig, done)]
+        loop = (response.mean, response.friction_power, response.damping_power, [response.drive_torque])
+        return np.concatenate([*loop, read])
+
+
+def _rubbed(models: tuple[MeshModel, ...], number: int, friction: float) -> tuple[MeshModel, ...]:
+    """Models with another friction coefficient in one law."""
+    model = models[number]
+    changed = replace(model, law=model.law._replace(friction=friction))
+    return (*models[:number], changed, *models[number + 1 :])
+
+
+def _same_bracing(setting: BracingState, own: BracingState | None, near: float) -> bool:
+    """Whether two bracings are the same but for a share."""
+    if own is None or setting.mode != own.mode:
+        return False
+    pairs = (setting.twist, own.twist), (setting.shift, own.shift)
+    return all(abs(one - other) <= near * abs(other) for one, other in pairs)
+
+
+def _alike(law: MeshLaw, own: MeshLaw) -> bool:
+    """Whether laws of a `Memoisation` differ in friction alone: arrays that are alike are the same ones."""
+    return all(
+        one is other or (not isinstance(one, np.ndarray) and one == other)
+        for one, other in zip(law, own._replace(friction=law.friction))
+    )
+
 
 STEP = 0.3
 """Step of a difference in units of `state_vector.SCALES`: 0.3 K, 0.3 um, 3 W, 0.3 N m."""

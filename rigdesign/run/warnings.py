@@ -1,12 +1,16 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
+from dynamics.response.band_change import FADE
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.case.model import Case
@@ -15,21 +19,26 @@ from rigdesign.case.usual import stated_numbers
 from rigdesign.checks.assumptions import depends, influences_of
 from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import thrust
+from rigdesign.coupling.boundary import printed_films
+from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
+from rigdesign.coupling.housing_context import GEAR_OIL
+from rigdesign.coupling.loop_over_speed import band_limits
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
-from rigdesign.records.curves import iso_factor, resolved
+from rigdesign.records.curves import iso_factor, own_ratio, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil, gear_oil
-from rigdesign.run.fast_ramps import fast_ramps
-from rigdesign.run.heat_audits import heat_audits
+from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
 from rigdesign.run.load_convergence import missing_load_errors
+from thermal.conditions.boundary import Film, Radiation
+from thermal.conduction.audit import assumed_difference, audit_conditions, radiation_too_small
 
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
@@ -326,3 +335,159 @@ def not_modelled(solved: SolvedRig) -> list[str]:
                 faces = ", ".join(journals)
                 items.append(f"{name}: axial force of {', '.join(single)} on the thrust faces of {faces}")
     return items
+
+
+# Ramps that pass a resonance faster than the time run updates the bearing positions.
+#
+# From one speed band to the next the time run changes the mean position of the gears in their bearings, hence the
+# approach of their flanks, over the time `FADE` (`dynamics.response.band_change`). A band that is passed in less is
+# left before the change is complete.
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassedBand:
+    """A band of speed that was entered at one end and left at the other.
+
+    low, high : speeds of the first pinion [rad/s]; start, duration : in the run [s]
+    """
+
+    low: float
+    high: float
+    start: float
+    duration: float
+
+
+def fast_ramps(solved: SolvedRig) -> Iterator[str]:
+    """Of every stage the band with a resonance that it passes fastest, where that takes less than `FADE`."""
+    if solved.run is None or solved.loads is None:
+        return
+    rig, ramp = solved.rig, solved.run.ramp
+    stages = rig.case.schedule.resolved()
+    limits = band_limits(rig, (0.0, max(stage.speed_end for stage in stages)))
+    resonances = [
+        (one.speed / own_ratio(rig, mesh), rig.mesh_labels[name])
+        for mesh, name in enumerate(rig.mesh_names)
+        for one in solved.loads.meshes[rig.mesh_labels[name]].resonances
+    ]
+    ends = list(accumulate(stage.duration for stage in stages))
+    worst: dict[int, tuple[PassedBand, float, str]] = {}
+    for band in passed_bands(ramp.time, ramp.speed, limits):
+        inside = [one for one in resonances if band.low < one[0] < band.high]
+        if inside and band.duration < FADE:
+            at = min(int(np.searchsorted(ends, band.start, "right")), len(stages) - 1)
+            if at not in worst or band.duration < worst[at][0].duration:
+                worst[at] = band, *min(inside)
+    for number, (band, speed, mesh) in worst.items():
+        stage = stages[number]
+        longer = stage.duration * FADE / band.duration
+        yield (
+            f"stage {stage.name}: time in the band of {band.low * RPM:.0f} to {band.high * RPM:.0f} rpm with the "
+            f"resonance of {mesh} at {speed * RPM:.0f} rpm = {band.duration:.3g} s, limit {FADE:g} s, in which the "
+            "time run updates the bearing positions: its torques there lie between those of two bands; give the stage "
+            f"{longer:.2g} s or more, or use the periodic response"
+        )
+
+
+def passed_bands(time: Array, speed: Array, limits: Sequence[float]) -> Iterator[PassedBand]:
+    """Bands between two limits [rad/s] that a run passes from end to end, in the order in which it does.
+
+    time, speed : (n,) of the samples [s], [rad/s]
+    """
+    band = np.searchsorted(limits, speed)
+    first = np.flatnonzero(np.diff(band, prepend=-1))
+    for here, after in pairwise(first[1:]):
+        number = int(band[here])
+        if 0 < number < len(limits) and (band[here - 1] - number) * (band[after] - number) < 0:
+            yield PassedBand(
+                low=limits[number - 1],
+                high=limits[number],
+                start=float(time[here]),
+                duration=float(time[after] - time[here]),
+            )
+
+
+# Audits of the temperature fields: heat that cannot be, films taken at another difference, radiation counted twice.
+
+FILM_FACTOR = 3.0
+"""Between a given film on the rim of a gear and the one its oil makes, from which it is named."""
+
+
+def heat_audits(solved: SolvedRig) -> Iterator[str]:
+    """Heat that cannot be, films taken at another temperature difference, radiation counted twice."""
+    for field in _fields(solved):
+        found = (
+            *audit_conditions(field.conditions),
+            *_radiation_bound(field),
+            *_assumed_differences(solved, field),
+            *thin_rim_films(solved, field),
+        )
+        yield from (f"{field.gearbox}: {text}" for text in found)
+
+
+def _radiation_bound(field: HousingField) -> Iterator[str]:
+    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+    for condition in field.conditions:
+        if not isinstance(condition, Radiation) or condition.surface not in films:
+            continue
+        film, own = films[condition.surface], rows[(condition.surface, condition.kind)]
+        convection = rows[(film.surface, film.kind)]
+        if convection.coefficient is None or condition.surroundings_temperature != film.fluid_temperature:
+            continue
+        text = radiation_too_small(
+            condition.surface,
+            convection=-convection.power,
+            radiation=-own.power,
+            emissivity=condition.emissivity,
+            film=convection.coefficient.value,
+            ambient=film.fluid_temperature,
+        )
+        if text is not None:
+            yield text
+
+
+def _assumed_differences(solved: SolvedRig, field: HousingField) -> Iterator[str]:
+    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+    for surface, taken in printed_films(solved.rig, field.gearbox):
+        film = films[surface]
+        text = assumed_difference(
+            surface,
+            assumed=taken.temperature_difference,
+            solved=rows[(surface, film.kind)].mean_temperature - film.fluid_temperature,
+            law=taken.film_law(),
+            fluid_temperature=film.fluid_temperature,
+        )
+        if text is not None:
+            yield text
+
+
+def thin_rim_films(solved: SolvedRig, field: HousingField) -> Iterator[str]:
+    """Gears whose friction heat is split by assumption under a given film far from the one their jets make."""
+    name, rig = field.gearbox, solved.rig
+    box = rig.case.gearboxes[name]
+    result = next(p for p in solved.points if p.last.fields.get(name) is field)
+    point, state = result.point, result.last.coupling_state
+    chamber = ChamberOil.of(name, state.oil_outlet, state.oil_supply)
+    if box.heat_split.rule != "assumed" or point.speed == 0.0:
+        return
+    rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}
+    for gear, rim in rim_surfaces(box).items():
+        row = rows.get(rim)
+        if row is None or row.coefficient is None:
+            continue
+        given = row.coefficient.value
+        made = film_of_oil(rig, name, gear, point, wall=row.mean_temperature, chamber=chamber)
+        if not given * FILM_FACTOR >= made >= given / FILM_FACTOR:
+            yield (
+                f"{gear}: film on its rim = {given:.0f} W/(m2 K) with mesh_into_gears = "
+                f"{box.heat_split.mesh_into_gears:g}, its oil makes {made:.0f} W/(m2 K) (fling-off): its bulk "
+                f'temperature depends on the assumption; write law = "flank_film" and give no share, or ranges'
+            )
+
+
+def _fields(solved: SolvedRig) -> Iterable[HousingField]:
+    for point in solved.points:
+        yield from point.last.fields.values()

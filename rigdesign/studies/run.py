@@ -1,5 +1,6 @@
 """Parameter studies: a case over values of its inputs, resumable, with failed points kept."""
 
+import csv
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
@@ -13,7 +14,6 @@ from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers, Workers, worker_count
 from rigdesign.studies.analysis import analysed, computed_so_far, kept_by_copies
 from rigdesign.studies.design import Plan, StudyDesign, planned
-from rigdesign.studies.earlier import replaced_pages
 from rigdesign.studies.point import PointSetup, Prepare, Run
 from rigdesign.studies.result import StudyPoint, StudyResult
 from rigdesign.studies.shards import Shard, StudyLedgers, files_lock, folder_lock
@@ -234,3 +234,27 @@ def _left_over(solver: PointSolver, tasks: Sequence[PointTask]) -> Iterator[None
         else:
             stop.args = (f"{stop}; {text}", *stop.args[1:])
         raise
+
+
+# Whether the folder of a study holds the pages of another one, which those of this one will replace.
+
+TABLE, STATUS = "results.csv", "status"
+"""Table of a study, and its first column behind the varied values."""
+
+
+def replaced_pages(out: Path, plan: Plan) -> Iterator[str]:
+    """A sentence where ``out`` holds the table of a study with points that ``plan`` has not."""
+    with suppress(OSError, UnicodeError, csv.Error, StopIteration):
+        with (out / TABLE).open(encoding="utf-8", newline="") as file:
+            rows = csv.reader(file)
+            header = next(rows)
+            paths = header[: header.index(STATUS)] if STATUS in header else []
+            earlier = {tuple(zip(paths, row)) for row in rows} if paths else set()
+        same_inputs = paths == [variation.path for variation in plan.variations]
+        now = {tuple(point.values.items()) for point in plan.points}
+        if not (earlier <= now or (plan.search is not None and same_inputs)):
+            yield (
+                f"{out} holds the pages of a study of {', '.join(paths)} with {len(earlier)} points: those of this "
+                "study replace them; its points stay, and its command in this folder writes its pages again without "
+                "computing; give another --out to keep both"
+            )

@@ -6,14 +6,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.coupling.housing_context import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
+from rigdesign.transient.bearing_nodes import seated_bearings
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil_power import OilHistory
 from rigdesign.transient.oil_supply import SupplyHistory
 from rigdesign.transient.phases import Phase
-from rigdesign.transient.places import probes_of
 from thermal.transient.history import InitialState, Observed, StepControl, TransientSolution, solve_transient
+from thermal.transient.probes import Probe
 
 FloatArray = NDArray[np.float64]
 FIRST_STEP = 0.5
@@ -122,3 +123,26 @@ def march(rig: Rig, heating: Heating, name: str, plan: BranchPlan, how: Marching
         steps=StepControl(tolerance=how.tolerance, first=FIRST_STEP, largest=UNBOUND),
     )
     return ThermalHistory(gearbox=name, plan=plan, solution=solution, fields=fields, ends=ends)
+
+
+# Places of a housing whose temperatures are kept over time.
+
+
+def probes_of(rig: Rig, name: str) -> list[Probe]:
+    """Every body by its mean, the hottest place of the housing, oil outlets, bearing films, and those of the case."""
+    box = rig.case.gearboxes[name]
+    fed = box.fed_bearings is not None
+    films = list(box.bearings) if fed else seated_bearings(rig, name)
+    own = [
+        *(Probe(name=body, place=body) for body in rig.models[name].mesh.bodies),
+        Probe(name="housing_max", place="housing", quantity="max"),
+        Probe(name="gear_oil_outlet", place=GEAR_OIL),
+        Probe(name="bearing_oil_outlet", place=BEARING_OIL if fed else GEAR_OIL),
+        *(Probe(name=f"film_outlet_{part}", place=f"{BEARING_FILM}:{part}") for part in films),
+    ]
+    taken = {probe.name for probe in own}
+    return own + [
+        Probe(name=f"probe_{key}" if key in taken else key, place=entry.place, quantity=entry.quantity)
+        for key, entry in rig.case.transient.probes.items()
+        if entry.gearbox == name
+    ]

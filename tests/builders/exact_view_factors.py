@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermal.conditions.boundary import ConditionError
-from thermal.conditions.clipping import clip
+from thermal.conditions.contact import clip
 from thermal.conditions.facet_triangles import FacetTriangles
 from thermal.fe.mesh import FloatArray, NamedMesh
 from thermal.fe.reference_elements import TRIANGLE_6

@@ -11,7 +11,7 @@ from rigdesign.case.model import Case
 from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.model import GAUGES_AGAINST
 from rigdesign.prediction.predictor import Predictor
-from rigdesign.prediction.root_strain import StrainCurve, strain_curve
+from rigdesign.prediction.readings import StrainCurve, strain_curve
 from rigdesign.rig.model import Rig
 from tests.builders.paths import CASES
 from tests.builders.strain_logger import Amplifier

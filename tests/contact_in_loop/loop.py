@@ -2,7 +2,7 @@
 
 In every step the contact of each mesh is solved from the influence numbers of its gears at the positions and tilts that
 the gears have (`tests.contact_in_loop.integration`): both flanks, loss of contact, tip corners, the load over the face.
-Its forces act in the directions in which its motion is seen (`dynamics.elastic_rig.wrench_rows`): each flank along its
+Its forces act in the directions in which its motion is seen (`dynamics.elastic_rig.seen_system`): each flank along its
 own normal, moments over the face, friction across the normals. It is the reference of the faster march on tables
 (`dynamics.response.time_march`), which has one approach per mesh on the flank that carries.
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.elastic_rig.wrench_rows import wrench_rows
+from dynamics.elastic_rig.seen_system import wrench_rows
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw

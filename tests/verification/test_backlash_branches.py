@@ -17,14 +17,14 @@ from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.harmonic_balance import solve_periodic
+from dynamics.response.harmonic_branches import instability
 from dynamics.response.harmonic_continuation import CRAWLING, BranchTrace, SpeedProblem
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
-from dynamics.response.harmonic_stability import instability
 from dynamics.response.periodic_response import periodic_by_time
 from dynamics.response.response_curve import Method, ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.waveform import waveform
-from rigdesign.validation.oscillator import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
+from rigdesign.validation.mechanics import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 from tests.builders.rig import prototype, prototype_laws
 
 Array = NDArray[np.float64]

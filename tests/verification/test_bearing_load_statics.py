@@ -6,9 +6,8 @@ import pytest
 from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.bearing_loads import bearing_loads, shaft_loads
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.shaft_loads import shaft_loads
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig

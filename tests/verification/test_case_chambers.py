@@ -9,9 +9,9 @@ import pytest
 
 from rigdesign.coupling.housing_fluids import heat_carried_off
 from rigdesign.coupling.temperatures import HousingField, heat_into_oil, heat_to_room
-from rigdesign.records.housing_fluids import fluid_temperatures
+from rigdesign.records.housing import fluid_temperatures
 from rigdesign.rig.model import Rig
-from rigdesign.transient.blend import blended
+from rigdesign.transient.heating import blended
 from rigdesign.transient.oil import oil_conditions
 from tests.builders.fzg_case import HELD
 from tests.builders.warm_chambers import solved_chambers, stated_conditions

@@ -15,8 +15,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.elastic_rig.wrench_rows import wrench_rows
+from dynamics.elastic_rig.seen_system import SeenRig, wrench_rows
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import in_parallel
 from dynamics.response.initial_state import wound_state

@@ -10,7 +10,7 @@ from rigdesign.case import load_case
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.heat_audits import thin_rim_films
+from rigdesign.run.warnings import thin_rim_films
 from tests.builders.fzg_case import RIM_FILM, fzg_case
 from tests.builders.paths import CASES
 

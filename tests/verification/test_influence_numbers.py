@@ -21,7 +21,8 @@ from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.influence import build, local_part
+from dynamics.influence import build
+from dynamics.influence import build as local_part
 from dynamics.influence.elastic_segment import Elastic
 from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
 from dynamics.influence.gear_model import GearModel

@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 
 from dynamics.bearing.journal_characteristic import short_bearing_attitude
-from dynamics.bearing.journal_coefficients import coefficient_table
 from dynamics.bearing.journal_feed import film_arcs
 from dynamics.bearing.journal_film import solve_arc, solve_film
 from dynamics.bearing.journal_grid import film_grid
-from dynamics.bearing.journal_lateral import RunningFilm, journal_lateral
+from dynamics.bearing.journal_lateral import RunningFilm, coefficient_table, journal_lateral
 from dynamics.bearing.journal_perturbation import film_coefficients
 from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.bearing.protocol import LateralOperation

@@ -11,7 +11,7 @@ import pytest
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
-from rigdesign.validation.oscillator import DOWN, FORCE, MEAN_FORCE, UP, ZETA
+from rigdesign.validation.mechanics import DOWN, FORCE, MEAN_FORCE, UP, ZETA
 from tests.builders.mesh import two_bodies
 
 FREQUENCIES = tuple(sorted(UP))

@@ -26,7 +26,7 @@ from rigdesign.reanalysis.affected_parts import PARTS, Part, parts_of
 from rigdesign.reanalysis.reference import Reference
 from rigdesign.uncertainty.plan import ALIKE, RangeEnd, plan
 from rigdesign.uncertainty.point import EndResult, solve_end, solve_stated
-from rigdesign.uncertainty.verdicts import LEAST_MOVE
+from rigdesign.uncertainty.run import LEAST_MOVE
 from tests.builders.checks import EXPECTED, check, limit_of
 from tests.builders.paths import CASES
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign.measurement.processing.strain_record import (
+from rigdesign.measurement.processing.root_gauges import (
     ConstantSpeed,
     GaugeChannel,
     StrainRecording,

@@ -19,8 +19,7 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.response import time_response
 from dynamics.response.command import Command, MotorDrive, Sampling
 from dynamics.response.march_inputs import SpeedControl
-from dynamics.response.time_response import run_schedule
-from dynamics.response.turning_start import TurningStart, turning_start
+from dynamics.response.time_response import TurningStart, run_schedule, turning_start
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, wavy_law
 from tests.builders.rig import prototype_laws

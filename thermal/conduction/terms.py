@@ -30,19 +30,20 @@ from thermal.conditions.boundary import (
     Radiation,
     SurfaceSource,
 )
-from thermal.conditions.contact import Contact
+from thermal.conditions.contact import Contact, SurfaceJoint
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conditions.streams import StreamNetwork, volume_links
 from thermal.conduction.capacity import Storage, StoredHeat
 from thermal.conduction.condition_checks import Condition, ConditionError, check_heat_paths
-from thermal.conduction.contact_terms import ContactTerms
+from thermal.conduction.law_values import checked_value
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.stream_terms import Elimination, VolumeTerms, eliminate
-from thermal.conduction.surface_terms import SurfaceTerms
 from thermal.fe.direct_factor import MOST_NODES, DirectFactor
-from thermal.fe.low_rank import Column, stack
+from thermal.fe.elements import FiniteElements, SurfaceElements
+from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of, stack
 from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import BoolArray, HeldMatrix, LowRank, Operator, Product, TwoLevelMultigrid, constrain
+from thermal.films.law import STEFAN_BOLTZMANN
 
 EXCHANGE_SHIFT = 1e-4
 """Share of its exchange coefficient that a body without any film gets in the coarse factor."""
@@ -385,3 +386,179 @@ class ConductionProblem:
             for name in pair:
                 surface = self.surfaces[name]
                 surface.add_coarse_mass(values, np.full_like(surface.weights, EXCHANGE_SHIFT * value))
+
+
+# Residual and Jacobian of the contacts of a model.
+
+
+class ContactTerms:
+    """All contacts with their joints."""
+
+    def __init__(self, contacts: Sequence[Contact], joints: Sequence[SurfaceJoint]) -> None:
+        self.contacts, self.joints = contacts, joints
+        self._jumps = [joint.jump for joint in joints]
+        self._units = [
+            sparse.csr_array(jump.T @ (sparse.diags_array(joint.weights) @ jump))
+            for jump, joint in zip(self._jumps, joints, strict=True)
+        ]
+        """(n_nodes, n_nodes) matrix of each contact at 1 W/(m2 K) [m2]."""
+        self._means = [(joint.mean(joint.side_a), joint.mean(joint.side_b)) for joint in joints]
+
+    def values(self, temperature: FloatArray) -> list[float]:
+        """Conductance of every contact [W/(m2 K)]."""
+        return [
+            _value(contact, float(a @ temperature), float(b @ temperature))
+            for contact, (a, b) in zip(self.contacts, self._means, strict=True)
+        ]
+
+    def heat_out(self, temperature: FloatArray) -> tuple[FloatArray, float]:
+        """Heat (n_nodes,) that leaves every node; sum of the flows' sizes [W]."""
+        out = np.zeros(len(temperature))
+        turned = 0.0
+        values = self.values(temperature)
+        for value, jump, joint in zip(values, self._jumps, self.joints, strict=True):
+            flow = value * joint.weights * (jump @ temperature)
+            out += jump.T @ flow
+            turned += 2.0 * abs(float(flow.sum()))
+        return out, turned
+
+    def matrix(self, temperature: FloatArray) -> sparse.csr_array | None:
+        """Symmetric part of the Jacobian [W/K]; None without contacts."""
+        total: sparse.csr_array | None = None
+        for value, unit in zip(self.values(temperature), self._units, strict=True):
+            total = value * unit if total is None else total + value * unit
+        return total
+
+    def columns(self, temperature: FloatArray) -> list[tuple[Column, Column]]:
+        """What conductances that follow the mean temperatures add to the Jacobian."""
+        columns = []
+        for contact, (a, b), unit in zip(self.contacts, self._means, self._units, strict=True):
+            t_a, t_b = float(a @ temperature), float(b @ temperature)
+            by_a = _value(contact, t_a + DIFFERENCE, t_b) - _value(contact, t_a - DIFFERENCE, t_b)
+            by_b = _value(contact, t_a, t_b + DIFFERENCE) - _value(contact, t_a, t_b - DIFFERENCE)
+            if by_a != 0.0 or by_b != 0.0:
+                slope = (by_a * a + by_b * b) / (2.0 * DIFFERENCE)
+                columns.append((_column(unit @ temperature), _column(slope)))
+        return columns
+
+    def links(self, temperature: FloatArray) -> list[tuple[str, str]]:
+        """Pairs of surfaces that pass heat."""
+        values = zip(self.contacts, self.values(temperature), strict=True)
+        return [(c.surface_a, c.surface_b) for c, value in values if value > 0.0]
+
+
+def _value(contact: Contact, mean_a: float, mean_b: float) -> float:
+    return checked_value(contact.law(mean_a, mean_b).value, contact.surface_a, contact.kind)
+
+
+def _column(values: FloatArray) -> Column:
+    nodes = np.flatnonzero(values).astype(np.int32)
+    return nodes, values[nodes]
+
+
+# Residual and Jacobian of films, radiation to surroundings and exchange between area means.
+#
+# A film's coefficient follows the area mean of its own surface, an exchange the means of both: each adds one
+# rank to the Jacobian in addition to the local slope of the heat flux.
+
+
+class SurfaceTerms:
+    """All conditions of these three kinds."""
+
+    def __init__(
+        self,
+        elements: FiniteElements,
+        films: Sequence[Film],
+        radiations: Sequence[Radiation],
+        exchanges: Sequence[Exchange],
+    ) -> None:
+        self._surfaces = elements.surfaces
+        self.films, self.radiations, self.exchanges = films, radiations, exchanges
+
+    def heat_out(self, temperature: FloatArray) -> tuple[FloatArray, float]:
+        """Heat (n_nodes,) that leaves every node; sum of the flows' sizes [W]."""
+        out = np.zeros(len(temperature))
+        turned = 0.0
+        for film in self.films:
+            surface = self._surfaces[film.surface]
+            mean = surface.mean(temperature)
+            value = _film_value(film, mean)
+            out += value * surface.load(surface.at_points(temperature) - film.fluid_temperature)
+            turned += value * surface.area * abs(mean - film.fluid_temperature)
+        for radiation in self.radiations:
+            surface = self._surfaces[radiation.surface]
+            excess = surface.at_points(temperature) ** 4 - radiation.surroundings_temperature**4
+            part = radiation.emissivity * STEFAN_BOLTZMANN * surface.load(excess)
+            out += part
+            turned += abs(float(part.sum()))
+        for exchange in self.exchanges:
+            a, b, mean_a, mean_b = self._sides(exchange, temperature)
+            into_a = _exchange_value(exchange, mean_a, mean_b) * a.area * (mean_b - mean_a)
+            out += into_a * (b.shares / b.area - a.shares / a.area)
+            turned += 2.0 * abs(into_a)
+        return out, turned
+
+    def slopes(self, temperature: FloatArray) -> dict[str, FloatArray]:
+        """Surface -> (n_f, n_q) slope of the local heat flux [W/(m2 K)]: films and 4 eps sigma T^3."""
+        slopes: dict[str, FloatArray] = {}
+        for film in self.films:
+            surface = self._surfaces[film.surface]
+            value = np.full_like(surface.weights, _film_value(film, surface.mean(temperature)))
+            slopes[film.surface] = slopes.get(film.surface, 0.0) + value
+        for radiation in self.radiations:
+            wall = self._surfaces[radiation.surface].at_points(temperature)
+            value = 4.0 * radiation.emissivity * STEFAN_BOLTZMANN * wall**3
+            slopes[radiation.surface] = slopes.get(radiation.surface, 0.0) + value
+        return slopes
+
+    def columns(self, temperature: FloatArray) -> list[tuple[Column, Column]]:
+        """Left and right columns of what comes from mean temperatures."""
+        columns: list[tuple[Column, Column]] = []
+        for film in self.films:
+            surface = self._surfaces[film.surface]
+            mean = surface.mean(temperature)
+            slope = _film_value(film, mean + DIFFERENCE) - _film_value(film, mean - DIFFERENCE)
+            if slope != 0.0:
+                excess = surface.load(surface.at_points(temperature) - film.fluid_temperature)
+                left = (surface.nodes, slope / (2.0 * DIFFERENCE) * excess[surface.nodes])
+                columns.append((left, mean_of(surface)))
+        for exchange in self.exchanges:
+            a, b, mean_a, mean_b = self._sides(exchange, temperature)
+            by_a, by_b = _exchange_slopes(exchange, mean_a, mean_b)
+            left = combined([(1.0, mean_of(b)), (-1.0, mean_of(a))])
+            columns.append((left, combined([(a.area * by_b, mean_of(b)), (a.area * by_a, mean_of(a))])))
+        return columns
+
+    def links(self, temperature: FloatArray) -> dict[tuple[str, str], float]:
+        """Pairs of surfaces that exchange heat -> coefficient [W/(m2 K)], zeros left out."""
+        values = {
+            (e.surface_a, e.surface_b): _exchange_value(e, *self._sides(e, temperature)[2:])
+            for e in self.exchanges
+        }
+        return {pair: value for pair, value in values.items() if value > 0.0}
+
+    def _sides(
+        self, exchange: Exchange, temperature: FloatArray
+    ) -> tuple[SurfaceElements, SurfaceElements, float, float]:
+        """Both surfaces of an exchange and their mean temperatures [K]."""
+        a, b = self._surfaces[exchange.surface_a], self._surfaces[exchange.surface_b]
+        return a, b, a.mean(temperature), b.mean(temperature)
+
+
+def _film_value(film: Film, mean: float) -> float:
+    return checked_value(film.law(mean, film.fluid_temperature).value, film.surface, film.kind)
+
+
+def _exchange_value(exchange: Exchange, mean_a: float, mean_b: float) -> float:
+    return checked_value(exchange.law(mean_a, mean_b).value, exchange.surface_a, exchange.kind)
+
+
+def _exchange_slopes(exchange: Exchange, mean_a: float, mean_b: float) -> tuple[float, float]:
+    """Slopes of the heat flux h (Tb - Ta) by both mean temperatures [W/(m2 K)]."""
+    value = _exchange_value(exchange, mean_a, mean_b)
+    slopes = []
+    for da, db in ((DIFFERENCE, 0.0), (0.0, DIFFERENCE)):
+        above = _exchange_value(exchange, mean_a + da, mean_b + db)
+        below = _exchange_value(exchange, mean_a - da, mean_b - db)
+        slopes.append((above - below) / (2.0 * DIFFERENCE) * (mean_b - mean_a))
+    return slopes[0] - value, slopes[1] + value

@@ -20,7 +20,7 @@ WRITTEN_ONCE = {
         "one at the front and one at the rear, GEAR_front and GEAR_rear.",
     ),
 }
-"""Keys of a gearbox that are written out before the case is validated (`rigdesign.case.equal_parts`): type, text."""
+"""Keys of a gearbox that are written out before the case is validated (`rigdesign.case.loader`): type, text."""
 
 SEATED = "gearboxes.*.gears.*.shaft"
 """Key that is filled in where equal parts are written out: a gear sits on a shaft of its own."""

@@ -15,9 +15,9 @@ from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.gap import gap_document, refused_rows
-from rigdesign.diagnosis.document.gauge_modes import gauge_mode_rows
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.document.required import required_document
+from rigdesign.diagnosis.residual.gauge_modes import gauge_rows
 from rigdesign.diagnosis.statistics.detectability import Detectability
 from rigdesign.measurement import MeasurementSet
 from rigdesign.measurement.comparison.compare import sentence, significant
@@ -367,3 +367,36 @@ def leading_sentences(outcome: Outcome) -> list[str]:
         f"{sentence(item, outcome.result.measurement)} {item.rms:.2g} standard deviations of a healthy rig."
         for item in reported
     ]
+
+
+# The residual of root gauges by mode over the face: a tilt that fades with torque says more than four gauges.
+
+LEAST_GAUGES = 2
+"""Gauges of a gear from which there is more than one mode."""
+
+
+def gauge_mode_rows(outcome: Outcome) -> list[dict[str, Any]]:
+    """By gear, window, point and mode: measured less simulated, and over what a healthy rig leaves.
+
+    ``residual_um_per_m`` is the root mean square over the gauges of that mode, positive for tilt where the gauges to
+    the rear read more than simulated; ``deviations`` is it over its standard deviation in a healthy rig.
+    """
+    found = outcome.result.diagnosis
+    residuals = outcome.result.problem.residuals
+    features = [residuals.features[row] for row in found.kept]
+    matrix = found.covariance.matrix
+    rows = []
+    for one in gauge_rows(features, residuals.channels):
+        at = np.array(one.rows, dtype=np.intp)
+        if len(at) < LEAST_GAUGES:
+            continue
+        for mode, shape in one.shapes.items():
+            size = float(shape @ found.residual[at])
+            spread = float(np.sqrt(shape @ matrix[np.ix_(at, at)] @ shape))
+            rows.append(
+                {
+                    "gear": one.gear, "window": one.window, "point": one.point, "mode": mode,
+                    "residual_um_per_m": 1e6 * size / float(np.sqrt(len(at))), "deviations": size / spread,
+                }
+            )  # fmt: skip
+    return rows

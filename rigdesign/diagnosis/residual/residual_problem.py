@@ -14,8 +14,7 @@ from scipy.linalg import cho_solve
 
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.families import FILM, LOSS
-from rigdesign.diagnosis.library.library import Library
-from rigdesign.diagnosis.residual.directions import Direction, directions
+from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual.healthy import answer_error, healthy_columns, own_spread
 from rigdesign.diagnosis.residual.sensors import (
     SensorError,
@@ -24,15 +23,67 @@ from rigdesign.diagnosis.residual.sensors import (
     sensor_errors,
     setting_scatter,
 )
+from rigdesign.diagnosis.residual.unmodelled_cause import heats
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column, amplitudes_of
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.hypothesis import Curve
 from rigdesign.diagnosis.statistics.outliers import Outlier, reject
+from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.diagnosis.statistics.resonance import Resonances
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel, Feature
+
+# Directions in which the numbers of a set go with one cause each, of the catalogue or without a name.
+#
+# Along them calibration asks how far healthy rigs go beyond what the columns of their constants span, and inflates the
+# covariance by that.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Direction:
+    """Change of the numbers per coordinate of one cause.
+
+    likeness : what it shares with such causes elsewhere and on other rigs; reach : largest coordinate that is believed
+    values : (n, k), one column for each parameter
+    """
+
+    likeness: str
+    reach: float
+    values: Array
+
+
+def directions(library: Library, effects: Sequence[Effect], teeth_a_turn: int) -> Iterator[Direction]:
+    """Of all effects the sensors answer to, of every tooth that may be meant; and of heat at any place.
+
+    A nonlinear response has a direction at neutral and one to every run. The coordinate of heat is its share of
+    the mean losses of the points.
+    """
+    turning = Turning.of(library.features)
+    for effect in effects:
+        response = library.responses.get(effect.name)
+        if response is None:
+            continue
+        rows = _courses(response)
+        for tooth in range(max(effect.any_tooth, 1)):
+            turned = turning.turned(rows, tooth, teeth_a_turn) if tooth else rows
+            yield Direction(likeness=effect.likeness, reach=effect.reach, values=turned.T)
+    losses = float(np.mean(list(library.powers.values()))) if library.powers else 0.0
+    if losses > 0.0:
+        for heat in heats(library):
+            yield Direction(likeness=heat.likeness, reach=1.0, values=losses * heat.values[:, None])
+
+
+def _courses(response: Response) -> Array:
+    """(k, n) sensitivities at neutral; of a nonlinear response the secants to its runs as well."""
+    slopes = response.sensitivity().T
+    if not response.nonlinear:
+        return slopes
+    places = response.coordinates[:, 0]
+    away = places != 0.0
+    return np.vstack([slopes, response.answers[away] / places[away, None]])
+
 
 WITHOUT_HEAT = STANDING_QUANTITIES | {"root_strain"}
 """Quantities that heat hardly moves, besides orders of what oscillates."""

@@ -9,8 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.bearing.journal import JournalBearing, JournalState
-from dynamics.bearing.journal_coefficients import coefficient_table
-from dynamics.bearing.journal_lateral import RunningFilm, journal_lateral
+from dynamics.bearing.journal_lateral import RunningFilm, coefficient_table, journal_lateral
 from dynamics.bearing.lateral import LateralCoefficients, constant_coefficients, load_axes
 from dynamics.bearing.protocol import (
     BearingError,

@@ -12,8 +12,8 @@ from dynamics.bearing.protocol import Bearing, BearingError, BearingOperation, L
 from dynamics.bearing.rolling import RollingBearing
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
 from dynamics.bearing.rolling_contact import contact_law
-from dynamics.bearing.rolling_lateral import rolling_lateral
 from dynamics.bearing.rolling_row import RowOfElements, ring_load
+from dynamics.bearing.rolling_state import rolling_lateral
 from dynamics.bearing.rolling_stiffness import bearing_stiffness
 
 LOADS = [("6208", 800.0), ("7208 B", 4000.0), ("30208", -2000.0), ("NU 208", 0.0), ("6208", -800.0)]

@@ -9,8 +9,7 @@ from dynamics.errors import DynamicsInputError
 from dynamics.gear.tooth_form import TipEdge, ToothForm
 from dynamics.influence import section as section_module
 from dynamics.influence.gear_body import STANDARD, TEETH, GearBody
-from dynamics.influence.quadrilaterals import anticlockwise, least_jacobian, on_circles
-from dynamics.influence.section import gear_section
+from dynamics.influence.section import anticlockwise, gear_section, least_jacobian, on_circles
 from tests.builders.influence import COARSE, drawn_gear
 from thermal.fe.reference_elements import QUAD_8
 

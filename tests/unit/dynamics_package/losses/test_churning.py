@@ -5,8 +5,17 @@ from typing import Any
 
 import pytest
 
-from dynamics.losses.changenet import BathNumbers, bath_numbers, coefficient_2007, coefficient_2011
-from dynamics.losses.churning import LAWS, ChurningLaw, churning_loss, side_friction, stage_churning
+from dynamics.losses.churning import (
+    LAWS,
+    BathNumbers,
+    ChurningLaw,
+    bath_numbers,
+    churning_loss,
+    coefficient_2007,
+    coefficient_2011,
+    side_friction,
+    stage_churning,
+)
 from dynamics.losses.churning_comparison import compare_churning
 from dynamics.losses.mesh_loss import LossError
 from tests.builders.fzg_bath import LOW_VOLUME, bath, stage

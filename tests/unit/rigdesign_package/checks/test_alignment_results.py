@@ -35,8 +35,8 @@ from rigdesign.results.warm_gearbox import (
     WarmGearbox,
 )
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run import transient_alignment
-from rigdesign.run.transient_alignment import misalignments, worst_misalignments
+from rigdesign.run import transient as transient_alignment
+from rigdesign.run.transient import misalignments, worst_misalignments
 from tests.builders.paths import CASES
 from thermal.expansion.alignment import ShaftAxis
 from thermal.expansion.expansion import Expansion, expand

@@ -9,9 +9,8 @@ from pathlib import Path
 import pytest
 
 from rigdesign.cli.application import print_json
-from rigdesign.cli.terminal.checks import print_checks
+from rigdesign.cli.terminal.checks import print_checks, reason_groups
 from rigdesign.cli.terminal.console import plain_streams, verbosity
-from rigdesign.cli.terminal.reason_groups import reason_groups
 from rigdesign.report.pages.report import report_html
 from rigdesign.results.check import Check
 from rigdesign.results.ranges import RangesResult

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.bearing.journal import JournalState
 from dynamics.bearing.journal_feed import FEEDS
 from dynamics.bearing.journal_lateral import journal_lateral
-from dynamics.bearing.journal_state import JournalState
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, LateralOperation, OilSupply
 from rigdesign.case import load_case
 from rigdesign.case.bearing_place import BearingPlace

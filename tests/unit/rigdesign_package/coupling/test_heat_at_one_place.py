@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.coupling.leak_by_side import side_excess
+from rigdesign.coupling.boundary import side_excess
 from rigdesign.coupling.loop import solve_point
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed
 from tests.builders.twisting import twisting_rig

@@ -17,7 +17,7 @@ from rigdesign.case import Case
 from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_heat import conductances
-from rigdesign.coupling.bearing_loads import axial_force, bearing_loads
+from rigdesign.coupling.bearing_loads import axial_force, bearing_loads, shaft_loads
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop_system import running_state
@@ -25,7 +25,6 @@ from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.point_losses import PointLosses
-from rigdesign.coupling.shaft_loads import shaft_loads
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
     heat_into_films,

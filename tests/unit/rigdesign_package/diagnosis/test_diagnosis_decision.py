@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.decision import decide
+from rigdesign.diagnosis.decision.decision import changes_of_the_circuit, decide
 from rigdesign.diagnosis.decision.evaluate import _added
-from rigdesign.diagnosis.decision.groups import changes_of_the_circuit
 from rigdesign.diagnosis.decision.posterior import posterior
 from rigdesign.diagnosis.decision.unmodelled_words import in_words
 from rigdesign.diagnosis.decision.verdict import Candidates, Thresholds, WhitenedSquare

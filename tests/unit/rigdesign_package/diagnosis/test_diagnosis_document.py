@@ -21,9 +21,8 @@ from rigdesign.diagnosis.decision.proposals import (
     next_measurements,
 )
 from rigdesign.diagnosis.document.advice import LARGEST_ODDS, certainty, headline, steps
-from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
-from rigdesign.diagnosis.document.outcome import check_pick, outcome
+from rigdesign.diagnosis.document.outcome import check_pick, of_data, outcome
 from rigdesign.diagnosis.library.candidates import SPARE
 from rigdesign.diagnosis.library.costs import Costs
 from rigdesign.diagnosis.run import Result

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.finding import _overruled
 from rigdesign.diagnosis.decision.posterior import posterior
 from rigdesign.diagnosis.decision.verdict import Thresholds
+from rigdesign.diagnosis.decision.workflow import _overruled
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 

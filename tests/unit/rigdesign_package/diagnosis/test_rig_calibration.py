@@ -17,8 +17,13 @@ from rigdesign.diagnosis.residual.baseline import Change, Drift
 from rigdesign.diagnosis.residual.calibration import fit_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.rig_calibration import healthy_sets
-from rigdesign.diagnosis.rig_calibration.channels import fit_with_channels
-from rigdesign.diagnosis.rig_calibration.estimate import changes_of, estimate, spread_of_sets, with_values
+from rigdesign.diagnosis.rig_calibration.estimate import (
+    changes_of,
+    estimate,
+    fit_with_channels,
+    spread_of_sets,
+    with_values,
+)
 from rigdesign.diagnosis.rig_calibration.healthy_sets import calibrate_rig
 from rigdesign.diagnosis.rig_calibration.leave_one_out import QUIET, HealthySet, leave_one_out, odd_sets
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes

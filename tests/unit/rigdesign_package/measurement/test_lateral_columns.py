@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import Case
-from rigdesign.diagnosis.document.correction import of_data
+from rigdesign.diagnosis.document.outcome import of_data
 from rigdesign.measurement import features, load_measurement
 from rigdesign.measurement.reading.directions import AXES, direction_of, direction_text
 from rigdesign.prediction.model import Feature

@@ -7,7 +7,7 @@ from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
 from rigdesign.measurement import features, load_measurement
 from rigdesign.prediction.model import Feature
-from rigdesign.prediction.root_strain import StrainCurve
+from rigdesign.prediction.readings import StrainCurve
 from rigdesign.rig.model import build_rig
 from rigdesign.strain_gauge.curve_windows import curve_windows
 from tests.builders.root_gauges import CASE, GAUGES, Chain, conditions, write_recordings

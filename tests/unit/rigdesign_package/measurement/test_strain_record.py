@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import MeasurementError
-from rigdesign.measurement.processing.strain_record import (
+from rigdesign.measurement.processing.root_gauges import (
     ConstantSpeed,
     GaugeChannel,
     SpeedSignal,

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
-from dynamics.orders.deviation_response import DeviationResponse, OrderTorque
-from dynamics.orders.tooth_cycle import _Mixing
+from dynamics.orders.deviation_response import DeviationResponse, OrderTorque, _Mixing
 from dynamics.orders.tooth_excitation import Motion, excitation, pair_sensitivity, tooth_pattern
 from rigdesign.base.errors import UsageError
 from rigdesign.prediction.exact_orders import ExactMotion

@@ -17,7 +17,7 @@ from rigdesign.prediction.model import (
     features_of,
     measured_against,
 )
-from rigdesign.prediction.root_strain import StrainCurve, _lagged, torque_share
+from rigdesign.prediction.readings import StrainCurve, _lagged, torque_share
 from tests.builders.paths import CASES
 
 TEETH = 18

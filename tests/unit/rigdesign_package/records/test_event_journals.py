@@ -14,7 +14,7 @@ from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.response.event_channels import Channel, Watched
 from dynamics.response.march_inputs import DriveState
 from rigdesign.case import load_case
-from rigdesign.records.event_journals import journal_channels, largest_travels, travel_warnings
+from rigdesign.records.events import journal_channels, largest_travels, travel_warnings
 from rigdesign.rig.model import build_rig
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.paths import CASES

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.report.viewer import simplify, solid
+from rigdesign.report.viewer import scene as simplify
+from rigdesign.report.viewer import solid
 from rigdesign.report.viewer.cutaway import clipped
 from rigdesign.report.viewer.library import FOLDER, drawing_library, viewer_text
-from rigdesign.report.viewer.scene import MOST, hottest, viewer_scene
-from rigdesign.report.viewer.simplify import simplified
+from rigdesign.report.viewer.scene import MOST, hottest, simplified, viewer_scene
 from rigdesign.report.viewer.solid import UNNAMED, shaded_vertices, solid_picture, solid_pictures
 from tests.builders.report import gearbox_field, voxel_mesh
 from thermal.fe.mesh import box_mesh

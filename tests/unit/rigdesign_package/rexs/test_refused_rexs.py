@@ -3,7 +3,8 @@
 import pytest
 
 from rigdesign.base.errors import RexsError
-from rigdesign.rexs import consistency, xml_tree
+from rigdesign.rexs import consistency
+from rigdesign.rexs import reader as xml_tree
 from rigdesign.rexs.reader import parse_rexs
 from tests.builders.rexs import changed, rexs_file
 

@@ -4,9 +4,8 @@ import zipfile
 import pytest
 
 from rigdesign.base.errors import RexsError
-from rigdesign.rexs import archive as archive_module
-from rigdesign.rexs.archive import model_in_archive
-from rigdesign.rexs.reader import parse_rexs
+from rigdesign.rexs import reader as archive_module
+from rigdesign.rexs.reader import model_in_archive, parse_rexs
 from tests.builders.rexs import archive_of, changed
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from dynamics.response.band_change import FADE
-from rigdesign.run import fast_ramps as module
-from rigdesign.run.fast_ramps import fast_ramps, passed_bands
+from rigdesign.run import warnings as module
+from rigdesign.run.warnings import fast_ramps, passed_bands
 
 TIME = np.linspace(0.0, 3.0, 3001)
 LIMITS = (100.0, 200.0, 400.0)

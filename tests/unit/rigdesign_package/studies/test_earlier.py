@@ -3,10 +3,9 @@
 from dataclasses import replace
 from pathlib import Path
 
-from rigdesign.studies.boundary import BoundarySearch
-from rigdesign.studies.design import DesignPoint, Plan
-from rigdesign.studies.earlier import replaced_pages
+from rigdesign.studies.design import BoundarySearch, DesignPoint, Plan
 from rigdesign.studies.grid import Variation
+from rigdesign.studies.run import replaced_pages
 from rigdesign.studies.selection import CheckSelection
 
 INLET = "gearboxes.test.oil.inlet_temperature"

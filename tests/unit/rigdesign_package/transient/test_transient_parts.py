@@ -17,7 +17,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.transient import Extreme, HistoryExtremes
 from rigdesign.rig.model import build_rig
-from rigdesign.transient.blend import blended
+from rigdesign.transient.heating import blended
 from rigdesign.transient.phases import Phase, event_phases, running_phases, schedule_phases
 from rigdesign.transient.soak import first_broken, shortest, soak_of
 from rigdesign.transient.still_air import at_least

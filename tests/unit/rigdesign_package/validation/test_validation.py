@@ -23,7 +23,6 @@ from rigdesign.validation import (
     films,
     gears,
     headline,
-    heat_benchmarks,
     main_rig,
     mechanics,
     p1,
@@ -31,6 +30,9 @@ from rigdesign.validation import (
     response,
     validation_document,
     validation_rows,
+)
+from rigdesign.validation import (
+    benchmarks as heat_benchmarks,
 )
 from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.rows import (

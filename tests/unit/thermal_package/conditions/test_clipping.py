@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermal.conditions.clipping import clip, cross, fan, intersect
+from thermal.conditions.contact import clip, cross, fan, intersect
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 

@@ -23,11 +23,10 @@ from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.balance import heat_balance
 from thermal.conduction.condition_checks import Condition, ConditionError
 from thermal.conduction.conductivity import Conductivity
-from thermal.conduction.contact_terms import ContactTerms
 from thermal.conduction.newton import newton
 from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
 from thermal.conduction.stream_terms import VolumeTerms
-from thermal.conduction.terms import ConductionProblem
+from thermal.conduction.terms import ConductionProblem, ContactTerms
 from thermal.errors import ThermalNotConverged
 from thermal.films.law import FilmLaw
 

@@ -14,7 +14,7 @@ from thermal.errors import ThermalNotConverged
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
-from thermal.fe.smoothing import Scaling
+from thermal.fe.multigrid import Scaling
 from thermal.fe.solver import (
     HeldMatrix,
     LowRank,

@@ -12,8 +12,7 @@ from thermal.fe.mesh import MeshError
 from thermal.housing import step_file
 from thermal.housing.face_rules import Box, Cylinder, FaceRule, FaceRuleError, Plane
 from thermal.housing.fitted import fit_cylinder
-from thermal.housing.step_file import named_faces, read_part, read_step
-from thermal.housing.step_names import listed_faces
+from thermal.housing.step_file import listed_faces, named_faces, read_part, read_step
 
 SIZE, CIRCLE = 0.03, 10
 
