@@ -96,8 +96,8 @@ class ShaftInput(Part):
     """Built-in material or a name under ``materials``: shear modulus and density of the shaft."""
     material_damping: float = Field(default=0.0, ge=0.0, le=0.2)
     """Loss factor of the shaft in torsion at the mesh frequency of the test speed, a damper in parallel with every
-    element that grows with frequency. Zero unless stated: that of steel, 0.0002 to 0.002, is far below what couplings
-    and films take; seats and shrink fits reach 0.01."""
+    element that grows with frequency. That of steel is 0.0002 to 0.002, far below what couplings and films take, but
+    all that damps a mode within one shaft; seats and shrink fits reach 0.01."""
 
     unbalances: Mapping[Name, UnbalanceInput] = {}
     """Unbalances by name; they take the place of the balance grade of the drivetrain."""

@@ -119,9 +119,11 @@ def dense(rig: Rig) -> bool:
     return resolved(rig) and rig.fidelity != "quick"
 
 
-def resonance_speeds(rig: Rig, warm: IterationResult, low: float, high: float) -> Iterator[float]:
+def resonance_speeds(
+    rig: Rig, warm: IterationResult, low: float, high: float
+) -> Iterator[tuple[float, float]]:
     """Speeds of the first pinion between two [rad/s] at which orders of a mesh meet the modes that it drives, bearings
-    as in ``warm``."""
+    as in ``warm``, and how far from it the amplitude of the mode has fallen by a third [rad/s]."""
     modes = warm_modes(rig, warm)
     for mesh, name in enumerate(rig.mesh_names):
         teeth = own_ratio(rig, mesh) * rig.pairs[name].teeth[0]
@@ -130,7 +132,7 @@ def resonance_speeds(rig: Rig, warm: IterationResult, low: float, high: float) -
                 for order in range(1, HARMONICS + 1):
                     speed = 2.0 * math.pi * mode.frequency / (order * teeth)
                     if low < speed < high:
-                        yield speed
+                        yield speed, mode.damping_ratio * speed
 
 
 def response_solver(
@@ -166,11 +168,12 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
     limits : lowest and highest stated speed [rad/s]
     """
     speeds = grid(rig, *limits)
-    if resolved(rig) and not dense(rig):
+    if resolved(rig):
         dwells = [rig.pinion_speed(speed) for speed in dwell_speeds(rig)]
-        for speed in resonance_speeds(rig, warm, min(speeds), max(speeds)):
+        for speed, width in resonance_speeds(rig, warm, min(speeds), max(speeds)):
             decides = any(is_around(speed, dwell) for dwell in dwells)
-            if decides or all(abs(speed - other) > MERGED * speed for other in speeds):
+            near = width if dense(rig) else 0.0 if decides else MERGED * speed
+            if all(abs(speed - other) > near for other in speeds):
                 speeds.append(speed)
         speeds.sort()
     solve = response_solver(rig, warm, torque, (min(speeds), max(speeds)))

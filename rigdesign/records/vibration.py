@@ -12,7 +12,7 @@ from rigdesign.records.curves import dense, response_solver
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.held_torques import held_torques
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
-from rigdesign.records.loop_states import LoopState, chosen, dwell_speeds, loop_states
+from rigdesign.records.loop_states import LoopState, loop_states
 from rigdesign.records.near_dwell import NearDwell, near_dwells
 from rigdesign.records.start_torque import StartResponse, start_response
 from rigdesign.records.torques_over_speed import LoopOverSpeed, Solve, torques_over_speed
@@ -20,10 +20,6 @@ from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.vibration import CampbellRecord, HeldTorque, TorqueOverSpeed
 from rigdesign.rig.model import Rig
-
-MOST_SPEEDS = 150
-"""Speeds of the curves at most, but for those around the dwell speeds and at peaks of the torques of meshes and
-sections, which are always among them."""
 
 
 @dataclass(frozen=True)
@@ -89,10 +85,9 @@ class LoopVibration:
     @cached_property
     def torques(self) -> tuple[tuple[CurvePoint, ...], tuple[TorqueOverSpeed, ...]]:
         """Points of the governing curve, and the torque of every section and joint at each, of a rig with a run."""
-        dwells = [self.rig.pinion_speed(speed) for speed in dwell_speeds(self.rig)]
         return torques_over_speed(
             LoopOverSpeed(self.rig, self._run.test.last, self._states),
-            chosen(self._run.curves.response.points, MOST_SPEEDS, dwells),
+            self._run.curves.response.points,
             more_speeds(self.rig, self._run),
         )
 

@@ -99,6 +99,12 @@ def _shaft_material(tree: RawTree, shaft: str) -> Filling:
     return assumed("case_hardened_steel", "usual for shafts")
 
 
+@book.default("drivetrain.shafts.*.material_damping")
+def _material_damping(tree: RawTree, shaft: str) -> Filling:
+    reason = "steel in torsion; without it nothing damps a mode that lies within one shaft"
+    return assumed(0.001, reason, 0.0002, 0.002)
+
+
 @book.default("drivetrain.shafts.*.sections")
 def _sections(tree: RawTree, shaft: str) -> Filling:
     """As thick as in the bearings, from the front bearing to the coupling, or on to the motor.
