@@ -10,9 +10,9 @@ import pytest
 
 from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.curves import Curves, curve_at
+from rigdesign.records.loop_states import chosen
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.records.vibration import chosen
 from rigdesign.results.vibration import SectionTorqueRecord
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.warm_prototype import base
