@@ -1,6 +1,6 @@
 """Stiffness, damping and static position of a journal bearing under a load vector.
 
-Film: coefficients of the perturbed film (`journal_coefficients`) times B eta / psi^3; the journal stands at the
+Film: coefficients of the perturbed film (`_film_coefficients`) times B eta / psi^3; the journal stands at the
 eccentricity that carries the load, the attitude angle ahead of it in the direction of rotation.
 
 No load: no direction is marked, so the limit of the vanishing load is taken in the mean over all directions: skew

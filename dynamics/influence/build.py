@@ -2,7 +2,7 @@
 
 Normal forces on hat functions over the face load the flank of the middle tooth, profile position by profile position;
 one factor of the stiffness serves them all. Displacements are read on the tooth axis under the points of the flank:
-what lies between is the local approach, which the contact adds analytically (Weber, and `local_part`).
+what lies between is the local approach, which the contact adds analytically (Weber, and `local_excess`).
 Source: gears.md e; Weber, Banaschek, Formaenderung und Profilruecknahme, 1953; hat functions as in Vedmar 1981.
 """
 

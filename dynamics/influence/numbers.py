@@ -37,7 +37,7 @@ class InfluenceNumbers:
     profile : (n_p,) roll lengths of the loaded flank from fillet to tip, growing [m]
     face : (n_f,) positions from mid-face, growing [m]
     axis_depth : (n_p,) transverse distance along the normal from flank to tooth axis [m]
-    local_excess : (n_p,) what the tooth adds to the logarithm of the local approach, see `local_part` [-]
+    local_excess : (n_p,) what the tooth adds to the logarithm of the local approach, see `build.local_excess` [-]
     deflection : tooth offset k = -3 to 3 -> (n_p n_f, n_p n_f): displacement of the flank of tooth k (rows) per normal
         force on tooth 0 (columns) [m/N], along the normal of the flank, mean under the hat of the face position;
         read on the tooth axis, so that the local Hertzian part is not in it

@@ -1,6 +1,6 @@
 """Churning of gears that dip into an oil bath, by Changenet and Velex or by ISO/TR 14179-2.
 
-Changenet and Velex (`changenet`) know oil, sump volume and regime of one gear; losses of the gears of a sump are added.
+Changenet and Velex know oil, sump volume and regime of one gear; losses of the gears of a sump are added.
 ISO/TR 14179-2 (Mauz) gives the torque of a dipped stage from immersion, width, speed and housing; the viscosity does
 not enter, so it stands for oil at working temperature. On gears of 100 mm it gives several times the others:
 `churning_comparison` shows both.

@@ -3,16 +3,20 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.text import Text
 
 from rigdesign.report.figures import dynamics as dynamics_figures
 from rigdesign.report.figures import heat
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, stated_quantity, words
 from rigdesign.report.figures.ramp import ramp_figure
 from rigdesign.report.figures.seals import seal_gap_figure
+from rigdesign.report.figures.spectra import waterfall_figure
+from rigdesign.report.figures.teeth import pair_share_figure
 from rigdesign.report.numbers import NARROW_SPACE, unit_text
-from rigdesign.report.palette import gearbox_colours
+from rigdesign.report.palette import curve_style, gearbox_colours
 from rigdesign.report.sections.section import gearbox_styles
 from tests.builders.report import make_result, thermal_and_expansion
 
@@ -93,3 +97,37 @@ def test_words_units_and_ticks_read_as_in_tables(result):
     assert [label for label in labels if NOISE.search(label) or "_" in label] == []
     assert "torque, 0-peak" in labels
     assert any(label.endswith("kW") for label in labels)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_titles_of_panels_do_not_run_into_each_other(count: int) -> None:
+    """Four meshes of one rig, two panels a line."""
+    names = [f"reference_{letter}" for letter in "abcd"[:count]]
+    styles = {name: curve_style(number) for number, name in enumerate(names)}
+    speed, frequency = np.linspace(600.0, 12000.0, 20), np.linspace(0.0, 1e4, 30)
+    waterfall = [
+        {
+            "gearbox": name, "stage": "run_up", "teeth": 45, "pinion_speed_rpm": speed.tolist(),
+            "frequency_Hz": frequency.tolist(), "amplitude_Nm": np.full((20, 30), 5.0).tolist(),
+        }
+        for name in names
+    ]  # fmt: skip
+    angle = np.linspace(-5.0, 5.0, 9).tolist()
+    shares = [
+        {
+            "gearbox": name, "stage": "test", "rolling_angle_deg": angle, "share": angle, "share_quasi_static": angle,
+            "force_over_mean": angle, "face_mm": angle, "line_load_N_mm": angle, "line_load_quasi_static_N_mm": angle,
+            "most_loaded_angle_deg": 0.0,
+        }
+        for name in names
+    ]  # fmt: skip
+    with drawing_style():
+        for figure in (waterfall_figure(waterfall, styles), pair_share_figure(shares, styles)):
+            figure.canvas.draw()
+            texts = [
+                child for axes in figure.axes for child in axes.get_children() if isinstance(child, Text)
+            ]
+            boxes = [text.get_window_extent() for text in texts if "Gearbox" in text.get_text()]
+            assert len(boxes) == count
+            assert all(box.x1 <= figure.bbox.x1 for box in boxes)
+            assert not any(a.overlaps(b) for number, a in enumerate(boxes) for b in boxes[:number])
