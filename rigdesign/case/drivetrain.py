@@ -94,7 +94,7 @@ class ShaftInput(Part):
     """Rigid discs by name."""
     material: Name
     """Built-in material or a name under ``materials``: shear modulus and density of the shaft."""
-    material_damping: float = Field(default=0.0, ge=0.0, le=0.2)
+    material_damping: Annotated[float, Usual(0.0002, 0.005)] = Field(default=0.0, ge=0.0, le=0.2)
     """Loss factor of the shaft in torsion at the mesh frequency of the test speed, a damper in parallel with every
     element that grows with frequency. That of steel is 0.0002 to 0.002, far below what couplings and films take, but
     all that damps a mode within one shaft; seats and shrink fits reach 0.01."""
