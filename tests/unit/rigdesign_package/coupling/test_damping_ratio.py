@@ -74,7 +74,7 @@ def test_remembered_meshes_take_another_ratio(case: Case) -> None:
 
 
 def test_material_damping_is_the_loss_factor_at_the_mesh_frequency(case: Case) -> None:
-    """Every element of the shaft: omega c = eta k at 16 teeth and 2250 rpm; the other shafts stay without."""
+    """Every element of the shaft: omega c = eta k at 16 teeth and 2250 rpm; the other shafts keep that of steel."""
     path = "drivetrain.shafts.test_wheel.material_damping"
     rig = twisting_rig(case.with_value(path, 0.004))
     omega = 16 * 2250 * math.tau / 60
@@ -82,4 +82,4 @@ def test_material_damping_is_the_loss_factor_at_the_mesh_frequency(case: Case) -
         joint.name: omega * joint.damping / joint.stiffness for joint in rig.joints if joint.kind == "shaft"
     }
     assert found.pop("test_wheel") == pytest.approx(0.004, rel=1e-9)
-    assert set(found.values()) == {0.0}
+    assert list(found.values()) == pytest.approx([0.001] * len(found), rel=1e-9)
