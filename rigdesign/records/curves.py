@@ -172,7 +172,7 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
         dwells = [rig.pinion_speed(speed) for speed in dwell_speeds(rig)]
         for speed, width in resonance_speeds(rig, warm, min(speeds), max(speeds)):
             decides = any(is_around(speed, dwell) for dwell in dwells)
-            near = width if dense(rig) else 0.0 if decides else MERGED * speed
+            near = 0.0 if decides else width if dense(rig) else MERGED * speed
             if all(abs(speed - other) > near for other in speeds):
                 speeds.append(speed)
         speeds.sort()

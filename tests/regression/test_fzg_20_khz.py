@@ -61,9 +61,13 @@ def test_rig_keeps_its_test_speed() -> None:
 
 
 def test_modes_beyond_the_samples_are_named() -> None:
-    rig, point = solved()
-    assert rig.drivetrain is not None
-    texts = modes_above_samples(loop_modes(rig.drivetrain, laws_of(point.last.models), 50e3), 20e3)
+    """Of shafts without damping of their own; that of steel, as a damper, leaves none of them to be seen."""
+    damped, point = solved()
+    shafts = {f"drivetrain.shafts.{box}_{gear}" for box in ("test", "slave") for gear in ("pinion", "wheel")}
+    case = damped.case.with_values({f"{shaft}.material_damping": 0.0 for shaft in shafts})
+    drivetrain = build_rig(case, "quick").drivetrain
+    assert drivetrain is not None
+    texts = modes_above_samples(loop_modes(drivetrain, laws_of(point.last.models), 50e3), 20e3)
     named = next(text for text in texts if "10.34 kHz" in text)
     assert "slave_wheel" in named
     assert "show it at 9.66 kHz" in named

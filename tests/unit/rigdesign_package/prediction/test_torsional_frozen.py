@@ -9,7 +9,14 @@ from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 from tests.builders.paths import CASES
 
-CASE = load_case(CASES / "loop_1to1")
+CASE = load_case(CASES / "loop_1to1").with_values(
+    {
+        f"drivetrain.shafts.{box}_{gear}.material_damping": 0.0
+        for box in ("test", "reference")
+        for gear in ("pinion", "wheel")
+    }
+)
+"""Shafts without damping of their own, as they were then."""
 RUN_OUT = "gearboxes.test.gears.pinion.flank.run_out"
 SETTINGS = (
     OperatingCondition(name="slow", speed=105.0, torque=350.0),

@@ -40,4 +40,4 @@ def test_a_resonance_that_a_mesh_excites_is_met_around_a_dwell(
         if any(is_around(speed, dwell) for dwell in dwells)
     ]
     assert any(width < 0.01 * speed for speed, width in met)
-    assert all(min(abs(speed - other) for other in asked) <= width for speed, width in met)
+    assert {speed for speed, _ in met} <= set(asked)
