@@ -104,10 +104,15 @@ def _peak_speed(speeds: Array, factors: Array, peak: int) -> float:
     """Return the apex of the parabola through a peak and its neighbours; the peak if they lie flat or it is last."""
     if peak == speeds.size - 1:
         return float(speeds[peak])
-    speed, factor = speeds[peak - 1 : peak + 2], factors[peak - 1 : peak + 2]
-    slope_1, slope_2 = np.diff(factor) / np.diff(speed)
+    return parabola_apex(speeds[peak - 1 : peak + 2], factors[peak - 1 : peak + 2])
+
+
+def parabola_apex(places: Array, values: Array) -> float:
+    """Where the parabola through three values (3,) at rising places (3,) has its apex, within them; the middle one if
+    they lie on a line."""
+    slope_1, slope_2 = np.diff(values) / np.diff(places)
     if slope_1 == slope_2:
-        return float(speed[1])
-    middle_1, middle_2 = 0.5 * (speed[1:] + speed[:-1])
+        return float(places[1])
+    middle_1, middle_2 = 0.5 * (places[1:] + places[:-1])
     apex = middle_1 + (middle_2 - middle_1) * slope_1 / (slope_1 - slope_2)
-    return float(np.clip(apex, speed[0], speed[2]))
+    return float(np.clip(apex, places[0], places[2]))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.mesh.law import MeshLaw
+from dynamics.rating.dynamic_factor import parabola_apex
 from dynamics.response.response_curve import CurvePoint, ResponseCurve
 from dynamics.response.section_torque import SectionTorques, section_torques
 from rigdesign.coupling.iteration import IterationResult
@@ -127,12 +128,10 @@ def _expected_peaks(found: Found, asked: Collection[float]) -> list[float]:
     known = np.array(sorted({*speeds, *asked}))
     new: list[float] = []
     for i, place in zip(*np.nonzero(peaks), strict=True):
-        (below, at, over), near = speeds[i - 1 : i + 2], swing[i - 1 : i + 2, place] / swing[i, place]
-        inverse = np.maximum(near, 1e-3) ** -2.0
-        left, right = (inverse[0] - inverse[1]) / (at - below), (inverse[2] - inverse[1]) / (over - at)
-        top = at + 0.5 * (left * (over - at) - right * (at - below)) / (left + right)
-        if np.abs(np.append(known, new) - top).min() > FINE * top:
-            new.append(float(top))
+        relative = np.maximum(swing[i - 1 : i + 2, place] / swing[i, place], 1e-3)
+        peak = parabola_apex(np.array(speeds[i - 1 : i + 2]), relative**-2.0)
+        if np.abs(np.append(known, new) - peak).min() > FINE * peak:
+            new.append(peak)
     return sorted(new)
 
 

@@ -17,6 +17,7 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
 from rigdesign.rig.model import Rig, build_rig
+from tests.builders.undamped_shafts import undamped_shafts
 
 CASE = Path(__file__).parent / "fzg_20_kHz"
 RPM = np.pi / 30.0
@@ -63,9 +64,7 @@ def test_rig_keeps_its_test_speed() -> None:
 def test_modes_beyond_the_samples_are_named() -> None:
     """Of shafts without damping of their own; that of steel, as a damper, leaves none of them to be seen."""
     damped, point = solved()
-    shafts = {f"drivetrain.shafts.{box}_{gear}" for box in ("test", "slave") for gear in ("pinion", "wheel")}
-    case = damped.case.with_values({f"{shaft}.material_damping": 0.0 for shaft in shafts})
-    drivetrain = build_rig(case, "quick").drivetrain
+    drivetrain = build_rig(damped.case.with_values(undamped_shafts(damped.case)), "quick").drivetrain
     assert drivetrain is not None
     texts = modes_above_samples(loop_modes(drivetrain, laws_of(point.last.models), 50e3), 20e3)
     named = next(text for text in texts if "10.34 kHz" in text)

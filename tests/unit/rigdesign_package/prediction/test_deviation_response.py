@@ -13,6 +13,7 @@ from rigdesign.prediction.order_motion import ideal_response
 from rigdesign.prediction.orders import PointOrders, shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.builders.order import changed, channels, settled
+from tests.builders.undamped_shafts import undamped_shafts
 
 PINION = "gearboxes__test__gears__pinion__flank__"
 WHEEL = "gearboxes__test__gears__wheel__flank__"
@@ -112,11 +113,7 @@ def test_corrections_vanish_with_the_deviation():
 
 def test_counting_at_the_wheel_counts_its_turns():
     """Shafts without damping of their own, which a case states at the mesh frequency of what counts."""
-    value = {PINION + "run_out": "10 um"} | {
-        f"drivetrain.shafts.{box}_{gear}.material_damping": 0.0
-        for box in ("test", "reference")
-        for gear in ("pinion", "wheel")
-    }
+    value = {PINION + "run_out": "10 um"} | undamped_shafts(changed("loop_hunting"))
     pinion = settled(changed("loop_hunting", **value), 1000.0, 150.0)
     ratio = 16.0 / 25.0
     wheel = settled(

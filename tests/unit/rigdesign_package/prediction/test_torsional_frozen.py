@@ -8,14 +8,10 @@ from rigdesign.prediction import TORSIONAL, Channel, OperatingCondition
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 from tests.builders.paths import CASES
+from tests.builders.undamped_shafts import undamped_shafts
 
-CASE = load_case(CASES / "loop_1to1").with_values(
-    {
-        f"drivetrain.shafts.{box}_{gear}.material_damping": 0.0
-        for box in ("test", "reference")
-        for gear in ("pinion", "wheel")
-    }
-)
+SHIPPED = load_case(CASES / "loop_1to1")
+CASE = SHIPPED.with_values(undamped_shafts(SHIPPED))
 """Shafts without damping of their own, as they were then."""
 RUN_OUT = "gearboxes.test.gears.pinion.flank.run_out"
 SETTINGS = (
