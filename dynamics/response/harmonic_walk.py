@@ -15,8 +15,10 @@ from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
 from dynamics.response.periodic_response import Period
 
-LEAST_HARMONICS, MOST_HARMONICS = 24, 320
-"""Harmonics of the mesh frequency that are used at least and at most."""
+LEAST_HARMONICS, MOST_HARMONICS = 24, 640
+"""Harmonics of the mesh frequency that are used at least and at most: a point of a rig with modes up to 9 kHz whose
+excitation repeats with a revolution takes 1.3 s with 346 of them, 3.6 s with 520, 11 s with 830; marched in time it
+takes 9 to 12 s and does not settle at the slowest of these speeds."""
 LEAST_DAMPING = 1e-9
 """Damping ratio taken for a mode that no damper reaches [-]."""
 LEAST_SAMPLES = 256

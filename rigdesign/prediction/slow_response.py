@@ -26,7 +26,7 @@ REACH = 1.5
 GAUGE_HARMONICS = 192
 """Harmonics of the common mesh period of a rig with root gauges at least: the highest stress answers to their number
 by some tenths of a per cent, which a mode that just counts or does not would change from rig to rig."""
-FOLLOWED = 4.0
+FOLLOWED = 2.0
 """Times the harmonics that harmonic balance takes at most from which a point is quasi-static; nearer to them it is
 followed in time, as in a check."""
 
