@@ -24,8 +24,8 @@ from dynamics.response.periodic_response import periodic_by_time
 from dynamics.response.response_curve import Method, ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.waveform import waveform
-from rigdesign.validation.mechanics import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 from tests.builders.rig import prototype, prototype_laws
+from tests.published.mechanics import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 
 Array = NDArray[np.float64]
 RPM = math.pi / 30.0

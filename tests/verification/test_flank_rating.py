@@ -12,7 +12,7 @@ from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.standards import iso_ts_6336_20_2017 as ts20
 from dynamics.standards import iso_ts_6336_22_2018 as ts22
 from rigdesign.properties.oil import FVA_3
-from rigdesign.validation.iso_example import SPEED, TORQUE, example_1
+from tests.published.iso_example import SPEED, TORQUE, example_1
 
 STEEL = 13.6e3
 """B_M of gear steels [W s^0.5/(m2 K)]."""

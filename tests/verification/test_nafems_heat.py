@@ -3,7 +3,7 @@
 import pytest
 from scipy.optimize import brentq
 
-from rigdesign.validation.benchmarks import (
+from tests.published.benchmarks import (
     local_flux_temperature,
     t2_end_temperature,
     t3_temperature,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rigdesign.validation.benchmarks import le11_stress, t1_stress
+from tests.published.benchmarks import le11_stress, t1_stress
 from thermal.fe.mesh import CellName
 
 CELLS: tuple[CellName, ...] = ("tetra10", "hexahedron20")

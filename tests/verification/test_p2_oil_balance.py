@@ -14,7 +14,7 @@ from rigdesign.oil_circuit.parts import Consumer, Pump, Tank
 from rigdesign.oil_circuit.steady import SteadyCircuit, steady_circuit
 from rigdesign.properties.oil import MIL_PRF_23699, OILS
 from rigdesign.rig_heat.room import Room, room_balance
-from rigdesign.validation.main_rig_oil import oil_balance_rows
+from tests.published.main_rig_oil import oil_balance_rows
 
 ZERO = 273.15
 TOTAL, FLOW = 390e3, 733e-3 / 60.0

@@ -11,8 +11,8 @@ import pytest
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
-from rigdesign.validation.mechanics import DOWN, FORCE, MEAN_FORCE, UP, ZETA
 from tests.builders.mesh import two_bodies
+from tests.published.mechanics import DOWN, FORCE, MEAN_FORCE, UP, ZETA
 
 FREQUENCIES = tuple(sorted(UP))
 STEPS = 200

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.validation.mechanics import DOWN, UP, sweep
+from tests.published.mechanics import DOWN, UP, sweep
 
 BRANCH_END = 0.75
 """Lowest frequency of the upper branch; a walk downwards ends there."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from rigdesign.report.figures.drawing import finish, new_figure, plain
 from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS, curve_style
-from rigdesign.validation.rows import Basis, ValidationRow
+from rigdesign.validation import Basis, ValidationRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

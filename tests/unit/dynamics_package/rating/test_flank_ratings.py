@@ -104,7 +104,7 @@ def test_rough_flanks_few_cycles_and_thick_oil_move_the_strength() -> None:
 
 def test_face_load_factors_of_root_and_flank_belong_together() -> None:
     """K_Fbeta = K_Hbeta^N_F; b/h = 100/19.2 of ISO/TR 6336-30 example 1 turns 1.16 into 1.128."""
-    from rigdesign.validation.iso_example import example_1
+    from tests.published.iso_example import example_1
 
     assert pitting.face_load_factor(example_1(), 1.12803) == pytest.approx(1.16, abs=5e-4)
     assert pitting.face_load_factor(EQUAL, 1.0) == 1.0

@@ -13,9 +13,9 @@ from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.records.housing import cooling_balance
 from rigdesign.results.rows.housing import loss_rows
 from rigdesign.run.main import losses_by_stage
-from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.speed_sweeps import closing, simulation_laws, speed_sweep
 from tests.builders.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
+from tests.published.prototype import Prototype
+from tests.published.speed_sweeps import closing, simulation_laws, speed_sweep
 
 pytestmark = pytest.mark.whole_run
 

@@ -12,7 +12,7 @@ from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.validation.p1_contact import coarse, cycle_at, elastic_contact, elastic_gears
+from tests.published.p1_contact import coarse, cycle_at, elastic_contact, elastic_gears
 
 Gears = tuple[ElasticGear, ElasticGear]
 

@@ -7,10 +7,11 @@ import pytest
 
 from dynamics.mesh.law import MeshLaw
 from rigdesign.coupling.mesh_models import MeshModel
-from rigdesign.validation import decomposition
-from rigdesign.validation.decomposition import PARTS, QUANTITIES, decomposition_rows
-from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.speed_sweeps import (
+from tests.builders.paths import CASES
+from tests.published import decomposition
+from tests.published.decomposition import PARTS, QUANTITIES, decomposition_rows
+from tests.published.prototype import Prototype
+from tests.published.speed_sweeps import (
     SpeedSweep,
     corner_gaps,
     damped,
@@ -18,7 +19,6 @@ from rigdesign.validation.speed_sweeps import (
     smooth,
     speed_sweep,
 )
-from tests.builders.paths import CASES
 
 SPEEDS = np.array([1700.0, 12000.0])
 

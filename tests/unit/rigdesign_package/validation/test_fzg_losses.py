@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from dynamics.mesh.sliding import ToothPath
-from rigdesign.validation.fzg_losses import TESTS, fzg_loss_rows
+from tests.published.fzg_losses import TESTS, fzg_loss_rows
 
 ROWS = {row.id: row for row in fzg_loss_rows()}
 

@@ -6,9 +6,9 @@ import pytest
 
 from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.strain_gauge.gauge_curve import GaugeCurve
-from rigdesign.validation import p1_speed
-from rigdesign.validation.p1_speed import _ratio, speed_effect, with_feather_keys
 from tests.builders.solved_loop import solved
+from tests.published import p1_speed
+from tests.published.p1_speed import _ratio, speed_effect, with_feather_keys
 
 
 def test_the_ratio_is_that_of_the_stresses_where_the_tooth_is_loaded_and_one_elsewhere() -> None:

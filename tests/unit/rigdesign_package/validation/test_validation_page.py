@@ -6,8 +6,8 @@ import pytest
 
 from rigdesign.report.figures.validation import published_number, share_of_tolerance
 from rigdesign.report.pages.validation import source_name, write_validation
-from rigdesign.validation.rows import Gate, Goal, PublishedQuantity, Window, compare, not_modelled
 from tests.builders.browser import browser  # noqa: F401 - a fixture
+from tests.published.rows import Gate, Goal, PublishedQuantity, Window, compare, not_modelled
 
 
 def row(

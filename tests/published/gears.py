@@ -16,7 +16,7 @@ from dataclasses import replace
 
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, root_stress
-from rigdesign.validation.prototype import (
+from tests.published.prototype import (
     REFERENCE_MESH,
     REFERENCE_OPTIONS,
     RPM,
@@ -25,7 +25,7 @@ from rigdesign.validation.prototype import (
     TEST_TORQUE,
     Prototype,
 )
-from rigdesign.validation.rows import Gate, Published, PublishedQuantity, ValidationRow, Window, compare
+from tests.published.rows import Gate, Published, PublishedQuantity, ValidationRow, Window, compare
 
 TEST_RESONANCE, REFERENCE_RESONANCE = 2953.48, 3069.1
 """Printed resonance speeds [rpm]."""

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.results.units import ZERO
-from rigdesign.validation.mapped_mesh import mapped, piecewise, split
-from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, compare
+from tests.published.mapped_mesh import mapped, piecewise, split
+from tests.published.rows import Gate, PublishedQuantity, ValidationRow, compare
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.setup import ConductionSetup

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.oil_circuit.parts import Pump
 from rigdesign.properties.oil import MIL_PRF_23699
-from rigdesign.validation.rows import PublishedQuantity, ValidationRow, compare
+from tests.published.rows import PublishedQuantity, ValidationRow, compare
 
 TOTAL, MESH, BEARINGS, ROOM = 390e3, 80e3, 28e3, 4.2e3
 """Printed heats [W]."""

@@ -22,9 +22,9 @@ from dynamics.drivetrain.modes import (
     sampling_audit,
     shaft_frequencies,
 )
-from rigdesign.validation.prototype import RPM, Prototype
-from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
-from rigdesign.validation.speed_sweeps import TOP_SPEED, simulation_laws
+from tests.published.prototype import RPM, Prototype
+from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
+from tests.published.speed_sweeps import TOP_SPEED, simulation_laws
 
 TABLE_2 = {
     "test_pinion": (4022.7, 5657.2, 7776.4),

@@ -9,7 +9,7 @@ from math import pi
 from statistics import fmean
 
 from rigdesign.results.result import RunResult
-from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
+from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
 
 CLOSURE = 1e-8
 """Greatest gap of a heat balance relative to the heat turned over."""

@@ -27,11 +27,11 @@ from functools import partial
 import numpy as np
 
 from dynamics.rating.iso_rating import dynamic_factor
-from rigdesign.validation.gears import REFERENCE_RESONANCE, resonance_speed
-from rigdesign.validation.prototype import REFERENCE_OPTIONS, RPM, TEST_TORQUE, Prototype
-from rigdesign.validation.rows import Bound, Goal, Published, PublishedQuantity, ValidationRow, compare
-from rigdesign.validation.shafts import SHAFT_PARAMETERS
-from rigdesign.validation.speed_sweeps import (
+from tests.published.gears import REFERENCE_RESONANCE, resonance_speed
+from tests.published.prototype import REFERENCE_OPTIONS, RPM, TEST_TORQUE, Prototype
+from tests.published.rows import Bound, Goal, Published, PublishedQuantity, ValidationRow, compare
+from tests.published.shafts import SHAFT_PARAMETERS
+from tests.published.speed_sweeps import (
     COARSE,
     FINE,
     MAIN,

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from dynamics.response.schedule import RampLimits, ramp_rules
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.validation.prototype import RPM, Prototype
-from rigdesign.validation.rows import PublishedQuantity, ValidationRow, compare
+from tests.published.prototype import RPM, Prototype
+from tests.published.rows import PublishedQuantity, ValidationRow, compare
 
 SOURCE = "P2, Figure 9"
 P2_LIMITS = RampLimits(

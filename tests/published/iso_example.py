@@ -16,7 +16,7 @@ from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, mesh_data
 from dynamics.rating.pitting import FlankMaterials, pitting, transverse_load_factor
 from dynamics.standards import iso6336_3_2006
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, compare, compare_printed
+from tests.published.rows import Gate, PublishedQuantity, ValidationRow, compare, compare_printed
 
 SOURCE = "ISO/TR 6336-30 example 1"
 TORQUE, SPEED = 9000.0, 360.0 * pi / 30.0

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rigdesign.validation.rows import (
+from tests.published.rows import (
     Goal,
     PublishedQuantity,
     ValidationRow,
@@ -28,7 +28,6 @@ SHOWN = ("I", "II", "IV", "V")
 OWN_CURVES = (
     "a difference of P1's own measured and computed curves, which it prints as pictures; ours: P1-sigma"
 )
-NO_RUN = "needs the loop at 1500 rpm, which --quick leaves out"
 
 STATIC: tuple[tuple[str, str, str, str], ...] = (
     ("P1-static-MBS", "largest static deviation, MBS", "P1, Figure 9", "8.75, below 10 %"),
@@ -62,16 +61,10 @@ if TYPE_CHECKING:
     from rigdesign.strain_gauge.gauge_curve import GaugeCurve
 
 
-def p1_rows(quick: bool = False) -> Iterator[ValidationRow]:
-    """Every number of P1.
-
-    quick : on coarse influence numbers, some seconds, without the loop at speed; else on the standard ones, half a
-        minute a gear where they are not stored yet
-    """
-    yield from contact_rows(quick)
+def p1_rows() -> Iterator[ValidationRow]:
+    """Every number of P1."""
+    yield from contact_rows()
     yield from own_curve_rows()
-    if quick:
-        yield from rows_without_run()
 
 
 def own_curve_rows() -> Iterator[ValidationRow]:
@@ -84,18 +77,12 @@ def own_curve_rows() -> Iterator[ValidationRow]:
         )
 
 
-def rows_without_run() -> Iterator[ValidationRow]:
-    """Numbers at speed where no run is asked for."""
-    for published in SPEED.values():
-        yield not_modelled(published, "predicted", reason=NO_RUN)
-
-
 def speed_rows(rig: "Rig", curve: "GaugeCurve") -> Iterator[ValidationRow]:
     """What speed and joints do at gauge II.
 
     rig : with shafts that only twist; curve : quasi-static stress of the gauge
     """
-    from rigdesign.validation.p1_speed import speed_effect, with_feather_keys
+    from tests.published.p1_speed import speed_effect, with_feather_keys
 
     bending = replace(rig, shaft_model="elastic")
     twisting, stiff, keyed = (
@@ -122,29 +109,27 @@ def speed_rows(rig: "Rig", curve: "GaugeCurve") -> Iterator[ValidationRow]:
     )
 
 
-def contact_rows(quick: bool) -> Iterator[ValidationRow]:
-    """Contact ratios, pattern and gauge stress of the shipped case on influence numbers; speed, if not ``quick``."""
+def contact_rows() -> Iterator[ValidationRow]:
+    """Contact ratios, pattern, gauge stress and the effect of speed of the shipped case on influence numbers."""
     from rigdesign.case import load_case
     from rigdesign.case.shipped import case_folder
     from rigdesign.coupling.microgeometry import mesh_microgeometry
     from rigdesign.rig.model import build_rig
-    from rigdesign.validation.p1_contact import (
-        coarse,
+    from tests.published.p1_contact import (
         corner_load,
         cycle_at,
         elastic_contact,
         elastic_gears,
         pinion_gauges,
         ratio_without_load,
-        standard,
         torque_of_ratio,
     )
 
     rig = build_rig(load_case(case_folder("strain_gauge_rig")), "quick")
     pair = rig.pairs["test.main"]
-    gears = elastic_gears(pair, coarse if quick else standard)
+    gears = elastic_gears(pair)
     mesh = elastic_contact(pair, mesh_microgeometry(rig, "test.main", pair), gears)
-    numbers = f"{'coarse ' if quick else ''}influence numbers"
+    numbers = "influence numbers"
     teeth = (
         f"{pair.teeth[0]}/{pair.teeth[1]} teeth and the helix angle that meet 1.24, by geometry "
         f"{pair.total_contact_ratio:.2f}; {numbers}"
@@ -223,8 +208,7 @@ def contact_rows(quick: bool) -> Iterator[ValidationRow]:
     )
     curves = pinion_gauges(rig.strain_gauges, cycle_at(mesh, 189.0), gears[0])
     yield from gauge_rows(curves, numbers)
-    if not quick:
-        yield from speed_rows(rig, curves["II"])
+    yield from speed_rows(rig, curves["II"])
 
 
 def gauge_rows(curves: "dict[str, GaugeCurve]", numbers: str) -> Iterator[ValidationRow]:

@@ -16,9 +16,9 @@ Found by these rows:
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.rows import Bound, PublishedQuantity, ValidationRow, compare
-from rigdesign.validation.speed_sweeps import (
+from tests.published.prototype import Prototype
+from tests.published.rows import Bound, PublishedQuantity, ValidationRow, compare
+from tests.published.speed_sweeps import (
     FINE,
     MAIN,
     SUBCRITICAL,

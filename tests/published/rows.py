@@ -1,46 +1,14 @@
 """One row of `rigdesign validate`: a published number and ours, with what agreement is worth."""
 
-from dataclasses import dataclass, replace
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
-Basis = Literal["predicted", "fitted", "arithmetic", "input", "verification"]
-RowVerdict = Literal["gate held", "gate missed", "goal met", "goal missed", "shown", "not modelled"]
-Published = float | tuple[float, float]
+from rigdesign.validation import Basis, Published, RowVerdict, ValidationRow
+
 Bound = Literal["at least", "at most"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ValidationRow:
-    """A published quantity and ours.
-
-    ``basis`` says what agreement is worth: a number that a fit was made to meet is ``fitted``, a textbook or
-    benchmark case ``verification``, only ``predicted`` rows count in the headline.
-    """
-
-    id: str
-    quantity: str
-    source: str
-    published: Published | None
-    """A number, a range, or None where the publication gives words only."""
-    published_text: str
-    computed: float | None
-    unit: str
-    deviation: float | None
-    """Relative; from the nearer end of a range, zero inside it."""
-    tolerance: float | None
-    """Largest deviation that holds the gate or meets the goal."""
-    verdict: RowVerdict
-    basis: Basis
-    window: tuple[float, float] | None = None
-    """Limits of the computed value where a gate is stated as such, instead of a tolerance."""
-    free_parameters: int = 0
-    """Inputs that the publication leaves open and that were chosen with this number in view."""
-    assumptions: str = ""
-
-    @property
-    def computed_text(self) -> str:
-        """Our number as printed in tables."""
-        return "" if self.computed is None else f"{self.computed:.6g}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,6 +141,31 @@ def not_modelled(
         free_parameters=free_parameters,
         assumptions=reason,
     )
+
+
+def moved(stored: Sequence[ValidationRow], rows: Sequence[ValidationRow]) -> list[str]:
+    """A line for each row that is new, is gone, or differs: numbers by more than half a per cent, or words."""
+    old, new = ({row.id: row for row in group} for group in (stored, rows))
+    lines = [f"gone: {name}" for name in old if name not in new]
+    lines += [f"new: {name}" for name in new if name not in old]
+    for name in old.keys() & new.keys():
+        lines += [
+            f"{name}, {field.name}: {getattr(old[name], field.name)!r} -> {getattr(new[name], field.name)!r}"
+            for field in fields(ValidationRow)
+            if field.name != "deviation"  # follows from the computed number
+            and not _same(getattr(old[name], field.name), getattr(new[name], field.name))
+        ]
+    return sorted(lines)
+
+
+def _same(first: object, second: object) -> bool:
+    if isinstance(first, float) and isinstance(second, float):
+        return math.isclose(first, second, rel_tol=0.005, abs_tol=1e-6)
+    if isinstance(first, str) and isinstance(
+        second, str
+    ):  # numbers within the words move in their last digits
+        return re.sub(r"[-+]?\d[\d.e+-]*", "0", first) == re.sub(r"[-+]?\d[\d.e+-]*", "0", second)
+    return first == second
 
 
 def _verdict(criterion: Gate | Goal | Window | None, computed: float, deviation: float | None) -> RowVerdict:

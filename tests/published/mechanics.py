@@ -18,9 +18,9 @@ from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, Har
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.waveform import waveform
 from rigdesign.rig.model import Rig
-from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
-from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, Window, compare, not_modelled
-from rigdesign.validation.speed_sweeps import simulation_laws, smooth
+from tests.published.prototype import RPM, TEST_TORQUE, Prototype
+from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare, not_modelled
+from tests.published.speed_sweeps import simulation_laws, smooth
 
 Array = NDArray[np.float64]
 

@@ -1,16 +1,73 @@
-"""The rows as a document and as the text of files."""
+"""`rigdesign validate`: published numbers beside ours, each with the assumption it depends on.
+
+The rows are data of the package, computed at the default fidelity by ``python -m tests.published`` in the source tree,
+where a test holds them current.
+"""
 
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import fields
-from typing import Any, get_args
+from dataclasses import dataclass, fields
+from importlib.resources import files
+from typing import Any, Literal, get_args
 
 from rigdesign.base.json_text import csv_text
 from rigdesign.base.version import __version__
-from rigdesign.validation.rows import Basis, ValidationRow
 
 SCHEMA_VERSION = 1
+ROWS = "published_rows.json"
+
+Basis = Literal["predicted", "fitted", "arithmetic", "input", "verification"]
+RowVerdict = Literal["gate held", "gate missed", "goal met", "goal missed", "shown", "not modelled"]
+Published = float | tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ValidationRow:
+    """A published quantity and ours.
+
+    ``basis`` says what agreement is worth: a number that a fit was made to meet is ``fitted``, a textbook or
+    benchmark case ``verification``, only ``predicted`` rows count in the headline.
+    """
+
+    id: str
+    quantity: str
+    source: str
+    published: Published | None
+    """A number, a range, or None where the publication gives words only."""
+    published_text: str
+    computed: float | None
+    unit: str
+    deviation: float | None
+    """Relative; from the nearer end of a range, zero inside it."""
+    tolerance: float | None
+    """Largest deviation that holds the gate or meets the goal."""
+    verdict: RowVerdict
+    basis: Basis
+    window: tuple[float, float] | None = None
+    """Limits of the computed value where a gate is stated as such, instead of a tolerance."""
+    free_parameters: int = 0
+    """Inputs that the publication leaves open and that were chosen with this number in view."""
+    assumptions: str = ""
+
+    @property
+    def computed_text(self) -> str:
+        """Our number as printed in tables."""
+        return "" if self.computed is None else f"{self.computed:.6g}"
+
+
+def published_rows() -> tuple[ValidationRow, ...]:
+    """Rows that ship with the package."""
+    return tuple(_row(given) for given in json.loads((files("rigdesign") / ROWS).read_text("utf-8"))["rows"])
+
+
+def _row(given: dict[str, Any]) -> ValidationRow:
+    pairs: dict[str, tuple[float, float]] = {}
+    for name, ends in (("published", (math.nan, math.nan)), ("window", (-math.inf, math.inf))):
+        if isinstance(given[name], list):
+            low, high = (end if value is None else value for value, end in zip(given[name], ends))
+            pairs[name] = (low, high)
+    return ValidationRow(**{**given, **pairs})
 
 
 def headline(rows: Sequence[ValidationRow]) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.microgeometry import mesh_microgeometry
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
+from tests.published.prototype import RPM, TEST_TORQUE, Prototype
 
 Array = NDArray[np.float64]
 TOP_SPEED = 12000.0

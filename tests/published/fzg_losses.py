@@ -16,7 +16,7 @@ from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.friction import Schlenk, friction_coefficient
 from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
 from dynamics.mesh.stiffness import pair_stiffness
-from rigdesign.validation.rows import Gate, Goal, PublishedQuantity, ValidationRow, compare
+from tests.published.rows import Gate, Goal, PublishedQuantity, ValidationRow, compare
 
 GEARPIE = "GEARpie (C. Fernandes, University of Porto), printed report"
 RPM = math.pi / 30.0

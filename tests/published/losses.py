@@ -9,8 +9,8 @@ from collections.abc import Iterator
 
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
-from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.rows import PublishedQuantity, ValidationRow, compare, compare_printed
+from tests.published.prototype import Prototype
+from tests.published.rows import PublishedQuantity, ValidationRow, compare, compare_printed
 
 SOURCE = "DIN ISO 14635-1 geometry, Ohlendorf as in FVA"
 

@@ -17,7 +17,7 @@ from dynamics.influence.build import influence_numbers
 from dynamics.rating.iso_rating import RatingOptions, mesh_data, mesh_stiffness
 from dynamics.standards import iso6336_1_2006_stiffness
 from rigdesign.rig.tooth_influence import gear_model
-from rigdesign.validation.rows import Goal, PublishedQuantity, ValidationRow, compare
+from tests.published.rows import Goal, PublishedQuantity, ValidationRow, compare
 
 NEAR = Goal(0.10)
 PER_WIDTH = 1e-9

@@ -21,7 +21,7 @@ from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import ThermalResult
-from rigdesign.validation.rows import Goal, PublishedQuantity, ValidationRow, compare, not_modelled
+from tests.published.rows import Goal, PublishedQuantity, ValidationRow, compare
 
 AIR, RADIATION, BEARING_OIL = "air", "radiation", "bearing_oil"
 READINGS = ("as_published", "fitted")
@@ -66,30 +66,6 @@ def main_rig_rows(run: Callable[[str], RunResult]) -> Iterator[ValidationRow]:
             f"at {thermal.max_temperature_body}",
         )  # fmt: skip
         yield from _expansion(reading, result)
-
-
-def rows_without_run() -> Iterator[ValidationRow]:
-    """The printed numbers alone, where no run is asked for."""
-    numbers = [(name, text, published, "W") for name, text, published, _, _ in HEAT]
-    numbers.append(("Tmax", "highest temperature", HIGHEST, "degC"))
-    numbers += [
-        (f"growth-{name}", f"expansion of the {name} shaft", published, "mm")
-        for name, _, published in EXPANSION
-    ]
-    numbers.append(("growth-seal-gap", GAP_TEXT, GAP, "mm"))
-    for name, text, published, unit in numbers:
-        yield not_modelled(
-            PublishedQuantity(
-                id=f"P2-{name}",
-                text=f"main rig, {text}",
-                source="P2, Figure 12",
-                printed=f"{published:g}",
-                unit=unit,
-            ),
-            "fitted",
-            reason="needs the runs of cases/uhcf_main",
-            free_parameters=free_parameters("fitted"),
-        )
 
 
 def _heat(reading: str, thermal: ThermalResult) -> Iterator[ValidationRow]:
@@ -137,7 +113,7 @@ def _row(
 ) -> ValidationRow:
     """Row of one reading of the paper: with the fitted coefficients, or with the printed ones."""
     mark, words = (
-        ("", "fitted coefficients") if reading == "fitted" else ("-as-published", "printed coefficients")
+        ("", "fitted coefficients") if reading == "fitted" else ("-printed", "printed coefficients")
     )
     named = replace(published, id=f"{published.id}{mark}", text=f"main rig, {published.text}, {words}")
     return compare(
@@ -146,6 +122,6 @@ def _row(
         "fitted",
         goal,
         free_parameters=free_parameters(reading),
-        assumptions=f"cases/uhcf_main/{reading}.toml, quick; box, shafts and materials are ours, free is what this "
+        assumptions=f"cases/uhcf_main/{reading}.toml; box, shafts and materials are ours, free is what this "
         f"file assumes beyond case.toml; {remark}",
     )
