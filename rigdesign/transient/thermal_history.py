@@ -220,11 +220,11 @@ def read_branch(
     read: list[Clearances] = []
     aligned: list[Alignment] = []
     axes: list[Mapping[str, ShaftAxis]] = []
-    for time, number, field in zip(solution.times, solution.stages, history.fields, strict=True):
+    for time, number, nodal in zip(solution.times, solution.stages, history.fields, strict=True):
         phase = plan.phases[number]
         since = min(float(time - begins[number]), phase.duration)
         speed = phase.speed(since)
-        temperature = np.asarray(field, dtype=np.float64)
+        temperature = np.asarray(nodal, dtype=np.float64)
         shape = basis.shape(temperature)
         seated = heating.seated_bearings(name, phase, since, seat_means(rig, name, temperature))
         read.append(clearances(rig, name, temperature, shape, speed, seated))

@@ -116,7 +116,7 @@ def test_harmonics_reach_the_highest_mode_or_the_method_is_refused() -> None:
         assert grid.harmonics * speed / grid.cell_angle >= 1.5 * walk.highest or grid.harmonics == 24
         assert grid.samples >= 4 * grid.harmonics
     with pytest.raises(DynamicsNotConverged, match=r"harmonics needed to reach 1\.5 times"):
-        walk.grid(10.0)
+        walk.grid(5.0)
     assert highest_mode(problem.model, problem.form, 0.0) == 0.0
 
 
