@@ -14,10 +14,9 @@ from rigdesign.case import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.decision.defaults import DEFAULT
 from rigdesign.diagnosis.document.outcome import Outcome, check_pick, outcome
-from rigdesign.diagnosis.rig_calibration.reading import load_rig_calibration
+from rigdesign.diagnosis.rig_calibration.document import load_rig_calibration
 from rigdesign.diagnosis.run import diagnose_measurement
-from rigdesign.measurement.comparison.compare import Comparison
-from rigdesign.measurement.comparison.comparing import compare_measurement
+from rigdesign.measurement.comparison.compare import Comparison, compare_measurement
 from rigdesign.prediction.predict import Thermal
 from rigdesign.reanalysis.flips import with_flips
 from rigdesign.report import write_results

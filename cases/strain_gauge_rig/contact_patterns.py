@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rigdesign.validation.p1_contact import cycle_at, elastic_contact, elastic_gears
 
 from dynamics.contact.mesh_cycle import MeshCycle
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
-from rigdesign.coupling.microgeometry import mesh_microgeometry
+from rigdesign.coupling.mesh_models import mesh_microgeometry
 from rigdesign.report.figures.drawing import STYLE, new_figure
 from rigdesign.rig.model import build_rig
-from rigdesign.validation.p1_contact import cycle_at, elastic_contact, elastic_gears
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

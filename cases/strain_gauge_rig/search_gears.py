@@ -23,26 +23,6 @@ from math import acos, degrees, radians
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
-from threadpoolctl import threadpool_limits
-
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.flank_gap import flank_gap
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
-from dynamics.flank.field import FlankField
-from dynamics.flank.microgeometry import Microgeometry
-from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
-from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
-from dynamics.mesh.pair_gap import PairGap
-from rigdesign.case import load_case
-from rigdesign.case.shipped import case_folder
-from rigdesign.records.gauge_stress import ElasticGear
-from rigdesign.rig.model import build_rig
-from rigdesign.rig.strain_gauges import RootGauge
-from rigdesign.strain_gauge.gauge_curve import GaugeCurve
 from rigdesign.validation.p1_contact import (
     Divided,
     coarse,
@@ -55,6 +35,25 @@ from rigdesign.validation.p1_contact import (
     standard,
     torque_of_ratio,
 )
+from scipy.optimize import brentq
+from threadpoolctl import threadpool_limits
+
+from dynamics.contact.loaded_mesh import LoadedMesh
+from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.contact.points import FaceGrid, flank_gap
+from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
+from dynamics.flank.field import FlankField
+from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
+from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.mesh.pair_gap import PairGap
+from rigdesign.case import load_case
+from rigdesign.case.shipped import case_folder
+from rigdesign.records.loaded_contact import ElasticGear
+from rigdesign.rig.model import build_rig
+from rigdesign.rig.strain_gauges import RootGauge
+from rigdesign.strain_gauge.measuring_point import GaugeCurve
 
 Array = NDArray[np.float64]
 

@@ -8,11 +8,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rigdesign.case.shipped import case_folder
-from rigdesign.report.figures.drawing import STYLE, new_figure
 from rigdesign.validation.decomposition import part_sweeps
 from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.speed_sweeps import MAIN, SUBCRITICAL, TOP_SPEED, SpeedSweep
+
+from rigdesign.case.shipped import case_folder
+from rigdesign.report.figures.drawing import STYLE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,15 +15,15 @@ from dataclasses import dataclass, replace
 
 from scipy.optimize import brentq
 
-from dynamics.bearing.journal_characteristic import Characteristic, characteristic
 from dynamics.bearing.journal_feed import FEEDS, Feed
+from dynamics.bearing.journal_film import Characteristic, characteristic
 from dynamics.bearing.journal_lateral import RunningFilm, journal_lateral
-from dynamics.bearing.lateral import LateralCoefficients
 from dynamics.bearing.protocol import (
     BearingError,
     BearingNotConvergedError,
     BearingOperation,
     BearingState,
+    LateralCoefficients,
     LateralOperation,
 )
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY

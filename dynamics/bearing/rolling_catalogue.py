@@ -15,7 +15,7 @@ from importlib.resources import files
 from typing import Literal, cast, get_args
 
 from dynamics.bearing.protocol import BearingError
-from dynamics.bearing.rolling_elements import (
+from dynamics.bearing.rolling_row import (
     RollingElements,
     angular_contact_balls,
     cylindrical_rollers,
@@ -62,7 +62,7 @@ class CatalogueBearing:
     minimum_load_factor : k_r of ball and cylindrical roller bearings [-]
     inner_raceway, outer_raceway : diameters F, E of cylindrical roller bearings [m]
     locating : carries axial load; False for NU and N
-    rolling_elements : where known; None derives them, see `dynamics.bearing.rolling_elements`
+    rolling_elements : where known; None derives them, see `dynamics.bearing.rolling_row`
     source, unconfirmed : where the numbers come from, and the names of those that could not be read there
 
     Raises BearingError naming key, value and remedy.

@@ -24,13 +24,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.corner import ContactPlace, contact_places, tip_ends
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.flank_gap import modified_gap
-from dynamics.contact.local_approach import SOFT_EDGES, LocalModel
-from dynamics.contact.points import ContactPoints, contact_points
-from dynamics.contact.touching import Profiles, settled
+from dynamics.contact.compliance import SOFT_EDGES, InterpolatedCompliance, LocalModel
+from dynamics.contact.corner import ContactPlace, Profiles, contact_places, settled, tip_ends
+from dynamics.contact.points import ContactPoints, FaceGrid, contact_points, modified_gap
 from dynamics.errors import DynamicsInputError
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
@@ -46,9 +42,9 @@ from dynamics.mesh.flank import (
     law_flanks,
     law_of_springs,
 )
+from dynamics.mesh.force import StaticCycle, static_cycle
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.pair_gap import FLAWLESS, PairGap
-from dynamics.mesh.static_cycle import StaticCycle, static_cycle
 
 Array = NDArray[np.float64]
 Linearisation = Literal["tangent", "secant"]

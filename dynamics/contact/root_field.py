@@ -5,10 +5,10 @@ over its way through the mesh: its own force and those on both neighbours. The f
 width, where the teeth touch at that position of the path, a tip corner included.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import ceil, cos, tan
-from typing import Literal
+from math import ceil, cos, pi, tan
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,110 @@ from scipy.sparse import csr_array
 
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.contact.corner import contact_places, tip_ends
-from dynamics.contact.root_course import RootCourse, RootNumbers
+from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.force import ToothForces
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]
+
+
+# Stress in the root fillets of a tooth over its way through the mesh, by its own force and those of its neighbours.
+
+
+class RootNumbers(Protocol):
+    """Stress at the fillets per force on a tooth; see `dynamics.influence.numbers.InfluenceNumbers`."""
+
+    @property
+    def stress(self) -> Mapping[tuple[int, int], Array]:
+        """(tooth offset, side) -> (n_r n_f, n_p n_f) stress at tooth k per force on tooth 0 [Pa/N]."""
+
+    @property
+    def face(self) -> Array:
+        """(n_f,) positions over the face [m]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RootCourse:
+    """Stress of one tooth across the fillet, plane stress in its free surface.
+
+    path : (n_path,) path position of the tooth's own pair at mid-face, growing [m]; it comes in and goes out far beyond
+        the path, while its neighbours carry
+    face : (n_f,) from mid-face [m]; stress : (n_path, n_r, n_f) at the points of the fillet [Pa]
+    """
+
+    path: Array
+    face: Array
+    stress: Array
+
+    def within(self, points: NDArray[np.bool_]) -> "RootCourse":
+        """The same at some points of the fillet (n_r,)."""
+        return replace(self, stress=self.stress[:, points])
+
+    def turned(self) -> "RootCourse":
+        """The same with the face counted from its other end."""
+        return replace(self, face=-self.face[::-1], stress=self.stress[:, :, ::-1])
+
+    @property
+    def highest(self) -> float:
+        """Largest tension [Pa]."""
+        return float(self.stress.max())
+
+    @property
+    def highest_at(self) -> tuple[int, int, int]:
+        """Where it is: numbers of path position, point of the fillet and face position."""
+        first, point, face = np.unravel_index(int(self.stress.argmax()), self.stress.shape)
+        return int(first), int(point), int(face)
+
+    @property
+    def stress_ratio(self) -> float:
+        """R: lowest over highest stress at the place of the highest [-]; what the body holds at rest is not in it."""
+        _, point, face = self.highest_at
+        course = self.stress[:, point, face]
+        return float(course.min() / course.max())
+
+
+def root_course(
+    cycle: MeshCycle,
+    numbers: RootNumbers,
+    compliance: InterpolatedCompliance,
+    gear: Literal[0, 1],
+    side: Literal[1, -1] = 1,
+) -> RootCourse:
+    """Stress over a mesh cycle, put together over all tooth pairs.
+
+    numbers, compliance : of the pinion (0) or wheel (1), on the same grid
+    side : 1 the fillet under the loaded flank, -1 the other
+    """
+    points = cycle.points
+    n, n_pairs, _ = cycle.force.shape
+    n_f = len(numbers.face)
+    spread = np.stack([_spread(cycle, compliance, gear, pair) for pair in range(n_pairs)])
+    sense = -1 if gear == 0 else 1
+    stress = np.zeros((n_pairs, n, *_shape(numbers, n_f)))
+    for own in range(n_pairs):
+        for loaded in range(n_pairs):
+            # pinion teeth of later pairs stand behind the loaded flank, wheel teeth before it
+            offset = sense * int(points.pairs[own] - points.pairs[loaded])
+            block = numbers.stress.get((offset, side))
+            if block is not None:
+                stress[own] += (spread[loaded] @ block.T).reshape(n, -1, n_f)
+    path = (points.position - points.pair.base_pitch * points.pairs[:, None])[::-1].ravel()
+    return RootCourse(path=path, face=numbers.face, stress=stress[::-1].reshape(len(path), -1, n_f))
+
+
+def _shape(numbers: RootNumbers, n_f: int) -> tuple[int, int]:
+    return len(numbers.stress[0, 1]) // n_f, n_f
+
+
+def _spread(cycle: MeshCycle, compliance: InterpolatedCompliance, gear: int, pair: int) -> Array:
+    """Forces of a tooth pair on the grid of the influence numbers (n_positions, n_p n_f) [N]."""
+    roll = cycle.points.place.roll[gear][:, pair]
+    face = np.broadcast_to(cycle.points.grid.position, roll.shape)
+    shapes = compliance.shapes(roll.ravel(), face.ravel()).reshape(*roll.shape, -1)
+    return np.asarray(np.einsum("kz,kzg->kg", cycle.force[:, pair], shapes))
+
+
 Gear = Literal[0, 1]
 Side = Literal[1, -1]
 FACE_POINTS = 12
@@ -166,3 +264,95 @@ def root_field(
         face=numbers.face,
         base_pitch=law.base_pitch,
     )
+
+
+# Stress in both root fillets of one tooth over a turn of its gear, through all meshes that the gear is in.
+
+Fillet = Literal["leading", "trailing"]
+"""Under the flank that faces the rotation, or under the other."""
+OTHER: Mapping[Fillet, Fillet] = {"leading": "trailing", "trailing": "leading"}
+PASS_POINTS = 241
+"""Points of a turn on the way through one mesh."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ToothPass:
+    """A tooth on its way through one mesh.
+
+    angle : (n,) rotation of the gear, growing [rad]
+    loaded : which flank carries
+    leading, trailing : (n, n_r, n_f) stress at the points of the fillet under the flank that faces the rotation, and
+        of that under the other flank [Pa]
+    """
+
+    angle: Array
+    loaded: Fillet
+    leading: Array
+    trailing: Array
+
+    @property
+    def window(self) -> Array:
+        """Rotations of the pass and the free ones before and after it [rad]."""
+        inside = np.linspace(self.angle[0], self.angle[-1], PASS_POINTS)
+        step = inside[1] - inside[0]
+        return np.concatenate(([inside[0] - step], inside, [inside[-1] + step]))
+
+    def of(self, fillet: Fillet) -> Array:
+        """Stress of one fillet."""
+        return self.leading if fillet == "leading" else self.trailing
+
+    def at(self, fillet: Fillet, place: tuple[int, int], angle: Array) -> Array:
+        """Stress at one point of a fillet over rotations of the same turn or others, shape of ``angle``; 0 outside."""
+        table = self.of(fillet)
+        turned = self.angle[0] + np.mod(angle - self.angle[0], 2.0 * pi)
+        return np.asarray(np.interp(turned, self.angle, table[:, place[0], place[1]], left=0.0, right=0.0))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ToothTurn:
+    """Stress of one tooth over a turn at the most stressed point of each fillet.
+
+    Where no mesh loads a flank its fillet is shown at the point of the other, which it compresses.
+
+    angle : (n,) rotation of the gear, growing within [0, 2 pi] [rad]; leading, trailing : (n,) [Pa]
+    """
+
+    angle: Array
+    leading: Array
+    trailing: Array
+
+
+def tooth_turn(passes: Sequence[ToothPass]) -> ToothTurn:
+    """Put the ways through the meshes of a gear together; rotations are counted from one common zero.
+
+    Raises ValueError without any.
+    """
+    if not passes:
+        raise ValueError("a turn needs at least one way through a mesh; leave out gears that carry no load")
+    windows = [one.window for one in passes]
+    angle = np.unique(np.concatenate([[0.0, 2.0 * pi], *(np.mod(window, 2.0 * pi) for window in windows)]))
+
+    loaded = {one.loaded for one in passes}
+    places = {fillet: _most_stressed([one.of(fillet) for one in passes]) for fillet in loaded}
+
+    def over_turn(fillet: Fillet) -> Array:
+        place = places[fillet if fillet in loaded else OTHER[fillet]]
+        return np.asarray(sum(one.at(fillet, place, angle) for one in passes))
+
+    return ToothTurn(angle=angle, leading=over_turn("leading"), trailing=over_turn("trailing"))
+
+
+def _most_stressed(tables: Sequence[Array]) -> tuple[int, int]:
+    """Point of the fillet and face position of the highest tension in some passes through one fillet."""
+    most = max(tables, key=lambda table: float(table.max()))
+    _, point, face = np.unravel_index(int(most.argmax()), most.shape)
+    return int(point), int(face)
+
+
+def pitches_apart(coarse: float, fine: float, pitch: float) -> float:
+    """Rotation between two meshes: ``fine`` up to whole pitches, as near as can be to ``coarse`` [rad].
+
+    coarse : by the places of the axes; fine : by the teeth; pitch : angle of a tooth
+    """
+    off = (fine - coarse) / pitch
+    return coarse + pitch * (off - round(off))

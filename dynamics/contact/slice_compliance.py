@@ -12,7 +12,7 @@ from math import cos
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.face import FaceGrid
+from dynamics.contact.points import FaceGrid
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.stiffness import Body, tooth_compliance

@@ -15,8 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import PortModel, StaticState, loaded_share, port_model, solve_static
+from dynamics.drivetrain.static_loop import (
+    LoopLoad,
+    PortModel,
+    StaticState,
+    loaded_share,
+    port_model,
+    solve_static,
+)
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 

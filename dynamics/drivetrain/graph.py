@@ -6,8 +6,8 @@ lines and stay outside the matrices (`dynamics.mesh.law`). Any number of shafts,
 allowed; whether the loops can close is checked in `dynamics.drivetrain.power_loop`.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -22,12 +22,14 @@ from dynamics.drivetrain.parts import (
     GearBody,
     MeshConnection,
     Motor,
+    PeriodicLoad,
 )
-from dynamics.drivetrain.periodic_load import PeriodicLoad
-from dynamics.drivetrain.power_loop import check_loops
-from dynamics.drivetrain.shaft import DrivetrainError, Shaft, ShaftChain, discretise
+from dynamics.drivetrain.power_loop import check_loops, speed_ratios
+from dynamics.drivetrain.shaft import DrivetrainError, Section, Shaft, ShaftChain, discretise
 
 Array = NDArray[np.float64]
+
+
 _Part = TypeVar("_Part", "Shaft", "GearBody", "Coupling")
 
 
@@ -316,3 +318,176 @@ def _check_not_negative(part: str, **values: float) -> None:
     for name, value in values.items():
         if not value >= 0.0:
             raise DrivetrainError(f"{part}: {name} = {value}: must not be negative; correct the sign")
+
+
+# Where torque passes through a drivetrain, shaft elements and joints, and the twist that tells how much.
+#
+# The torque of a spring and damper is k (w - offset) + c w' with the twist w = row . q; inside a section it changes
+# from element to element by the inertia between them.
+
+SectionKind = Literal["shaft", "spline", "coupling", "motor"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueSection:
+    """Section of a shaft between two steps of its diameter, or a joint.
+
+    part : shaft, or name of the joint; start, end : on the shaft [m], 0 of a joint; section : None of a joint
+    """
+
+    kind: SectionKind
+    part: str
+    start: float = 0.0
+    end: float = 0.0
+    section: Section | None = None
+
+    @property
+    def name(self) -> str:
+        """As it is called in tables: part and place [mm], or kind and part."""
+        if self.kind != "shaft":
+            return f"{self.kind} {self.part}"
+        return f"{self.part} {1e3 * self.start:.0f} to {1e3 * self.end:.0f} mm"
+
+    @property
+    def shear_per_torque(self) -> float:
+        """Nominal shear stress at the surface per torque [Pa/(N m)]; 0 of a joint."""
+        if self.section is None:
+            return 0.0
+        return 0.5 * self.section.outer_diameter / self.section.polar_moment
+
+
+@dataclass(frozen=True, kw_only=True)
+class TwistRows:
+    """Springs through which torque passes; several of one section stand one after the other.
+
+    sections : (r,) of each
+    rows : (r, n) twist per freedom; stiffness [N m/rad], damping [N m s/rad] : (r,)
+    bracing : (r,) offset of the twist per bracing twist [-]
+    """
+
+    sections: tuple[TorqueSection, ...]
+    rows: Array
+    stiffness: Array
+    damping: Array
+    bracing: Array
+
+
+@dataclass(frozen=True)
+class TwistSpring:
+    """One spring: row (n,) with its stiffness and damping."""
+
+    section: TorqueSection
+    row: Array
+    stiffness: float
+    damping: float
+
+
+def twist_rows(springs: Sequence[TwistSpring], braced: str | None) -> TwistRows:
+    """Rows of springs; braced : name of the coupling that makes the bracing twist."""
+    return TwistRows(
+        sections=tuple(spring.section for spring in springs),
+        rows=np.array([spring.row for spring in springs]),
+        stiffness=np.array([spring.stiffness for spring in springs]),
+        damping=np.array([spring.damping for spring in springs]),
+        bracing=np.array([float(s.section.kind == "coupling" and s.section.part == braced) for s in springs]),
+    )
+
+
+def torsional_twist_rows(drivetrain: Drivetrain) -> TwistRows:
+    """Rows on the freedoms of `assemble`: elements of the shafts from left to right, then splines and couplings."""
+    size = len(assemble(drivetrain).inertia)
+    chains = shaft_chains(drivetrain)
+    places = {
+        shaft.name: iter(section_of_elements(shaft, chains[shaft.name].positions))
+        for shaft in drivetrain.shafts
+    }
+    springs = []
+    for joint in joints(drivetrain):
+        if joint.kind == "mesh":
+            continue
+        row = np.zeros(size)
+        row[joint.dof_a], row[joint.dof_b] = 1.0, -1.0
+        section = (
+            next(places[joint.name])
+            if joint.kind == "shaft"
+            else TorqueSection(kind=joint.kind, part=joint.name)
+        )
+        springs.append(TwistSpring(section, row, joint.stiffness, joint.damping))
+    return twist_rows(springs, drivetrain.bracing_coupling)
+
+
+def section_of_elements(shaft: Shaft, positions: Array) -> Iterator[TorqueSection]:
+    """Section of each element between neighbouring positions (n,) [m] of a chain."""
+    ends = np.cumsum([0.0, *(section.length for section in shaft.sections)])
+    found = [
+        TorqueSection(kind="shaft", part=shaft.name, start=float(a), end=float(b), section=section)
+        for a, b, section in zip(ends[:-1], ends[1:], shaft.sections)
+    ]
+    middle = 0.5 * (positions[:-1] + positions[1:])
+    index = np.clip(np.searchsorted(ends, middle) - 1, 0, len(found) - 1)
+    return (found[i] for i in index)
+
+
+# Friction in splines as a loss factor: what a cycle dissipates does not depend on its rate.
+#
+# A spline with stiffness k and loss factor eta dissipates pi eta k phi^2 in a cycle of twist of amplitude phi, at any
+# frequency (structural damping, C. W. Bert, J. Sound Vib. 29, 1973, 129). Models in time need a damper: c = eta k /
+# omega gives the same at one frequency, here the mesh frequency of the gear on the spline, at which its teeth drive it.
+# At a frequency f times that the damper dissipates f times as much: a mode above the mesh frequency decays faster than
+# eta says (logarithmic decrement pi eta f where the spline holds all of its strain energy), one below slower, and the
+# second mesh order loses twice its share. At a small share of the highest speed the damper stiffens the spline for
+# everything that oscillates well above the mesh frequency. At rest there is none: nothing meshes.
+
+
+@dataclass(frozen=True, kw_only=True)
+class SplineLoss:
+    """Spline with a loss factor under a gear.
+
+    loss : loss factor times stiffness [N m/rad]; cycles : meshing teeth per radian of the motor's shaft
+    """
+
+    gear: str
+    loss: float
+    cycles: float
+
+    def damping(self, speed: float) -> float:
+        """Damper at a speed of the motor's shaft [rad/s], eta k / omega [N m s/rad]; 0 at rest."""
+        frequency = self.cycles * abs(speed)
+        return self.loss / frequency if frequency > 0.0 else 0.0
+
+
+def spline_losses(drivetrain: Drivetrain) -> Iterator[SplineLoss]:
+    """Of every gear in a mesh whose spline has a loss factor."""
+    if not any(gear.loss_factor for gear in drivetrain.gears):
+        return
+    ratios = speed_ratios(drivetrain)
+    teeth = {mesh.pinion: mesh.teeth[0] for mesh in drivetrain.meshes}
+    teeth |= {mesh.wheel: mesh.teeth[1] for mesh in drivetrain.meshes}
+    for gear in drivetrain.gears:
+        if gear.loss_factor and gear.name in teeth:
+            yield SplineLoss(
+                gear=gear.name,
+                loss=gear.loss_factor * gear.stiffness,
+                cycles=teeth[gear.name] * abs(ratios[gear.shaft]),
+            )
+
+
+def at_speed(drivetrain: Drivetrain, speed: float) -> Drivetrain:
+    """The same with dampers in place of loss factors, as they are at a speed of the motor's shaft [rad/s]."""
+    damping = {loss.gear: loss.damping(speed) for loss in spline_losses(drivetrain)}
+    if not damping:
+        return drivetrain
+    return replace(
+        drivetrain,
+        gears=tuple(
+            replace(gear, damping=damping[gear.name], loss_factor=0.0) if gear.name in damping else gear
+            for gear in drivetrain.gears
+        ),
+    )
+
+
+def with_spline_dampers(rows: TwistRows, drivetrain: Drivetrain, speed: float) -> TwistRows:
+    """Rows of torques with the dampers of splines at a speed of the motor's shaft [rad/s], which carry torque too."""
+    added = {loss.gear: loss.damping(speed) for loss in spline_losses(drivetrain)}
+    own = [added.get(one.part, 0.0) if one.kind == "spline" else 0.0 for one in rows.sections]
+    return replace(rows, damping=rows.damping + own) if added else rows

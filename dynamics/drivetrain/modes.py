@@ -5,20 +5,22 @@ mesh order meets a natural frequency, how many samples a recording has per mesh.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
 
 from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.linear_system import LinearSystem, modal_form
 from dynamics.drivetrain.power_loop import speed_ratios
 from dynamics.drivetrain.shaft import free_frequencies
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]
+
 
 DAMPING_RATIO_LIMIT = 0.3
 """Above this damping ratio a joint or mesh gets a warning: the resonance of its spring is gone [-]."""
@@ -354,3 +356,188 @@ def modes_above_samples(modes: Sequence[LoopMode], sample_rate: float) -> tuple[
         for mode in modes
         if mode.frequency > band and float(mode.mesh_gain.max(initial=0.0)) >= SEEN_GAIN
     )
+
+
+# Modes of the closed loop followed over speed by their shapes.
+#
+# A mode at one speed is the one at the speed before whose shape is most alike: modal assurance criterion (Allemang and
+# Brown, Proc. 1st IMAC, 1982, 110) with the inertia as weight, one partner each (linear assignment).
+
+Complex = NDArray[np.complex128]
+
+ALIKE = 0.3
+"""Assurance from which two shapes are one mode [-]; neighbours of one frequency mix, and still share this much."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShapedModes:
+    """Oscillating modes at one speed with their shapes.
+
+    speed : stated speed [rad/s]; modes : by frequency; shapes : (n, m) in the freedoms of the system
+    """
+
+    speed: float
+    modes: tuple[LoopMode, ...]
+    shapes: Complex
+
+
+@dataclass(frozen=True)
+class TrackedMode:
+    """One mode over speed; None where it is damped out or beyond the range."""
+
+    modes: tuple[LoopMode | None, ...]
+
+    @property
+    def strongest(self) -> LoopMode:
+        """Where a mesh excites it most."""
+        return max((mode for mode in self.modes if mode), key=lambda mode: float(mode.mesh_gain.max()))
+
+
+def shaped_modes(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    describe: Describe,
+    speed: float,
+    highest_frequency: float,
+) -> ShapedModes:
+    """Oscillating modes of the closed loop up to a frequency [Hz], meshes at their mean stiffness.
+
+    system, laws : as of `modes_of_loop`; speed : at which the matrices hold [rad/s]
+    """
+    shapes: list[Complex] = []
+
+    def keep(shape: Complex, mesh_energy: Array) -> ModeShape:
+        shapes.append(shape)
+        return describe(shape, mesh_energy)
+
+    found = modes_of_loop(system, laws, highest_frequency, keep)
+    modes = tuple(mode for mode in found if mode.frequency > 0.0)
+    size = len(system.inertia)
+    columns = np.array(shapes).T if shapes else np.zeros((size, 0), complex)
+    return ShapedModes(speed=speed, modes=modes, shapes=columns)
+
+
+def tracked(found: Sequence[ShapedModes], inertia: Array) -> tuple[TrackedMode, ...]:
+    """Every mode over the speeds of ``found``, in the order of their first frequency.
+
+    inertia : (n, n) of the system, the same at all speeds
+    """
+    root = np.linalg.cholesky(inertia).T
+    rows: list[list[LoopMode | None]] = []
+    members: list[int] = []
+    before: Complex | None = None
+    for number, at in enumerate(found):
+        shapes = root @ at.shapes
+        shapes = shapes / np.linalg.norm(shapes, axis=0)
+        partners = {} if before is None else _partners(before, shapes, found[number - 1], at)
+        now = []
+        for k, mode in enumerate(at.modes):
+            if k in partners:
+                row = members[partners[k]]
+            else:
+                row = len(rows)
+                rows.append([None] * len(found))
+            rows[row][number] = mode
+            now.append(row)
+        before, members = shapes, now
+    return tuple(TrackedMode(tuple(row)) for row in sorted(rows, key=_first))
+
+
+def _first(row: Sequence[LoopMode | None]) -> float:
+    return next(mode.frequency for mode in row if mode)
+
+
+def _partners(old: Complex, new: Complex, before: ShapedModes, after: ShapedModes) -> dict[int, int]:
+    """Mode before for each mode after."""
+    if not (old.size and new.size):
+        return {}
+    assurance = np.abs(np.conj(old).T @ new) ** 2
+    frequencies = [np.array([mode.frequency for mode in at.modes]) for at in (before, after)]
+    apart = np.abs(np.log(frequencies[0][:, None] / frequencies[1]))
+    rows, columns = linear_sum_assignment(apart - assurance)
+    return {int(k): int(j) for j, k in zip(rows, columns) if assurance[j, k] >= ALIKE}
+
+
+# Speeds at which a mesh or shaft order meets a mode of the closed loop.
+#
+# Crossings of isolated shafts (`modes.order_crossings`, P2's way) tell which shaft would oscillate alone; what is
+# measured on the rig are the modes of the assembled loop: couplings, meshes and the bracing close it.
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopCrossing:
+    """An order that meets a mode of the closed loop.
+
+    source : mesh or shaft whose order it is; kind : which of the two
+    mode : number of the mode, 1 for the lowest that oscillates
+    harmonic : of the mesh frequency, or order of the shaft speed
+    speed : at which they meet, of the motor's shaft; own_speed : of the pinion of the mesh, or of the shaft [rad/s]
+    gain : `LoopMode.mesh_gain` of the mesh [-]; 0 for a shaft, which excites by its errors only
+    """
+
+    source: str
+    kind: Literal["mesh", "shaft"]
+    mode: int
+    harmonic: int
+    frequency: float
+    damping_ratio: float
+    speed: float
+    own_speed: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class _Order:
+    """First order of a mesh or shaft: turns of its frequency per turn of the motor, own speed per motor speed."""
+
+    source: str
+    kind: Literal["mesh", "shaft"]
+    cycles: float
+    ratio: float
+    mesh: int
+
+
+def loop_crossings(
+    drivetrain: Drivetrain,
+    modes: Sequence[LoopMode],
+    highest_speed: float,
+    mesh_harmonics: int = 4,
+    shaft_harmonics: int = 3,
+) -> tuple[LoopCrossing, ...]:
+    """All crossings up to a speed of the motor's shaft [rad/s], meshes first, each by speed: w = 2 pi f / (h c).
+
+    c is the number of cycles of the order per turn of the motor's shaft. Modes without a frequency are left out.
+    """
+    oscillating = [mode for mode in modes if mode.frequency > 0.0]
+    found = []
+    for order in _orders(drivetrain):
+        own = []
+        harmonics = mesh_harmonics if order.kind == "mesh" else shaft_harmonics
+        for number, mode in enumerate(oscillating, start=1):
+            for harmonic in range(1, harmonics + 1):
+                speed = 2.0 * math.pi * mode.frequency / (harmonic * order.cycles)
+                if speed <= highest_speed:
+                    own.append(
+                        LoopCrossing(
+                            source=order.source,
+                            kind=order.kind,
+                            mode=number,
+                            harmonic=harmonic,
+                            frequency=mode.frequency,
+                            damping_ratio=mode.damping_ratio,
+                            speed=speed,
+                            own_speed=speed * order.ratio,
+                            gain=float(mode.mesh_gain[order.mesh]) if order.kind == "mesh" else 0.0,
+                        )
+                    )
+        found += sorted(own, key=lambda crossing: (crossing.speed, crossing.mode))
+    return tuple(found)
+
+
+def _orders(drivetrain: Drivetrain) -> Iterator[_Order]:
+    ratios = speed_ratios(drivetrain)
+    for index, mesh in enumerate(drivetrain.meshes):
+        ratio = ratios[drivetrain.gear(mesh.pinion).shaft]
+        yield _Order(mesh.name, "mesh", mesh.teeth[0] * ratio, ratio, index)
+    for shaft in drivetrain.shafts:
+        yield _Order(shaft.name, "shaft", ratios[shaft.name], ratios[shaft.name], -1)

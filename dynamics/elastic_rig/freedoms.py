@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.parts import BearingPlace, DragPlace, GearBody
 from dynamics.drivetrain.shaft import DrivetrainError, discretise
 from dynamics.elastic_rig.beam import DIRECTIONS
-from dynamics.elastic_rig.layout import SEAT_DIRECTIONS, ElasticRig, ProbeStation
-from dynamics.elastic_rig.rotating_parts import ShaftUnbalance
+from dynamics.elastic_rig.layout import SEAT_DIRECTIONS, ElasticRig, ProbeStation, ShaftUnbalance
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

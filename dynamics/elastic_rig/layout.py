@@ -5,6 +5,7 @@ bearings and meshes; what of their fields torsion does not read is read here.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,13 +17,204 @@ from dynamics.drivetrain.parts import Coupling, GearBody, MeshConnection
 from dynamics.drivetrain.power_loop import DISTANCE_TOLERANCE, speed_ratios
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.beam import ShearRule, TorsionalInertia
-from dynamics.elastic_rig.rotating_parts import (
-    AxisMisalignment,
-    CrossJoint,
-    FlangeRunOut,
-    RotatingPart,
-    ShaftUnbalance,
-)
+
+# What turns with a shaft and shakes it once a turn: unbalance, a bent shaft, flanges out of true.
+#
+# Angles [rad] count from +y in the sense of rotation of the shaft, at the instant at which its angle is zero.
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaftUnbalance:
+    """Mass times radius [kg m] on a shaft at a position [m] from its left end."""
+
+    shaft: str
+    position: float
+    moment: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.moment >= 0.0 and math.isfinite(self.moment)):
+            raise DrivetrainError(
+                f"unbalance of shaft {self.shaft!r}: {self.moment} kg m: must be finite and at least 0; turn its angle"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaftBow:
+    """Shape of the axis of a shaft without load.
+
+    amplitude : largest distance from the line through the supports, or at ``position`` where one is given [m]: a half
+        sine between them, straight beyond
+    gradient : temperature difference across the diameter times the expansion coefficient [-]: a curvature gradient /
+        diameter all along the shaft
+    supports : positions of two bearings [m]
+
+    Raises DrivetrainError for supports at one place, or a position at which a half sine has no height.
+    """
+
+    shaft: str
+    supports: tuple[float, float]
+    amplitude: float = 0.0
+    position: float | None = None
+    angle: float = 0.0
+    gradient: float = 0.0
+    gradient_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        first, second = self.supports
+        if not second > first:
+            raise DrivetrainError(
+                f"bow of shaft {self.shaft!r}: supports at {first} and {second} m: must ascend; give the positions of "
+                "two bearings"
+            )
+        if self.position is not None and self.amplitude and abs(self.height) < 1e-3:
+            raise DrivetrainError(
+                f"bow of shaft {self.shaft!r}: position = {self.position} m is at a support, where it has no "
+                f"amplitude; give a place between {first} and {second} m or beyond them"
+            )
+
+    @property
+    def height(self) -> float:
+        """Of the shape at ``position``, over its largest."""
+        return 1.0 if self.position is None else self.shape(self.position)[0]
+
+    def shape(self, position: float) -> tuple[float, float]:
+        """Distance from the line through the supports and slope [1/m] at a position [m], for a largest of 1."""
+        first, second = self.supports
+        span = second - first
+        inside = min(max(position, first), second)
+        turn = math.pi * (inside - first) / span
+        slope = math.pi / span * math.cos(turn)
+        return math.sin(turn) + slope * (position - inside), slope
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlangeRunOut:
+    """Flange of the first shaft of a coupling against that of the second, turning with them.
+
+    offset : of its centre from the axis [m]; tilt : of its face from square [rad]
+    """
+
+    coupling: str
+    offset: float = 0.0
+    offset_angle: float = 0.0
+    tilt: float = 0.0
+    tilt_angle: float = 0.0
+
+
+RotatingPart = ShaftUnbalance | ShaftBow | FlangeRunOut
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisMisalignment:
+    """Axis of the first shaft of a coupling against that of the second, as they stand: offset [m], slope over x [rad].
+
+    Both (y, z).
+    """
+
+    coupling: str
+    offset: tuple[float, float] = (0.0, 0.0)
+    slope: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrossJoint:
+    """Coupling that is a cross joint: slope (y, z) over x of the axis of its first shaft against that of the second."""
+
+    coupling: str
+    slope: tuple[float, float]
+
+
+SpeedPower = Literal[0, 2]
+
+
+# Residual unbalance of a shaft by its balance quality grade, in its two bearing planes (ISO 21940-11).
+#
+# The grade G is the speed of the centre of mass, e_per Omega; the permissible unbalance is U_per = m G / Omega with the
+# mass m and highest service speed Omega of the rotor. It goes to the bearing planes by the lever rule, with 0.3 to 0.7
+# of it in either of them where the centre of mass lies between, and up to 1.3 where it overhangs.
+
+LEAST_SHARE = 0.3
+MOST_INSIDE, MOST_BEYOND = 0.7, 1.3
+"""Share of the unbalance in one bearing plane: centre of mass between the bearings, and beyond them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BalanceGrade:
+    """Grade [m/s] (G 2.5 is 2.5e-3), speed for which it holds [rad/s], angles in the two planes [rad].
+
+    Equal angles are a static unbalance, angles that differ by half a turn a couple.
+    """
+
+    grade: float
+    speed: float
+    angles: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not (self.grade >= 0.0 and self.speed > 0.0):
+            raise DrivetrainError(
+                f"balance grade = {self.grade} m/s at {self.speed} rad/s: must not be negative, at a speed above 0; "
+                "correct them"
+            )
+
+    @property
+    def eccentricity(self) -> float:
+        """Permissible of the centre of mass, e_per [m]."""
+        return self.grade / self.speed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rotor:
+    """Mass [kg] of a shaft with its discs and gears, and its centre from the left end [m]."""
+
+    mass: float
+    centre: float
+
+
+def rotor_of(drivetrain: Drivetrain, shaft: str) -> Rotor:
+    """A shaft with discs, gears and a motor rotor that it carries."""
+    parts = list(_masses(drivetrain, shaft))
+    mass = math.fsum(mass for mass, _ in parts)
+    return Rotor(mass=mass, centre=math.fsum(mass * at for mass, at in parts) / mass)
+
+
+def residual_unbalances(
+    drivetrain: Drivetrain, shaft: str, grade: BalanceGrade
+) -> tuple[ShaftUnbalance, ...]:
+    """What the grade leaves in the planes of the outer two bearings of a shaft; at its centre of mass where it has one
+    bearing or none."""
+    rotor = rotor_of(drivetrain, shaft)
+    whole = rotor.mass * grade.eccentricity
+    planes = sorted({bearing.position for bearing in drivetrain.bearings if bearing.shaft == shaft})
+    if len(planes) < 2:
+        return (ShaftUnbalance(shaft=shaft, position=rotor.centre, moment=whole, angle=grade.angles[0]),)
+    first, second = planes[0], planes[-1]
+    levers = (second - rotor.centre) / (second - first), (rotor.centre - first) / (second - first)
+    most = MOST_INSIDE if first <= rotor.centre <= second else MOST_BEYOND
+    return tuple(
+        ShaftUnbalance(
+            shaft=shaft, position=plane, moment=whole * min(max(abs(lever), LEAST_SHARE), most), angle=angle
+        )
+        for plane, lever, angle in zip((first, second), levers, grade.angles)
+    )
+
+
+def _masses(drivetrain: Drivetrain, shaft: str) -> Iterator[tuple[float, float]]:
+    """(mass [kg], position [m]) of sections, discs, gears and motor of a shaft."""
+    own = next(one for one in drivetrain.shafts if one.name == shaft)
+    start = 0.0
+    for section in own.sections:
+        area = 0.25 * math.pi * (section.outer_diameter**2 - section.inner_diameter**2)
+        yield own.density * area * section.length, start + 0.5 * section.length
+        start += section.length
+    yield from ((disc.mass, disc.position) for disc in own.discs)
+    for gear in drivetrain.gears:
+        if gear.shaft == shaft:
+            yield gear.mass, gear.position + gear.offset
+    motor = drivetrain.motor
+    if motor.shaft == shaft and motor.diametral_inertia is not None:
+        yield motor.mass, motor.position
+
 
 Array = NDArray[np.float64]
 Sign = Literal[1, -1]

@@ -16,11 +16,10 @@ from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.drivetrain.loss_factor import SplineLoss, spline_losses
+from dynamics.drivetrain.graph import SplineLoss, spline_losses
 from dynamics.drivetrain.shaft import DrivetrainError
-from dynamics.elastic_rig.assembly import ElasticModel
+from dynamics.elastic_rig.assembly import ElasticModel, tilt_rows
 from dynamics.elastic_rig.beam import DIRECTIONS
-from dynamics.elastic_rig.cross_joints import tilt_rows
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 
 # Real modes of the undamped rig at rest with a symmetric reference stiffness of its bearings.

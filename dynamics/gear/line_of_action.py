@@ -7,7 +7,7 @@ from typing import Literal
 from scipy.optimize import brentq
 
 from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, involute, require_angles
-from dynamics.gear.details import PLAIN, FlankEnds, GearDetails
+from dynamics.gear.tooth_form import PLAIN, FlankEnds, GearDetails
 
 TipCut = Literal["both", "wheel", "pinion"]
 

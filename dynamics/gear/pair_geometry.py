@@ -6,7 +6,6 @@ from math import acos, cos, pi, radians, tan
 from typing import Literal, Self, TypedDict, Unpack
 
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack, involute
-from dynamics.gear.details import PLAIN, FlankEnds, GearDetails
 from dynamics.gear.line_of_action import (
     PathOfContact,
     TipCut,
@@ -14,7 +13,7 @@ from dynamics.gear.line_of_action import (
     shift_sum,
     tip_cut_for_contact_ratio,
 )
-from dynamics.gear.tooth_form import ToothForm
+from dynamics.gear.tooth_form import PLAIN, FlankEnds, GearDetails, ToothForm
 
 Pair = tuple[float, float]
 

@@ -11,14 +11,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.influence.elastic_segment import Elastic, solve_segment
+from dynamics.influence.elastic_segment import Elastic, GearModel, solve_segment
 from dynamics.influence.gear_body import TEETH, SectionDivision
-from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
-from dynamics.influence.reading import SegmentReading
-from dynamics.influence.section import gear_section
-from dynamics.influence.segment import GearSegment
-from dynamics.influence.strips import rows
+from dynamics.influence.reading import SegmentReading, rows
+from dynamics.influence.segment import GearSegment, gear_section
 
 SIDES = (1, -1)
 OFFSETS = range(-3, 4)

@@ -34,7 +34,7 @@ from dynamics.kernels.mesh_workspace import (
     UPPER,
 )
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

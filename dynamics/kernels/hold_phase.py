@@ -44,7 +44,7 @@ from dynamics.kernels.hold_path import Held, Sliding, share_of, spline_curves, s
 from dynamics.kernels.knots import add_lines, contract_cell, contract_first
 from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -17,7 +17,7 @@ from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import pass_modes
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

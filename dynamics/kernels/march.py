@@ -3,7 +3,7 @@
 Arrays come from ``dynamics.response.propagator`` (discretised modes) and ``dynamics.mesh.contact_table`` (tables of the
 mesh laws); names, units and validation live above.
 
-Within a step the mesh torques are held as ``dynamics.response.step_hold`` says, their newest value found implicitly. A
+Within a step the mesh torques are held as ``dynamics.response.propagator`` says, their newest value found implicitly. A
 step guesses the torques (the parabola through the last three), looks at the meshes at the angles this guess leads to,
 and takes a Newton step there (``mesh_solve``). Only where its remainder is too large are the meshes looked at again.
 """
@@ -81,7 +81,7 @@ from dynamics.kernels.wrench import (
     set_sides,
 )
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

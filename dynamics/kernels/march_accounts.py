@@ -10,7 +10,7 @@ from dynamics.kernels.mesh_solve import flank_powers
 from dynamics.kernels.mesh_workspace import N_SPACE
 from dynamics.kernels.wrench import WrenchModes, rubbed_beside
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]

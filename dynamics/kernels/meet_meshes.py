@@ -10,7 +10,7 @@ from dynamics.kernels.mesh_solve import correct, left_open, move_others
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import MISSING, N_SPACE, PORT, TAU
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6

@@ -4,7 +4,7 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]

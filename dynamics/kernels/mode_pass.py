@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 8
 """Numbers in a vector."""

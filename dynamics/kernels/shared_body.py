@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, Flank, inlined
 from dynamics.kernels.mesh_tables import BACKLASH, BODY, POSITIVE, ROW_E, VECTOR
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 
 MOST_SETS = 64

@@ -2,7 +2,7 @@
 
 The ports of a mesh carry the torques of its gears with a lateral force along the normal of the flanks that carry. What
 these torques have beyond the normal force, and what the other flanks press, acts on rows of its own
-(``dynamics.drivetrain.mesh_wrench``): two rows of friction in every step, the slide of the flanks while the others
+(``dynamics.drivetrain.linear_system``): two rows of friction in every step, the slide of the flanks while the others
 touch. They change smoothly and move the ports little: for the modes they are linear over an interval of a few steps,
 from the mean of the steps before; for the ports they stay.
 """
@@ -39,7 +39,7 @@ from dynamics.kernels.mesh_workspace import (
 from dynamics.kernels.mode_layout import N_BANK, WIDTH
 from dynamics.kernels.mode_pass import dot_modes, push_modes
 
-# compiled from sources 86a47cef
+# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -6,7 +6,7 @@ in the mean of the slices that carry, by a run-out as that stands at the rotatio
 ``dynamics.kernels.contact_table``.
 
 The tables take the law as it is: cubics of Fritsch and Carlson over the path, slices that touch one by one. For a march
-whose steps do not resolve all of the path they are filtered (``dynamics.mesh.path_filter``).
+whose steps do not resolve all of the path they are filtered (``dynamics.mesh.contact_samples``).
 """
 
 from collections.abc import Sequence
@@ -23,9 +23,8 @@ from dynamics.kernels import contact_table as layout
 from dynamics.kernels.aligned import aligned
 from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings
 from dynamics.kernels.contact_table import ContactTables
-from dynamics.mesh.contact_samples import PADDING, FlankGrid, flank_samples
+from dynamics.mesh.contact_samples import PADDING, RESOLVED, FlankGrid, PathFilter, flank_samples
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law, law_content
-from dynamics.mesh.path_filter import RESOLVED, PathFilter
 from dynamics.mesh.tables import has_individual_teeth
 from thermal.fe.kept_results import kept_as
 

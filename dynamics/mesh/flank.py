@@ -9,14 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.flank.axes import PARALLEL, AxisMisalignment
-from dynamics.flank.field import Flank, FlankField, TeethInMesh, back_phase
+from dynamics.flank.field import PARALLEL, AxisMisalignment, Flank, FlankField, TeethInMesh, back_phase
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.law import DampedRate, MeshLaw
-from dynamics.mesh.pair_gap import FLAWLESS, PairGap, flank_fields
+from dynamics.mesh.pair_gap import FLAWLESS, PairGap, flank_fields, path_reach, tip_separation
 from dynamics.mesh.stiffness import PairStiffness
-from dynamics.mesh.tip_contact import path_reach, tip_separation
 
 Array = NDArray[np.float64]
 Engagement = Literal["corner", "path"]

@@ -1,18 +1,28 @@
 """Gap of every place of every tooth pair: flanks of both gears, axes, expansion, corners beyond the path."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import cos
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.flank.axes import PARALLEL, AxisMisalignment
-from dynamics.flank.field import AT_PITCH_POINT, Flank, FlankField, TeethInMesh, require_whole_flanks
+from dynamics.errors import DynamicsInputError
+from dynamics.flank.field import (
+    AT_PITCH_POINT,
+    PARALLEL,
+    AxisMisalignment,
+    Flank,
+    FlankField,
+    TeethInMesh,
+    require_whole_flanks,
+)
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.tip_contact import tip_separation
 
 Array = NDArray[np.float64]
+
+
 FLAWLESS = (Microgeometry(), Microgeometry())
 
 
@@ -103,3 +113,147 @@ def flank_fields(
         FlankField(pair=pair, index=0, micro=micro[0], count=count),
         FlankField(pair=pair, index=1, micro=micro[1], count=count),
     )
+
+
+# Separation of a tooth pair beyond the ends of its path, where only a tip corner could touch.
+#
+# Before A the wheel's tip corner faces the pinion flank, beyond E the pinion's tip corner the wheel flank. The
+# gap is the approach along the line of action at which they would meet; it grows from zero with the square
+# of the distance to the end of the path, so that loaded, deflected teeth enter and leave the mesh smoothly
+# (premature engagement). Derived from the involutes of both gears, no small-angle approximation; an undercut
+# flank ends in a corner too, which is treated alike. A tip edge is taken as the sharp corner at which it begins.
+
+
+@dataclass(frozen=True, kw_only=True)
+class CornerMesh:
+    """A corner of one gear and the flank of the other; lengths [m].
+
+    base, reach : base radius of the corner's gear, distance of its base tangent point from the pitch point
+    flank_base : base radius of the gear that owns the flank
+    """
+
+    corner_radius: float
+    base: float
+    reach: float
+    flank_base: float
+    centre_distance: float
+
+    def opening(self, path: Array) -> Array:
+        """Gap [m], shape of ``path``, at the path position of the corner's gear, growing to its tip [m].
+
+        The corner's gear stands still, the flank turns towards it: arc on the base circle of the flank.
+        """
+        base_angle = _involute_roll(self.reach / self.base)
+        corner = base_angle + path / self.base - _involute_at(self.corner_radius, self.base)
+        x = self.centre_distance - self.corner_radius * np.cos(corner)
+        y = self.corner_radius * np.sin(corner)
+        radius = np.maximum(np.hypot(x, y), self.flank_base)
+        flank = path / self.flank_base - base_angle + _involute_at(radius, self.flank_base)
+        return np.asarray(self.flank_base * (flank - np.arctan2(y, x)))
+
+    def opening_seen_from_flank(self, path: Array) -> Array:
+        """The same gap at the path position of the flank's gear.
+
+        Closing the gap x turns the corner's gear against the flank's by x, so that its own position is
+        ``path`` + x; solved by iteration to 1e-12 m.
+        """
+        gap = self.opening(path)
+        for _ in range(100):
+            change = self.opening(path + gap) - gap
+            gap = gap + change
+            if float(np.max(np.abs(change), initial=0.0)) < 1e-12:
+                break
+        return gap
+
+
+def _involute_roll(roll: Array | float) -> Array:
+    """Involute function of the flank point with the roll angle tan(alpha) = ``roll`` [rad]."""
+    return np.asarray(roll - np.arctan(roll))
+
+
+def _involute_at(radius: Array | float, base: float) -> Array:
+    """Involute function of the flank point at ``radius`` [m]."""
+    return _involute_roll(np.sqrt(np.maximum(np.asarray(radius) ** 2 - base**2, 0.0)) / base)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _End:
+    """One end of the path: where it is [m], the corner that could touch beyond it, and whether the wheel owns it."""
+
+    place: float
+    corner: CornerMesh
+    of_wheel: bool
+
+    def gap(self, path: Array) -> Array:
+        """Gap [m] beyond the end, shape of ``path``, which follows the rotation of the pinion."""
+        return self.corner.opening_seen_from_flank(-path) if self.of_wheel else self.corner.opening(path)
+
+    def open_by(self, path: Array, gap: float) -> NDArray[np.bool_]:
+        """Whether `gap` has grown to a gap [m]: the corner stays clear of the flank until it is closed by as much."""
+        at = gap - path if self.of_wheel else path
+        return np.asarray(self.corner.opening(at) >= gap)
+
+
+def _before(pair: GearPair) -> _End:
+    limits, pinion = pair.path, pair.gears[0]
+    if pinion.undercut and limits.start > limits.tip_start:
+        return _End(place=limits.start, corner=_corner(pair, 0, pinion.form_radius), of_wheel=False)
+    return _End(place=limits.tip_start, corner=_corner(pair, 1, pair.flanks[1].tip_radius), of_wheel=True)
+
+
+def _after(pair: GearPair) -> _End:
+    limits, wheel = pair.path, pair.gears[1]
+    if wheel.undercut and limits.end < limits.tip_end:
+        return _End(place=limits.end, corner=_corner(pair, 1, wheel.form_radius), of_wheel=True)
+    return _End(place=limits.tip_end, corner=_corner(pair, 0, pair.flanks[0].tip_radius), of_wheel=False)
+
+
+def tip_separation(pair: GearPair, path: Array) -> Array:
+    """Gap [m], shape of ``path``, of an unmodified tooth pair: zero on its active path, growing outside.
+
+    ``path`` [m] counts from the pitch point to the pinion tip and follows the rotation of the pinion.
+    """
+    start, end = _before(pair), _after(pair)
+    gap = np.zeros_like(path)
+    before, after = path < start.place, path > end.place
+    gap[before], gap[after] = start.gap(path[before]), end.gap(path[after])
+    return gap
+
+
+def _corner(pair: GearPair, owner: int, radius: float) -> CornerMesh:
+    return CornerMesh(
+        corner_radius=radius,
+        base=pair.base_radii[owner],
+        reach=pair.rolling_radii[owner],
+        flank_base=pair.base_radii[1 - owner],
+        centre_distance=pair.centre_distance,
+    )
+
+
+@lru_cache(maxsize=4096)
+def path_reach(pair: GearPair, gap: float) -> tuple[float, float]:
+    """Path positions [m] before and beyond the active path where the tip separation has grown to ``gap`` [m].
+
+    At most two base pitches beyond each end, and short of the base tangent points. A rounded tip edge touches before
+    the corner where it begins, by a tenth of the gap for a radius of a ninth of the module: the path is longer by it.
+    """
+    if not gap > 0.0:
+        raise DynamicsInputError(
+            f"gap = {gap} m must be positive; give the largest approach that the teeth may see"
+        )
+    rounding = max(details.tip_edge.rounding for details in pair.details)
+    gap = gap * (1.0 + 3.0 * rounding / pair.normal_module)
+    path, steps = pair.path, np.linspace(0.0, 2.0 * pair.base_pitch, 801)[1:]
+    inner = path.tangent_1 * 0.999 - path.start
+    before = _before(pair).open_by(path.start + np.maximum(-steps, inner), gap)
+    outer = path.tangent_2 * 0.999 - path.end
+    after = _after(pair).open_by(path.end + np.minimum(steps, outer), gap)
+    return (
+        max(path.start - _first(steps, before), path.tangent_1 * 0.999),
+        min(path.end + _first(steps, after), path.tangent_2 * 0.999),
+    )
+
+
+def _first(steps: Array, enough: NDArray[np.bool_]) -> float:
+    places = np.flatnonzero(enough)
+    return float(steps[places[0]] if len(places) else steps[-1])

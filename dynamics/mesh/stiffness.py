@@ -10,7 +10,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
-from dynamics.gear.tooth_outline import ToothOutline, tooth_outline
+from dynamics.gear.root_arc import ToothOutline, tooth_outline
 
 Array = NDArray[np.float64]
 Body = Literal["half_plane", "ring"]

@@ -7,11 +7,20 @@ from dynamics.gear.pair import GearPair
 from dynamics.standards import (
     iso1328_1_2013,
     iso6336_1_2006,
-    iso6336_1_2006_stiffness,
     iso6336_3_2006,
 )
-from dynamics.standards.iso6336_1_2006 import DynamicFactor, GearLoad, RunIn, RunningIn, ToothDeviations
-from dynamics.standards.iso6336_1_2006_stiffness import MeshData, StiffnessChoices
+from dynamics.standards import (
+    iso6336_1_2006 as iso6336_1_2006_stiffness,
+)
+from dynamics.standards.iso6336_1_2006 import (
+    DynamicFactor,
+    GearLoad,
+    MeshData,
+    RunIn,
+    RunningIn,
+    StiffnessChoices,
+    ToothDeviations,
+)
 from dynamics.standards.iso6336_3_2006 import NOMINAL_LOAD, LoadFactors, RootStress, ToothLoad, ToothRoot
 
 MM = 1e3

@@ -6,10 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modal_form import ModalForm
-from dynamics.drivetrain.periodic_load import PeriodicLoad, harmonic_loads
-from dynamics.drivetrain.static_loop import PortModel
+from dynamics.drivetrain.linear_system import ModalForm
+from dynamics.drivetrain.parts import PeriodicLoad, harmonic_loads
+from dynamics.drivetrain.static_loop import LoopLoad, PortModel
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from dynamics.drivetrain.modal_form import ModalForm
+from dynamics.drivetrain.linear_system import ModalForm
 from dynamics.drivetrain.static_loop import PortModel, SlowRotation, solve_static
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.response.harmonic_balance import solve_periodic

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import TRACE, line_ratios
+from dynamics.drivetrain.static_loop import TRACE, LoopLoad, line_ratios
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw

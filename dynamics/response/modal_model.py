@@ -16,8 +16,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.modal_form import real_modes
+from dynamics.drivetrain.linear_system import LinearSystem, real_modes
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.kernels import FOUR
 from dynamics.mesh.law import MeshLaw

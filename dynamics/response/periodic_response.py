@@ -8,39 +8,124 @@ At the end motor torque times speed is what the drivetrain loses, known from mom
 twist is corrected in the same way until the first mesh carries the asked mean torque.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil, gcd, lcm, pi
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.periodic_load import within_period
+from dynamics.drivetrain.parts import within_period
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.held_speed import HeldSpeed
 from dynamics.response.initial_state import WoundLoop, pinion_ratios, wound_state
-from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings, march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF, ModalModel
-from dynamics.response.motion_kind import (
-    LONGEST,
-    REPEATS,
-    WATCHED,
-    Motion,
-    growth_per_period,
-    kind_of,
-    repeats_after,
-    swings,
-)
 from dynamics.response.time_march import Block, TimeMarch
 
-# Search for a steady state in time: mean speed and mean torque held by corrections between blocks of periods.
-
 Array = NDArray[np.float64]
+
+
+# What kind of steady motion a march shows: of the mesh period, of several of them, modulated or chaotic.
+#
+# A motion that repeats after n periods of its excitation is subharmonic of order n. One that never repeats is chaotic
+# if two marches from nearly the same state part exponentially (largest Lyapunov exponent by neighbouring trajectories:
+# Benettin et al., Meccanica 15 (1980) 9), else it has a second frequency of its own and is quasi-periodic. One that
+# swings so slowly that neighbouring periods look alike shows in the extremes of a longer time. Both are known of gear
+# pairs with backlash: Kahraman & Blankenship, J. Appl. Mech. 64 (1997) 217.
+
+Kind = Literal["periodic", "subharmonic", "quasi-periodic", "chaotic"]
+
+REPEATS = 0.02
+"""Difference of a period from an earlier one, over the peak-to-peak value, up to which it repeats [-]."""
+WATCHED = 0.2
+"""Time over which a motion that repeats is watched for a slow swing of its extremes [s]."""
+LONGEST = 12
+"""Periods after which a motion is sought to repeat at most."""
+CHAOTIC = 0.02
+"""Growth of a small difference per period from which a motion is chaotic [-]: e-fold in 50 periods."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """Kind of a motion.
+
+    periods : after which it repeats, 0 if it does not; growth : of a small difference per period [-], 0 if not asked
+    """
+
+    kind: Kind
+    periods: int
+    growth: float = 0.0
+
+    def __str__(self) -> str:
+        match self.kind:
+            case "periodic":
+                return "periodic"
+            case "subharmonic":
+                return f"subharmonic, repeats after {self.periods} periods"
+            case "quasi-periodic":
+                return (
+                    "quasi-periodic: it does not repeat, and a small difference does not grow "
+                    f"({self.growth:+.3f} per period)"
+                )
+        return f"chaotic: a small difference grows by exp({self.growth:.3f}) in every period"
+
+
+PERIODIC = Motion(kind="periodic", periods=1)
+
+
+def repeats_after(force: Array, steps: int, longest: int = LONGEST) -> int:
+    """Fewest periods after which a motion repeats; 0 if it does not.
+
+    force : (n_meshes, n) over whole periods of ``steps``, of which at least twice ``longest`` are compared if there
+        are that many
+    """
+    waves = force.reshape(len(force), -1, steps)
+    scale = np.maximum(np.ptp(force, axis=1), 1e-3 * np.abs(force).max(axis=1)) + 1e-300
+    for periods in range(1, min(longest, waves.shape[1] // 2) + 1):
+        # what creeps from one to the next shows between the first and the last of them
+        apart = [np.ptp(waves[:, first::periods], axis=1).max(axis=1) for first in range(periods)]
+        if np.all(np.max(apart, axis=0) <= REPEATS * scale):
+            return periods
+    return 0
+
+
+def swings(extremes: Array, periods: int, size: Array) -> bool:
+    """Whether a motion that seemed to repeat after ``periods`` swings over a longer time.
+
+    extremes : (n_meshes, n, 2) least and greatest force of n periods; size : (n_meshes,) peak-to-peak value
+    """
+    apart = [np.ptp(extremes[:, first::periods], axis=1).max(axis=1) for first in range(periods)]
+    scale = np.maximum(size, 1e-3 * np.abs(extremes).max(axis=(1, 2))) + 1e-300
+    return bool(np.any(np.max(apart, axis=0) > REPEATS * scale))
+
+
+def growth_per_period(distance: Array) -> float:
+    """Mean growth of the logarithm of a distance over its periods, up to where it is no longer small [-].
+
+    distance : (n,) between two motions in every period, relative to their size
+    """
+    small = np.flatnonzero(distance > 1e-2)
+    end = int(small[0]) if small.size else len(distance)
+    used = np.log(np.maximum(distance[:end], 1e-300))
+    if len(used) < 3:
+        return math.inf if len(distance) >= 3 else 0.0
+    place = np.arange(len(used))
+    return float(np.polyfit(place, used, 1)[0])
+
+
+def kind_of(periods: int, growth: float = 0.0) -> Motion:
+    """Motion that repeats after ``periods``, or does not repeat and lets small differences grow."""
+    if periods:
+        return Motion(kind="periodic" if periods == 1 else "subharmonic", periods=periods)
+    return Motion(kind="chaotic" if growth > CHAOTIC else "quasi-periodic", periods=0, growth=growth)
+
+
+# Search for a steady state in time: mean speed and mean torque held by corrections between blocks of periods.
 
 
 SMALL = 1e-9
@@ -500,3 +585,46 @@ def _restarted(start: PeriodicResponse, speed: float, ratios: Array, held: Drive
     speeds = start.end.speeds + (speed - start.speed) * ratios
     twist = start.twist if held is None else held.twist
     return DriveState(angles=start.end.angles, speeds=speeds, twist=twist)
+
+
+# Mean speed of a march that is held by corrections of motor torque and speed between its blocks.
+
+CORRECTED = 0.7
+"""Share of the drift in speed that a correction of the motor torque takes away."""
+
+
+class SpeedCorrection(NamedTuple):
+    """What is added after a block: motor torque [N m], and sudden changes of all speeds (n,) [rad/s]."""
+
+    drive_torque: float
+    kick: Array
+
+
+class HeldSpeed:
+    """Brings the mean speed of the first pinion to the one asked for and keeps it there.
+
+    ratios : (n,) speed of every freedom per speed of that pinion [-]
+    inertia : motor torque per angular acceleration of that pinion [kg m2]
+    """
+
+    def __init__(self, system: LinearSystem, laws: Sequence[MeshLaw], speed: float) -> None:
+        """speed : of the first pinion [rad/s]; raises DynamicsInputError as `pinion_ratios`."""
+        self.ratios = pinion_ratios(system, laws)
+        self.inertia = float(self.ratios @ system.inertia @ self.ratios) / float(
+            self.ratios[system.drive_dof]
+        )
+        self._speed = speed
+        self._before: float | None = None
+
+    def drift(self, mean: float, span: float) -> float:
+        """Acceleration [rad/s2] since the last correction, after a block of ``span`` [s] with a mean speed [rad/s]; 0
+        before the first."""
+        return 0.0 if self._before is None else (mean - self._before) / span
+
+    def correction(self, mean: float, span: float) -> SpeedCorrection:
+        """After a block, as of `drift`; it counts as made."""
+        drift = self.drift(mean, span)
+        # at the end of a block the rigid motion is half a block ahead of its mean
+        kick = self._speed - mean - 0.5 * drift * span
+        self._before = mean + kick
+        return SpeedCorrection(-CORRECTED * self.inertia * drift, kick * self.ratios)

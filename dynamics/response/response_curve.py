@@ -1,20 +1,78 @@
 """Steady states over speed: torques, factors and losses of one state, and the curve that they make."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import pi
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import PortModel
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.static_loop import LoopLoad, PortModel, port_model
 from dynamics.errors import DynamicsInputError
-from dynamics.response.harmonic_problem import HarmonicSolution
-from dynamics.response.harmonic_walk import LEAST_HARMONICS
-from dynamics.response.motion_kind import PERIODIC, Motion
-from dynamics.response.periodic_response import PeriodicResponse
-from dynamics.response.waveform import Waveform, waveform
+from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_balance import in_time, motion_of_mesh
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
+from dynamics.response.harmonic_walk import LEAST_HARMONICS, LEAST_SAMPLES, mesh_cells, quasi_static_start
+from dynamics.response.periodic_response import PERIODIC, Motion, Period, PeriodicResponse
 
 Array = NDArray[np.float64]
+
+
+# One period of a harmonic solution in time: motions, torques and losses of every mesh.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Waveform:
+    """One period in time at the mean speed of the drive freedom.
+
+    time : (n,) [s]; angle : (n_meshes, n) pinion angle; approach [m], omega_1, omega_2 [rad/s] : the same
+    shape torque : (n_meshes, n) torque transmitted at the pinion, r_b1 (front - back force) [N m]
+    touching : (n_meshes, n) False where no flank carries; friction_power, damping_power : (n_meshes,) mean
+    [W]
+    """
+
+    time: Array
+    angle: Array
+    approach: Array
+    omega_1: Array
+    omega_2: Array
+    torque: Array
+    touching: NDArray[np.bool_]
+    friction_power: Array
+    damping_power: Array
+
+
+def waveform(model: PortModel, solution: HarmonicSolution, samples: int | None = None) -> Waveform:
+    """Mesh motions and torques over one period of a harmonic solution.
+
+    model : the loop that was solved
+    samples : per mesh period; default those of the grid
+    """
+    grid, speed = solution.grid, solution.speed
+    count = grid.cells * (samples or grid.samples)
+    base = speed * 2.0 * np.pi / (grid.cell_angle * grid.cells)
+    time = np.arange(count, dtype=np.float64) * (2.0 * np.pi / base / count)
+    motion, rate = in_time(solution.ports, base, count)
+    shape = (model.n_meshes, count)
+    angle, approach, omega_1, omega_2, torque = (np.empty(shape) for _ in range(5))
+    touching = np.empty(shape, bool)
+    friction, damping = np.empty(model.n_meshes), np.empty(model.n_meshes)
+    for m, packed in enumerate(model.packed):
+        moving = motion_of_mesh(model, m, speed, speed * time, motion, rate)
+        angle[m], approach[m], omega_1[m], omega_2[m] = moving
+        reaction = evaluate_mesh(packed, *moving)
+        torque[m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
+        touching[m] = (reaction.force_front > 0.0) | (reaction.force_back > 0.0)
+        friction[m], damping[m] = reaction.friction_power.mean(), reaction.damping_power.mean()
+    return Waveform(
+        time=time, angle=angle, approach=approach, omega_1=omega_1, omega_2=omega_2,
+        torque=torque, touching=touching, friction_power=friction, damping_power=damping,
+    )  # fmt: skip
+
+
 Method = Literal["harmonic_balance", "time_integration", "quasi_static"]
 
 
@@ -181,3 +239,44 @@ def _statistics(wave: Waveform, cells: int, orders: int) -> _TorqueStatistics:
         harmonics=amplitudes,
         lift_off_share=1.0 - wave.touching.mean(axis=1),
     )
+
+
+# The steady state of a loop that turns so slowly that nothing of it oscillates: the windup balances the tooth forces.
+#
+# Unlike the start of the harmonic balance it runs over the whole period, so that teeth that differ are in it.
+
+HARMONICS = 24
+"""Harmonics of each tooth mesh that the windup keeps."""
+
+
+def quasi_static_point(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    speed: float,
+    load: LoopLoad,
+    drag_torques: Mapping[str, float] | None = None,
+    period: Period = "mesh",
+) -> CurvePoint:
+    """State at a mean speed of the pinion of the first mesh [rad/s] without inertia; loads that alternate left out.
+
+    Parameters are those of `dynamics.response.speed_sweep.periodic_response`.
+
+    Raises
+    ------
+    DynamicsNotConverged
+        No windup balances the tooth forces.
+    DynamicsInputError
+        The mesh frequencies have no common period.
+    """
+    model = port_model(system, laws)
+    problem = BalanceProblem(model=model, form=system.form, load=load)
+    cells, cell_angle = mesh_cells(model, period, load.control_mesh)
+    turned = cells * cell_angle
+    meshes = max(
+        law.teeth_1 * abs(float(model.ratios[pinion])) for law, pinion in zip(laws, model.pinions)
+    ) * turned / (2.0 * pi)  # fmt: skip
+    harmonics = round(HARMONICS * meshes)
+    samples = 1 << (round(LEAST_SAMPLES * meshes) - 1).bit_length()
+    grid = HarmonicGrid(cells=1, harmonics=harmonics, samples=samples, cell_angle=turned)
+    solution = quasi_static_start(problem, grid, speed / float(model.ratios[0]), drag_torques)
+    return replace(point_of(model, replace(solution, residual=0.0)), method="quasi_static")

@@ -10,16 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.graph import TwistRows
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.periodic_load import harmonic_loads, within_period
+from dynamics.drivetrain.parts import harmonic_loads, within_period
 from dynamics.drivetrain.static_loop import PortModel, line_ratios, port_model
-from dynamics.drivetrain.twist_rows import TwistRows
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_equations import input_torques
-from dynamics.response.harmonic_newton import mesh_inputs
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.waveform import Waveform
+from dynamics.response.harmonic_balance import input_torques, mesh_inputs
+from dynamics.response.response_curve import CurvePoint, Waveform
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

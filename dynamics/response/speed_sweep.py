@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed
-from dynamics.drivetrain.static_loop import port_model
+from dynamics.drivetrain.linear_system import DrivetrainOverSpeed
+from dynamics.drivetrain.static_loop import LoopLoad, port_model
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_branches import BranchSearch, HarmonicStates

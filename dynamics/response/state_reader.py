@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.twist_rows import TorqueSection, TwistRows
+from dynamics.drivetrain.graph import TorqueSection, TwistRows
 from dynamics.kernels import WIDTH
 from dynamics.response.modal_model import ModalModel
 from dynamics.response.propagator import Propagator

@@ -14,26 +14,29 @@ from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
 from dynamics.kernels.contact_table import V_BODY
+from dynamics.mesh.force import TableReaction, evaluate_table
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.table_force import TableReaction, evaluate_table
-from dynamics.response.band_change import fade, mean_shift
+from dynamics.response.march_inputs import Accounts as Accounts
+from dynamics.response.march_inputs import Block as Block
 from dynamics.response.march_inputs import (
     DragTables,
     DriveLoads,
     DriveState,
+    FollowingLoads,
     MarchSettings,
+    MarchTables,
     SpeedControl,
     TorqueControl,
+    drag_loads,
+    drag_places,
+    fade,
+    march_model,
+    mean_shift,
+    slow_loads,
 )
-from dynamics.response.march_loads import drag_loads, drag_places, march_model, slow_loads
-from dynamics.response.march_record import Accounts as Accounts
-from dynamics.response.march_record import Block as Block
-from dynamics.response.march_tables import MarchTables
 from dynamics.response.modal_model import ModalModel
-from dynamics.response.propagator import discretise, modal_state, scaled_state
+from dynamics.response.propagator import discretise, modal_state, parted_flanks, scaled_state, wrench_inputs
 from dynamics.response.state_reader import StateReader
-from dynamics.response.turning_loads import FollowingLoads
-from dynamics.response.wrench_modes import parted_flanks, wrench_inputs
 
 Array = NDArray[np.float64]
 

@@ -13,14 +13,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed
+from dynamics.drivetrain.linear_system import DrivetrainOverSpeed, LinearSystem
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.command import (
+    FLAT,
     Command,
     DragCurve,
+    LowPass,
     MotorDrive,
     Sampling,
     check_command,
@@ -29,12 +30,17 @@ from dynamics.response.command import (
 )
 from dynamics.response.envelopes import EnvelopeWindows, LiftOff, WindowStatistics
 from dynamics.response.initial_state import pinion_ratios, wound_state
-from dynamics.response.low_pass import FLAT, LowPass
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import (
+    DriveLoads,
+    DriveState,
+    FollowingLoads,
+    MarchSettings,
+    TorqueControl,
+    TurningLoads,
+    march_model,
+)
 from dynamics.response.state_reader import SectionEnvelopes, SectionStatistics, StateReader
 from dynamics.response.time_march import CREEP_SHARE, TimeMarch
-from dynamics.response.turning_loads import FollowingLoads, TurningLoads
 
 # Loads that alternate with a shaft at the start of a march, and the motion with which they are in balance there.
 #

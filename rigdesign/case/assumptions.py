@@ -3,11 +3,10 @@
 from collections.abc import Iterator, Mapping
 
 from rigdesign.base.units import show
-from rigdesign.case.assumption_record import AssumptionRecord
-from rigdesign.case.bath_film import BathFilm
-from rigdesign.case.enclosures import OILED, EnclosureInput
-from rigdesign.case.films import FAN_VELOCITY, ForcedAir
+from rigdesign.case.fields import AssumptionRecord
+from rigdesign.case.films import FAN_VELOCITY, BathFilm, ForcedAir
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.housing import OILED, EnclosureInput
 from rigdesign.case.rotation import has_hands, helix_hands
 from rigdesign.case.surface_conditions import Condition
 

@@ -15,9 +15,8 @@ from pydantic import Tag
 from dynamics.bearing.journal_feed import Feed
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.assumption_record import AssumptionRecord
-from rigdesign.case.bearing_place import BearingPlace, BearingSeats
 from rigdesign.case.fields import (
+    AssumptionRecord,
     Clearance,
     Force,
     Gap,
@@ -32,10 +31,10 @@ from rigdesign.case.fields import (
     Share,
     TorsionalDamping,
     Usual,
+    kind_from,
 )
-from rigdesign.case.kinds import kind_from
 from rigdesign.case.losses import LossFactor
-from rigdesign.case.rolling_bearing import RollingBearingInput
+from rigdesign.case.rolling_bearing import BearingPlace, BearingSeats, RollingBearingInput
 
 if TYPE_CHECKING:
     from dynamics.bearing.protocol import Bearing

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
-from rigdesign.case.jets import mesh_jet
+from rigdesign.case.gearbox import mesh_jet
 from rigdesign.case.oil_circuits import (
     CoolerInput,
     HeaterInput,
@@ -18,8 +18,18 @@ from rigdesign.case.oil_circuits import (
     TankInput,
 )
 from rigdesign.oil_circuit.circuit import NO_PIPE, Circuit, SupplyLine
-from rigdesign.oil_circuit.cooler import Arrangement, Coolant, Cooler, RatedPoint, TankCooler
-from rigdesign.oil_circuit.parts import Consumer, Heater, Pipe, Pump, Tank
+from rigdesign.oil_circuit.parts import (
+    Arrangement,
+    Consumer,
+    Coolant,
+    Cooler,
+    Heater,
+    Pipe,
+    Pump,
+    RatedPoint,
+    Tank,
+    TankCooler,
+)
 from rigdesign.properties.oil import Oil
 
 if TYPE_CHECKING:

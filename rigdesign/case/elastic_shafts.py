@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from rigdesign.case.assumption_record import AssumptionRecord
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import DrivetrainInput
+from rigdesign.case.fields import AssumptionRecord
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.case.rotation import has_hands, helix_hands

@@ -4,8 +4,19 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Tag, model_validator
 
-from rigdesign.case.fields import Force, Part, Share, Speed, Text, Time, Torque, Usual, Velocity, fault
-from rigdesign.case.kinds import kind_from
+from rigdesign.case.fields import (
+    Force,
+    Part,
+    Share,
+    Speed,
+    Text,
+    Time,
+    Torque,
+    Usual,
+    Velocity,
+    fault,
+    kind_from,
+)
 
 
 class EventLoadLimits(Part):

@@ -7,8 +7,7 @@ from pydantic import BaseModel, ValidationError
 
 from rigdesign.base.errors import WIDEST, Fault
 from rigdesign.base.units import describe
-from rigdesign.case.fields import FAULT
-from rigdesign.case.kinds import kind_key, kind_of, variant_of
+from rigdesign.case.fields import FAULT, kind_key, kind_of, variant_of
 from rigdesign.case.paths import Slot, nearest, slot_at
 from rigdesign.case.provenance import KEYS, MARKS, item_name
 

@@ -1,22 +1,148 @@
 """Film laws of the case: each class states its keys, what it needs of its surface, and the law it stands for.
 
 A new law of a still wall or of a shaft is a formula in `thermal.films`, its class here or in `shaft_films`, and its
-name in `PlateFilm` or `ShaftFilm`. A coefficient that the case gives: `rigdesign.case.given_film`.
+name in `PlateFilm` or `ShaftFilm`. A coefficient that the case gives: `rigdesign.case.surface_conditions`.
 """
 
+import re
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, get_args
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field, WithJsonSchema, model_validator
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.fields import Name, Part, Size, Text, Usual, Velocity
-from rigdesign.case.ribs import Ribs
-from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
-from thermal.films import convection
+from rigdesign.case.fields import Conductivity, Length, Name, Part, Size, Text, Usual, Velocity, fault
+from thermal.films import bath, convection
+from thermal.films.bath import wetted_wall_film
+from thermal.films.convection import RibArray, scaled
+from thermal.films.flank import FilmOil
 from thermal.films.law import FilmLaw
+
+# What a boundary condition may need of its surface: the case file's side, and the numbers of an operating point.
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceSite:
+    """A surface as far as the case file describes it; what the rules of a condition are checked against."""
+
+    surface: str
+    housing_height: float
+    """[m]"""
+    on_shaft: bool
+    """A surface of a shaft or gear."""
+    has_teeth: bool
+    """The rim of a gear."""
+    in_bearing: bool = False
+    """Bore or journal of a bearing."""
+    seal: str = ""
+    """Shaft of the seal the surface belongs to; empty for another surface."""
+    seal_gap: float | None = None
+    """Radial gap of that seal [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaftPlace:
+    """The shaft or gear a surface belongs to, at one operating point."""
+
+    speed: float
+    """[rad/s]"""
+    diameter: float
+    """Of the surface [m]."""
+    seal_gap: float
+    """Radial gap of the seals of the shaft [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BathPlace:
+    """The sump that a shaft or gear surface dips into, by its level at rest."""
+
+    oil: FilmOil
+    face_share: float
+    """Part of the circle of the surface below the level [-]."""
+    rim_share: float
+    """Part of its circumference below the level [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfacePlace:
+    """Numbers of one surface at one operating point, from which a condition makes its film law."""
+
+    height: float
+    """Of the housing [m]."""
+    wall_conductivity: float = 50.0
+    """Of the housing [W/(m K)]; grey iron where no housing is stated."""
+    shaft: ShaftPlace | None = None
+    """None for a surface that does not turn."""
+    bath: BathPlace | None = None
+    """None where no sump is or nothing turns."""
+    mist_density: float | None = None
+    """Density of the oil mist in the chamber [kg/m3]; None where the case gives none."""
+    wetted_share: float = 1.0
+    """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
+    source: str = "input of the case"
+    """Where the case has a given coefficient from."""
+
+    @property
+    def turning(self) -> ShaftPlace:
+        """The shaft; the rules of the case keep films of shafts off other surfaces."""
+        assert self.shaft is not None
+        return self.shaft
+
+    @property
+    def sump(self) -> BathPlace:
+        """The sump; the rules of the case keep baths out of boxes without one."""
+        assert self.bath is not None
+        return self.bath
+
+
+# Names of surfaces with stars.
+
+
+def matched(patterns: Iterable[str], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Surface -> what each ``*`` stood for, for every name that a pattern fits."""
+    known = tuple(names)
+    found = {}
+    for pattern in patterns:
+        expression = re.compile("(.+)".join(re.escape(part) for part in pattern.split("*")))
+        for name in known:
+            match = expression.fullmatch(name)
+            if match is not None:
+                found[name] = match.groups()
+    return found
+
+
+# Ribs on a surface of a housing, which its mesh does not have.
+
+
+class Ribs(Part):
+    """Straight ribs of constant thickness, side by side."""
+
+    height: Length
+    """From the wall to the tip."""
+    thickness: Length
+    """Mean thickness of a rib."""
+    pitch: Length
+    """From middle to middle of two ribs."""
+    conductivity: Conductivity | None = None
+    """Thermal conductivity of the ribs; that of the housing when left out."""
+
+    @model_validator(mode="after")
+    def _room_between(self) -> "Ribs":
+        if self.thickness >= self.pitch:
+            raise fault(
+                f"ribs of {show(self.thickness, 'length')} on a pitch of {show(self.pitch, 'length')} leave no gap",
+                "write a pitch above the thickness",
+            )
+        return self
+
+    def on(self, law: FilmLaw, place: SurfacePlace) -> FilmLaw:
+        """The film of wall and ribs, referred to the wall without them."""
+        array = RibArray(height=self.height, thickness=self.thickness, pitch=self.pitch)
+        return convection.ribbed(law, array, self.conductivity or place.wall_conductivity)
+
 
 OilFluid = Literal[
     "gear_oil_inlet",
@@ -227,3 +353,143 @@ class ForcedAir(HousingHeightFilm):
 
 PlateFilm = NiemannWinter | RecknagelPlate | IsoTr14179 | VerticalPlate | HorizontalPlate | ForcedAir
 """Film between a still wall or plate and room air."""
+
+
+# The film on inner walls of a box with a sump.
+
+
+class BathFilm(PublishedFilm):
+    """Inner wall that splashed oil wets or that stands in the sump: 200 W/(m2 K) by ISO/TR 14179-2, 100 to 300 usual.
+
+    One mean of wetted and drained walls at any speed; a wall that no oil reaches has far less (``film_factor``).
+    """
+
+    law: Literal["bath"]
+    """Selects the film of inner walls wetted by a sump."""
+    fluid: OilFluid = "gear_oil_mean"
+    """Oil that wets the wall."""
+
+    @property
+    def wetted_by(self) -> str:
+        """The oil it names."""
+        return self.fluid
+
+    @property
+    def usual_film(self) -> bool:
+        """Whether the case says nothing of the size of the film."""
+        return "film_factor" not in self.model_fields_set
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The constant of the standard, less what does not wet the wall."""
+        return scaled(wetted_wall_film(), place.wetted_share)
+
+
+# Film laws of the case that take diameter and speed from a shaft or gear.
+
+Medium = Literal["air", "mist", "bath"]
+"""What a surface of the chamber turns in: dry air at the film temperature, the mist whose density
+``losses.chamber_density`` gives for windage, or the sump up to its level and air above."""
+
+
+class TurningFilm(PublishedFilm):
+    """A film that takes diameter and speed from a shaft or gear."""
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """It needs a surface of a shaft or gear."""
+        if not site.on_shaft:
+            yield Fault(
+                "surfaces", f'"{site.surface}"',
+                f"is no surface of a shaft or gear: {self.law} takes its diameter from there",
+                "take it out, or choose a film for still walls",
+            )  # fmt: skip
+
+
+class HorizontalCylinder(TurningFilm):
+    """Shaft at rest in still room air (Churchill and Chu); diameter from the shaft."""
+
+    law: Literal["horizontal_cylinder"]
+    """Selects the film of a shaft at rest."""
+
+    @property
+    def wetted_by(self) -> str:
+        """Room air."""
+        return "ambient"
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        return convection.horizontal_cylinder_churchill_chu(place.turning.diameter, place.turning.speed)
+
+
+class RotatingCylinder(TurningFilm):
+    """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
+
+    law: Literal["rotating_cylinder"]
+    """Selects the film of a rotating shaft."""
+    correlation: Literal["becker", "jungnickel", "kays_bjorklund", "etemad", "dropkin_carmi"] = "becker"
+    """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to zero speed;
+    jungnickel: constants of air near room temperature."""
+    fluid: Fluid
+    """Fluid whose temperature counts: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
+    ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
+    medium: Medium = "air"
+    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``); bath: oil up to the level of
+    the sump (Eisenberg, Tobias and Wilke) and air above."""
+
+    @property
+    def wetted_by(self) -> str:
+        """The fluid it names."""
+        return self.fluid
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published, in the medium of the entry."""
+        shaft = place.turning
+        if self.medium == "bath":
+            sump = place.sump
+            wet = bath.dipped_shaft_film(shaft.speed, shaft.diameter, sump.rim_share, sump.oil)
+            dry = convection.rotating_cylinder_becker(shaft.speed, shaft.diameter)
+            return bath.above_bath(wet, dry, sump.rim_share)
+        if self.correlation == "jungnickel":
+            return convection.rotating_cylinder_jungnickel(shaft.speed, shaft.diameter)
+        laws = {
+            "becker": convection.rotating_cylinder_becker,
+            "kays_bjorklund": convection.rotating_cylinder_kays_bjorklund,
+            "etemad": convection.rotating_cylinder_etemad,
+            "dropkin_carmi": convection.rotating_cylinder_dropkin_carmi,
+        }
+        density = place.mist_density if self.medium == "mist" else None
+        return laws[self.correlation](shaft.speed, shaft.diameter, density)
+
+
+class RotatingDisc(TurningFilm):
+    """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
+
+    law: Literal["rotating_disc"]
+    """Selects the film of a rotating end or gear face."""
+    correlation: Literal["kreith", "jungnickel"] = "kreith"
+    """kreith: air at the film temperature; jungnickel: constants of air near room temperature."""
+    fluid: Fluid
+    """Fluid whose temperature counts: ``ambient``, ``gear_oil_`` or ``bearing_oil_`` with ``inlet``,
+    ``mean`` or ``outlet``, or the name of a volume or stream of the housing."""
+    medium: Medium = "air"
+    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``); bath: boundary layer of a
+    disc in oil up to the level of the sump (Levich) and air above."""
+
+    @property
+    def wetted_by(self) -> str:
+        """The fluid it names."""
+        return self.fluid
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published, in the medium of the entry."""
+        speed, radius = place.turning.speed, 0.5 * place.turning.diameter
+        if self.medium == "bath":
+            sump = place.sump
+            wet = bath.dipped_face_film(speed, radius, sump.face_share, sump.oil)
+            return bath.above_bath(wet, convection.rotating_disc(speed, radius), sump.face_share)
+        if self.correlation == "jungnickel":
+            return convection.rotating_disc_jungnickel(speed, radius)
+        return convection.rotating_disc(speed, radius, place.mist_density if self.medium == "mist" else None)
+
+
+ShaftFilm = HorizontalCylinder | RotatingCylinder | RotatingDisc
+"""Film that takes its diameter from a shaft or gear."""

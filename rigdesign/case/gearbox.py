@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from dynamics.losses.oil_jet import JET_ANGLES, OilJet
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Clearance, Name, Part, Title, Torque, Usual
+from rigdesign.case.fields import Clearance, Name, Part, Share, Title, Torque, Usual, fault
 from rigdesign.case.gears import Gear, GearMesh
-from rigdesign.case.heat_split import HeatSplit
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
 from rigdesign.case.lubrication import (
@@ -21,6 +21,61 @@ from rigdesign.case.lubrication import (
     OilState,
     SplashOil,
 )
+from rigdesign.properties.oil import Oil
+
+# How each power loss of a gearbox divides between its bodies and its oil.
+
+MeshRule = Literal["assumed", "flank_film"]
+
+
+class HeatSplit(Part):
+    """Share of each loss that enters solid bodies; the rest goes into the oil at once."""
+
+    mesh: MeshRule | None = None
+    """assumed: ``mesh_into_gears`` of the friction heat enters the gears; flank_film: all of it enters the flanks,
+    and the films on the rims (law ``flank_film``) decide how much heat goes into the oil. When left out:
+    flank_film, or assumed where the case gives a share."""
+    mesh_into_gears: Annotated[Share, Usual(0.1, 1.0)] | None = None
+    """Share of the friction heat of the meshes that enters the gears, for ``mesh = assumed``."""
+    mesh_pinion_share: Annotated[Share, Usual(0.1, 0.9)] | None = None
+    """Of the friction heat, the part that enters the pinion; by the thermal contact of the flanks when left out."""
+    windage_into_gears: Annotated[Share, Usual(0.02, 0.9)]
+    """Share of the windage loss that heats the gear bodies."""
+    seal_into_shaft: Annotated[Share, Usual(0.03, 1.0)]
+    """Share of the seal losses that enters the shaft at the seal."""
+    seal_into_housing: Annotated[Share, Usual(0.03, 1.0)]
+    """Share of the seal losses that enters the bore of the seal."""
+
+    @property
+    def rule(self) -> MeshRule:
+        """How the friction heat of the meshes divides: as stated, by a given share, else by the films on the flanks."""
+        if self.mesh is not None:
+            return self.mesh
+        return "flank_film" if self.mesh_into_gears is None else "assumed"
+
+    @model_validator(mode="after")
+    def _share_given(self) -> "HeatSplit":
+        if self.mesh == "assumed" and self.mesh_into_gears is None:
+            raise fault(
+                "mesh_into_gears is missing: the split of the mesh heat is assumed",
+                'write a share, or remove mesh and write law = "flank_film" at the rims of the gears',
+            )
+        if self.mesh == "flank_film" and self.mesh_into_gears is not None:
+            raise fault(
+                f"mesh_into_gears = {self.mesh_into_gears:g} is not used: the film on the flanks decides",
+                'remove it, or write mesh = "assumed"',
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _seal_heat_fits(self) -> "HeatSplit":
+        total = self.seal_into_shaft + self.seal_into_housing
+        if total > 1.0:
+            raise fault(
+                f"seal_into_shaft and seal_into_housing add up to {total:g}, more than the whole",
+                "write shares whose sum is at most 1; the rest goes into the oil",
+            )
+        return self
 
 
 class Seals(Part):
@@ -150,3 +205,26 @@ class Gearbox(Part):
     def body_width(self, gear: str) -> float:
         """Face width of a gear with both its halves [m]."""
         return self.halves(gear) * self.gears[gear].face_width
+
+
+# Oil jets of a gearbox as they reach the meshes: what is fed less leaks, through the nozzles that are open.
+
+
+def injected_flow(box: Gearbox) -> float:
+    """Flow of the jets of one mesh [m3/s]: what is fed less what goes round the meshes; zero without jets."""
+    return 0.0 if box.jets is None else (1.0 - box.oil_paths.bypass) * box.jets.flow
+
+
+def jet_velocity(box: Gearbox, jets: JetOil) -> float:
+    """Velocity of the oil in the jets [m/s]: that of the case with its flow through all of them."""
+    return (1.0 - box.oil_paths.bypass) / (1.0 - jets.blocked_jets) * jets.jet_velocity
+
+
+def mesh_jet(box: Gearbox, jets: JetOil, oil: Oil) -> OilJet:
+    """Jet of one mesh, at the inlet temperature of the case; ``oil`` in its state in the gearbox."""
+    return OilJet(
+        flow=injected_flow(box),
+        density=oil.density(jets.inlet_temperature),
+        speed=jet_velocity(box, jets),
+        angle=JET_ANGLES[jets.jet_direction],
+    )

@@ -16,20 +16,231 @@ from rigdesign.case.fields import (
     Inertia,
     Length,
     LinearDamping,
+    LinearStiffness,
     Name,
+    Offset,
     Part,
     Play,
     Positive,
     PressureAngle,
+    Quantity,
+    Resistance,
     Share,
     Size,
     Small,
+    Stress,
     Text,
+    TorsionalDamping,
+    TorsionalStiffness,
     Usual,
+    Voltage,
     fault,
 )
-from rigdesign.case.gear_seats import Spline
-from rigdesign.case.strain_gauges import StrainGaugeInput
+
+# Strain gauges in the root of a tooth: place, grid, bridge; `rigdesign.rig.strain_gauges` puts them on the gear.
+
+ArmStrain = Annotated[float, Field(ge=-1.0, le=1.0)]
+ResponseTime = Annotated[float, Quantity("time", at_least="0 s", at_most="0.1 s", example="0.02 ms")]
+
+
+class StrainBridge(Part):
+    """Wheatstone bridge of one strain gauge."""
+
+    kind: Literal["quarter", "half_passive", "half", "full"]
+    """quarter: one gauge, completed in the amplifier; half_passive: one gauge with a passive resistor next to it,
+    completed in the amplifier; half: two gauges; full: four."""
+    supply_voltage: Annotated[Voltage, Usual("0.3 V", "15 V")]
+    """Voltage that feeds the bridge, at the amplifier."""
+    arms: tuple[ArmStrain, ...] | None = None
+    """Strain of each active arm over that of the gauge, e.g. 1 and -0.3 for a second gauge across; 1 and -1, or twice
+    that, when left out: a bent bar."""
+    completion_resistance: Resistance | None = None
+    """Of the passive resistor; that of the gauge when left out."""
+    wires: int | None = None
+    """Wires to the amplifier, each a channel of a slip ring; 3, and 4 for a full bridge, when left out."""
+    lead_resistance: Resistance = 0.0
+    """Of one wire with its slip-ring contact."""
+
+
+class StrainGaugeInput(Part):
+    """One strain gauge in the root of a tooth; its grid lies along the fillet, across the tooth trace.
+
+    Its place along the fillet is one of ``fillet_position``, ``tangent_angle`` and ``root_diameter``; the 30 deg
+    tangent of ISO 6336-3 when all are left out.
+    """
+
+    tooth: int = Field(default=0, ge=0, le=1999)
+    """Number of its tooth, counted from 0 as those of ``flank``."""
+    fillet: Literal["front", "back"] = "front"
+    """Fillet under the front flank, or under the back flank; that of the front flank is pulled where the mesh runs on
+    its front flanks."""
+    face_position: Annotated[Offset, Usual(0.0, 0.5, "face width")]
+    """Middle of the grid over the face width: from mid-face, positive to the rear end, the one that comes into mesh
+    last."""
+    fillet_position: Offset | None = None
+    """Distance of the middle of the grid along the fillet from its 30 deg tangent, positive to the tip."""
+    tangent_angle: Angle | None = None
+    """Angle between the fillet and the tooth axis at the middle of the grid, in the normal section."""
+    root_diameter: Size | None = None
+    """Diameter at the middle of the grid."""
+    misalignment: Angle = 0.0
+    """Direction of the grid against that of the fillet."""
+    grid_length: Annotated[Length, Usual("0.2 mm", "5 mm")]
+    """Length of the measuring grid, along its wires."""
+    grid_width: Annotated[Length, Usual("0.2 mm", "5 mm")]
+    """Width of the measuring grid."""
+    gauge_factor: Annotated[Positive, Usual(1.5, 4.0)] = 2.0
+    """k: relative change of resistance over strain."""
+    resistance: Annotated[Resistance, Usual("50 ohm", "1100 ohm")] = 120.0
+    """Resistance of the gauge."""
+    transverse_sensitivity: float = Field(default=0.0, ge=-0.2, le=0.2)
+    """Sensitivity across over that along the grid."""
+    stress_state: Literal["uniaxial", "plane_strain"] = "uniaxial"
+    """How strain becomes stress: uniaxial: E eps, as at the ends of the face; plane_strain: E eps / (1 - nu^2), a wide
+    tooth at mid-face."""
+    response_time: ResponseTime = 0.0
+    """Time constant of slip ring, amplifier and logger taken as a first-order low-pass: 1 / (2 pi cut-off frequency);
+    0.02 ms pass 8 kHz. What a recording is compared with has it."""
+    bridge: StrainBridge
+    """Circuit that measures its resistance."""
+
+    @model_validator(mode="after")
+    def _one_place(self) -> "StrainGaugeInput":
+        stated = [key for key in PLACES if getattr(self, key) is not None]
+        if len(stated) > 1:
+            raise fault(
+                f"{' and '.join(stated)} are given", "keep one of them: each is the place along the fillet"
+            )
+        return self
+
+
+PLACES = ("fillet_position", "tangent_angle", "root_diameter")
+"""Keys of the place along the fillet."""
+
+
+# Seats of gears on their shafts: splines with their stiffness and damping, and the toothing that limits their load.
+
+SplineAngle = Annotated[float, Quantity("angle", at_least="15 deg", at_most="50 deg")]
+
+
+WORKING_DEPTH = 0.9
+"""Of a spline to DIN 5480, in modules: half of tip diameter of the shaft less tip diameter of the hub."""
+
+
+class SplineToothing(Part):
+    """Toothing of a spline and its strength; each stress is checked where its allowable value is stated."""
+
+    teeth: Count = Field(ge=4, le=500)
+    """Number of teeth."""
+    module: Annotated[Length, Usual(0.005, 0.2, "shaft diameter")] | None = None
+    """Module; or ``pitch_diameter``."""
+    pitch_diameter: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")] | None = None
+    """Pitch diameter, teeth times module."""
+    pressure_angle: SplineAngle = radians(30.0)
+    """Pressure angle of the flanks; 30 deg by DIN 5480."""
+    length: Annotated[Length, Usual(0.1, 4.0, "shaft diameter")]
+    """Axial length of contact."""
+    working_depth: Length | None = None
+    """Radial height over which the flanks touch; 0.9 modules when left out, as of a spline to DIN 5480."""
+    load_distribution_factor: float = Field(default=1.0, ge=1.0, le=5.0)
+    """K_m of Dudley: load distribution over length and teeth with tilted axes, 1 to 3."""
+    shaft_root_diameter: Length | None = None
+    """Root circle of the teeth of the shaft; without it the shear of the shaft under them is not checked."""
+    hub_root_diameter: Length | None = None
+    """Root circle of the teeth of the hub, its largest bore; without it the tension of the hub is not checked."""
+    hub_diameter: Length | None = None
+    """Outside diameter of the hub; the root circle of the gear when left out."""
+    allowable_pressure: Annotated[Stress, Usual("5 MPa", "600 MPa")] | None = None
+    """Allowable flank pressure under the dynamic torque, life factor included. Dudley: 35 MPa for straight teeth of
+    case-hardened steel that slide, nine times as much where they are fixed."""
+    allowable_shear: Annotated[Stress, Usual("40 MPa", "700 MPa")] | None = None
+    """Allowable shear stress of teeth and shaft. Dudley: 345 MPa for case-hardened steel, times its life
+    factor, 0.5 to 0.2 for 1e5 to 1e7 cycles of the torque."""
+    allowable_tension: Annotated[Stress, Usual("40 MPa", "1000 MPa")] | None = None
+    """Allowable tensile stress of the hub at speed."""
+
+    @model_validator(mode="after")
+    def _geometry(self) -> "SplineToothing":
+        if (self.module is None) == (self.pitch_diameter is None):
+            given = "neither" if self.module is None else "both"
+            raise fault(
+                f"{given} of module and pitch_diameter is given",
+                'write one of the two, e.g. module = "2 mm"',
+            )
+        inner, outer = self.hub_root_diameter, self.hub_diameter
+        if outer is not None and (inner is None or inner >= outer):
+            raise fault(
+                f"hub_diameter = {show(outer, 'length')} needs a hub_root_diameter inside of it",
+                "write the root circle of the teeth of the hub, or leave hub_diameter out",
+            )
+        return self
+
+    @property
+    def reference_diameter(self) -> float:
+        """Pitch diameter [m]."""
+        return self.teeth * (self.module or 0.0) if self.pitch_diameter is None else self.pitch_diameter
+
+    @property
+    def contact_height(self) -> float:
+        """Radial height over which the flanks touch [m]."""
+        if self.working_depth is not None:
+            return self.working_depth
+        return WORKING_DEPTH * self.reference_diameter / self.teeth
+
+
+class Spline(Part):
+    """Spline-hub connection of a gear with its shaft."""
+
+    torsional_stiffness: Annotated[TorsionalStiffness, Usual(1.6, 70.0, "stiffness of the shaft")]
+    """Torque per angle of twist between gear and shaft."""
+    torsional_damping: TorsionalDamping = 0.0
+    """Torque per speed of twist between gear and shaft."""
+    loss_factor: Share = 0.0
+    """Friction between the teeth, instead of ``torsional_damping``: a cycle of twist dissipates pi times this factor
+    times ``torsional_stiffness`` times the square of its amplitude, at any frequency. The loop has a viscous damper
+    with the same loss at the mesh frequency of the gear at every speed."""
+    radial_stiffness: LinearStiffness | None = None
+    """Force per radial offset between gear and shaft, of shafts that bend; with ``axial_stiffness`` and
+    ``angular_stiffness``, or none of the three for a gear that only twists against its shaft."""
+    axial_stiffness: LinearStiffness | None = None
+    """Force per axial travel between gear and shaft."""
+    angular_stiffness: TorsionalStiffness | None = None
+    """Moment per tilt between gear and shaft, about a diameter."""
+    lateral_damping_time: float = Field(default=0.0, ge=0.0, le=1e-3)
+    """Damping over stiffness of these three [s]."""
+    toothing: SplineToothing | None = None
+    """Toothing of the spline, for the checks of its strength."""
+
+    @model_validator(mode="after")
+    def _one_damper(self) -> "Spline":
+        if self.torsional_damping and self.loss_factor:
+            raise fault(
+                f"torsional_damping = {show(self.torsional_damping, 'torsional_damping')} and loss_factor = "
+                f"{self.loss_factor:g} exclude each other",
+                "write one of the two",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _whole_seat(self) -> "Spline":
+        stated = {
+            "radial_stiffness": self.radial_stiffness,
+            "axial_stiffness": self.axial_stiffness,
+            "angular_stiffness": self.angular_stiffness,
+        }
+        missing = [key for key, value in stated.items() if value is None]
+        if missing and len(missing) < len(stated):
+            raise fault(
+                f"{' and '.join(missing)} of the seat missing: an elastic seat needs all three",
+                "write all three, or none for a seat that is elastic in torsion only",
+            )
+        if self.lateral_damping_time and missing:
+            raise fault(
+                f"lateral_damping_time = {self.lateral_damping_time:g} is given without stiffness",
+                "write radial_stiffness, axial_stiffness and angular_stiffness, or leave it out",
+            )
+        return self
+
 
 Modification = Annotated[Small, Usual(4e-4, 0.02, "module")]
 ReliefExponent = Annotated[float, Field(ge=0.5, le=6.0)]

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Mapping
 
 from rigdesign.case.bearings import BearingInput
+from rigdesign.case.films import matched
 from rigdesign.case.gearbox import Gearbox, Seals
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
-from rigdesign.case.matching import matched
 from thermal.housing.geometry import ClampingField, HousingGeometry
 from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
 
@@ -137,3 +137,19 @@ def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[
         if on_shaft
         else None,
     )
+
+
+# Which surfaces of a housing a fluid wets.
+
+
+def wetted_surfaces(housing: Housing, names: Iterable[str], fluid: str) -> tuple[str, ...]:
+    """Surfaces with a film to ``fluid`` in the order of ``boundary``, among surfaces with ``names``."""
+    rows = conditions_of(housing, names)
+    return tuple(surface for entry, surface, _ in rows if housing.boundary[entry].wetted_by == fluid)
+
+
+def stream_surfaces(housing: Housing, names: Iterable[str], stream: str) -> tuple[str, ...]:
+    """Surfaces of a stream of the housing in the order in which it passes them."""
+    known = tuple(names)
+    order = housing.streams[stream].surfaces
+    return tuple(matched(order, known)) if order else wetted_surfaces(housing, known, stream)

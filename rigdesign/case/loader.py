@@ -10,11 +10,9 @@ from pydantic import ValidationError
 
 from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
-from rigdesign.case.defaults.consequences import causes_first
-from rigdesign.case.defaults.fill import filled_as_a_whole, with_defaults
+from rigdesign.case.defaults.fill import causes_first, filled_as_a_whole, with_defaults
 from rigdesign.case.defaults.housings import missing_films
-from rigdesign.case.defaults.raw_tree import RawTree, unmarked
-from rigdesign.case.defaults.rule import follows
+from rigdesign.case.defaults.rule import RawTree, follows, unmarked
 from rigdesign.case.faults import MISSING, faults_of, unknown, written
 from rigdesign.case.model import Case, Origin
 from rigdesign.case.paths import Slot, known_paths, nearest_paths, places, slot_at

@@ -20,8 +20,8 @@ from rigdesign.case.fields import (
     Velocity,
     Volume,
     fault,
+    kind_from,
 )
-from rigdesign.case.kinds import kind_from
 
 
 class JetOil(Part):

@@ -16,17 +16,14 @@ from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Text, Title
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
-from rigdesign.case.numerics import Numerics
 from rigdesign.case.oil_circuits import OilCircuit, with_setpoints
 from rigdesign.case.paths import places
-from rigdesign.case.provenance import Mark, take_off
+from rigdesign.case.provenance import InputRow, Mark, input_rows, take_off
 from rigdesign.case.rig_heat import RigHeatInput
-from rigdesign.case.schedule import ScheduleInput, TestPlan
+from rigdesign.case.schedule import Numerics, ScheduleInput, TestPlan, Transient
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
-from rigdesign.case.transient import Transient
 
 # Who answers for a report: nothing of it enters a result.
 

@@ -15,8 +15,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel
 
-from rigdesign.case.fields import Quantity, Usual
-from rigdesign.case.kinds import of_kind
+from rigdesign.case.fields import Quantity, Usual, of_kind
 from rigdesign.case.provenance import item_name
 
 

@@ -9,8 +9,8 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from rigdesign.base.units import show
-from rigdesign.case.assumption_record import AssumptionRecord
 from rigdesign.case.fields import (
+    AssumptionRecord,
     Conductance,
     Gap,
     Name,

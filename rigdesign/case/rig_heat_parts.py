@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.rig_heat import CouplingRotorInput, MachineInput, RoomInput
-from rigdesign.rig_heat.component import HeatSplit
-from rigdesign.rig_heat.coupling_windage import CouplingRotor
-from rigdesign.rig_heat.drive_train import Machine
-from rigdesign.rig_heat.machine_loss import EfficiencyLoss, LossMap, MachineLoss
+from rigdesign.rig_heat.component import (
+    CouplingRotor,
+    EfficiencyLoss,
+    HeatSplit,
+    LossMap,
+    Machine,
+    MachineLoss,
+)
 from rigdesign.rig_heat.room import Room
 
 if TYPE_CHECKING:

@@ -1,6 +1,7 @@
 """Rolling bearing as the case states it: by designation or by the numbers of its catalogue, with fits and clearance."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -8,10 +9,9 @@ from pydantic import Field, field_validator, model_validator
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.assumption_record import AssumptionRecord
-from rigdesign.case.bearing_place import BearingPlace, BearingSeats
 from rigdesign.case.fields import (
     Angle,
+    AssumptionRecord,
     Deviation,
     Force,
     Gap,
@@ -36,6 +36,46 @@ from rigdesign.case.losses import LossFactor
 if TYPE_CHECKING:
     from dynamics.bearing.protocol import Bearing
     from dynamics.bearing.rolling_catalogue import CatalogueBearing
+
+# What surrounds a bearing, for the kinds of bearings of the case. SI units.
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingPlace:
+    """Place of a bearing at one iteration.
+
+    clearance : on the diameter as it runs [m]; of a rolling bearing negative as preload
+    lubrication : how its oil comes
+    sump_level : of the oil at rest above the shaft axes [m]; None without a sump
+    seat_factors : on the conductances to the seats on the shaft and in the housing
+    """
+
+    clearance: float
+    lubrication: Literal["fed", "splash", "grease"]
+    sump_level: float | None = None
+    seat_factors: tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingSeats:
+    """Warm seats of a bearing.
+
+    bore_less_journal : thermal expansion of the diameter of the bore less that of the journal [m]
+    spin : expansion of the journal diameter by rotation [m]
+    shaft, bearing, housing : temperatures of the seats and of the bearing between them [K]
+    shaft_expansion, housing_expansion : coefficients of linear expansion [1/K]
+    shaft_bore : of a hollow shaft [m]
+    """
+
+    bore_less_journal: float
+    spin: float
+    shaft: float
+    bearing: float
+    housing: float
+    shaft_expansion: float
+    housing_expansion: float
+    shaft_bore: float = 0.0
+
 
 # Numbers of a rolling bearing from the catalogue: those of a tabled designation, or those that a case writes.
 
@@ -293,8 +333,7 @@ class RollingBearingInput(Part):
 
     def as_it_runs(self, place: BearingPlace) -> "Bearing":
         """The bearing for the solver at its place; BearingError where that is impossible."""
-        from dynamics.bearing.rolling import RollingBearing
-        from dynamics.bearing.rolling_heat import SeatConductances, housing_path, shaft_path
+        from dynamics.bearing.rolling import RollingBearing, SeatConductances, housing_path, shaft_path
 
         level = self._oil_level(place)
         bath = {"fed": "oil_jet", "grease": "grease", "splash": "oil_bath" if level else "oil_spot"}
@@ -319,13 +358,13 @@ class RollingBearingInput(Part):
 
     def running_clearance(self, seats: BearingSeats) -> float:
         """Radial internal clearance as it runs, on the diameter [m]; negative is preload."""
+        from dynamics.bearing.rolling import housing_path, shaft_path
         from dynamics.bearing.rolling_clearance import (
             Fit,
             RingTemperatures,
             SeatMaterial,
             operating_clearance,
         )
-        from dynamics.bearing.rolling_heat import housing_path, shaft_path
 
         on_shaft, in_housing = self.interferences
         data, node = self.data, seats.bearing

@@ -1,11 +1,29 @@
 """What the rig is asked to do: stages of speed and torque, and the planned test."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Count, Hours, Name, Part, Share, Speed, Text, Time, Torque, Usual, fault
+from rigdesign.case.fields import (
+    Count,
+    Frequency,
+    HeatTransferCoefficient,
+    Hours,
+    Length,
+    Name,
+    Part,
+    Positive,
+    Share,
+    Speed,
+    TemperatureDifference,
+    Text,
+    Time,
+    Torque,
+    Usual,
+    fault,
+)
 
 StageKind = Literal["load", "unload", "run_up", "run_down", "dwell"]
 
@@ -107,3 +125,85 @@ class TestPlan(Part):
     """Time planned at test speed and torque; the cycles wanted are ``limits.specimen.load_cycles_minimum``."""
     specimens: Count = 1
     """How many test gears one gear of the rig has to outlive."""
+
+
+# How finely and how long to compute.
+
+
+class Numerics(Part):
+    """Tolerances of the coupling loop and sizes of the models; the fidelity scales the sizes."""
+
+    temperature_tolerance: Annotated[TemperatureDifference, Usual("0.004 K", "0.3 K")]
+    """Most change of any temperature in the last iteration of the coupling loop."""
+    growth_tolerance: Annotated[Length, Usual("0.04 um", "4 um")]
+    """Most change of any thermal expansion in the last iteration of the coupling loop."""
+    torque_tolerance: Annotated[Positive, Usual(5e-5, 5e-3)]
+    """Most relative change of any torque in the last iteration of the coupling loop."""
+    coupling_passes: Count = 30
+    """Most iterations of the coupling loop."""
+    sample_rate: Frequency
+    """Rate at which the time run is stored; it integrates ``internal_steps`` times as fast."""
+    internal_steps: Annotated[int, Field(ge=4, le=256)] = 4
+    """Integration steps per sample."""
+    slices_spur: Annotated[int, Field(ge=1, le=101)] | None = None
+    """Slices over the face of spur gears; by what their faces need when left out: 1 if flat, else 8."""
+    slices_helical: Annotated[int, Field(ge=3, le=101)] | None = None
+    """Slices over the face of helical gears; when left out 8 a base pitch of overlap, at least 8."""
+    shaft_element_length: Length | None = None
+    """Longest element of the shafts; when left out a sixteenth of the torsional wave of the fourth mesh harmonic at
+    the highest speed, at most of 20 kHz."""
+    curve_speed_start: Annotated[Speed, Usual(0.02, 1.0, "test speed")]
+    """First speed of the dynamic factor curve."""
+    curve_speed_end: Annotated[Speed, Usual(0.3, 3.0, "test speed")]
+    """Last speed of the dynamic factor curve."""
+    curve_speeds: Annotated[int, Field(ge=2, le=5000), Usual(8, 900)] = 200
+    """Speeds between both, evenly spaced; resonances get more."""
+    root_stress_speeds: tuple[Speed, ...] = ()
+    """Speeds at which root stress and strain rate are shown over the rolling angle, in addition to the held stages."""
+    response_period: Literal["mesh", "revolution", "hunting_cycle"] = "mesh"
+    """What the periodic response repeats after. When left out: a mesh; in a loop whose meshes pass teeth at different
+    rates a revolution of the pinion of ``torque_at``, or the hunting cycle where that ends on part of a tooth."""
+
+
+# What `check --transient` adds to the schedule: warm-up, dwell, stops, and where temperatures are kept.
+
+Event = Literal["cold_start", "emergency_stop", "oil_loss"]
+HOUR = 3600.0
+
+
+class TransientProbe(Part):
+    """A place whose temperature is kept over time."""
+
+    gearbox: Name
+    """Gearbox in which the place is."""
+    place: Text
+    """Surface or body of its housing, named as the thermal model names them."""
+    quantity: Literal["mean", "max", "min"] = "mean"
+    """Mean, highest or lowest temperature of the place."""
+
+
+class Transient(Part):
+    """Thermal history of the schedule; every key has a default."""
+
+    warm_up: Hours = 4.0 * HOUR
+    """Oil on at standstill before the first stage."""
+    dwell: Hours | None = None
+    """Length of every held stage; the planned time of the test when left out."""
+    oil_run_on: Time = 0.5 * HOUR
+    """How long the oil runs on after the stop."""
+    soak_back: Hours = 8.0 * HOUR
+    """Standstill without oil after that."""
+    stop_time: Time = 10.0
+    """From full speed to standstill in an emergency."""
+    oil_loss_time: Time = 10.0
+    """Turning on without oil until the loss is noticed; the emergency stop follows."""
+    events: tuple[Event, ...] = ("cold_start", "emergency_stop", "oil_loss")
+    """Computed in addition to the schedule: the run without warm-up, and what may end the dwell."""
+    still_film: HeatTransferCoefficient = 5.0
+    """Least film of a shaft, gear or dry wall in air that hardly moves: free convection in a chamber."""
+    settled_share: Annotated[float, Field(gt=0.0, lt=0.5)] = 0.05
+    """A quantity is steady once it stays within this share of its whole change in the dwell."""
+    tolerance: TemperatureDifference = 0.2
+    """Most error of a time step."""
+    probes: Mapping[Name, TransientProbe] = {}
+    """Places in addition to the bodies, bearings and oil outlets that are always kept."""

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rigdesign.case.defaults.known import relaxed
+from rigdesign.case.defaults.fill import relaxed
 from rigdesign.case.model import Case
 
 _MARK_PROPERTIES: dict[str, Any] = {

@@ -6,7 +6,7 @@ from typing import Any
 
 from rigdesign.base.errors import CaseError, shortened
 from rigdesign.base.files import RefusedFileError, check_regular, foreign, read_regular
-from rigdesign.case.kinds import changes_kind
+from rigdesign.case.fields import changes_kind
 from rigdesign.case.provenance import is_marked
 from rigdesign.case.shipped import shipped_cases
 

@@ -24,7 +24,7 @@ from typing import Literal
 from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.files import RefusedFileError, foreign, read_regular
-from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import KINDS
 from rigdesign.case.faults import written
 
 ProfileCoordinate = Literal["roll_length", "diameter", "roll_angle"]

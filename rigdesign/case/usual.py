@@ -19,7 +19,7 @@ from rigdesign.case.fields import Part, Quantity
 from rigdesign.case.geometry import pitch_diameters
 from rigdesign.case.paths import Slot, slot_of, slot_of_field
 from rigdesign.case.provenance import item_name
-from rigdesign.case.rules.bearings import diameter_at
+from rigdesign.case.rules.gears import diameter_at
 from rigdesign.properties.materials import MATERIALS
 
 if TYPE_CHECKING:

@@ -66,7 +66,7 @@ def _of_unusual(case: Case, check: Check, paths: Sequence[str]) -> Check:
 
 LINE_LOAD_ERROR: Mapping[Fidelity, float] = {"quick": 0.12, "standard": 0.04, "reference": 0.04}
 """Share of the highest stress that the face positions of the influence numbers leave open
-(`dynamics.influence.gear_model.NEAR_ENDS`)."""
+(`dynamics.influence.elastic_segment.NEAR_ENDS`)."""
 BY_LINE_LOAD = {
     "specimen.root_stress*": 1.0, "strength.root_safety*": 1.0, "flank.contact_pressure*": 1.0, "flank.*": 0.5
 }  # fmt: skip

@@ -6,8 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from rigdesign.base.quantity_kinds import KINDS
-from rigdesign.base.units import display
+from rigdesign.base.units import KINDS, display
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
 from rigdesign.case.model import Case
@@ -17,7 +16,7 @@ from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records.part_torques import PartTorque
+from rigdesign.records.run_torques import PartTorque
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.loads import StageBracing

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rigdesign.base.quantity_kinds import KINDS
-from rigdesign.base.units import display
+from rigdesign.base.units import KINDS, display
 from rigdesign.case.limits import PASSED, BoughtPart
 from rigdesign.case.model import Case
 from rigdesign.checks.component_limits import GROUP, is_at

@@ -11,14 +11,12 @@ import math
 from collections.abc import Callable, Iterator
 
 from rigdesign.base.units import show
-from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.jets import injected_flow
+from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
+from rigdesign.coupling.braced_loop import averaged_gears, lines_left_out, loads_left_out
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
-from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 

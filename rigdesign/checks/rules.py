@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rigdesign.base.finite import finite
+from rigdesign.base.json_text import finite
 from rigdesign.results.check import Check, Flag, Role
 
 Comparison = Literal["<=", ">=", "within"]

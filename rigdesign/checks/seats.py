@@ -8,7 +8,7 @@ from rigdesign.checks.registry import LOADS, REGISTRY, RigRule, Topic, Values
 from rigdesign.records.press_fits import FRICTION
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.seats import SplineStressKind
+from rigdesign.results.loads import SplineStressKind
 from rigdesign.results.units import MEGAPASCAL, NUMBER
 
 

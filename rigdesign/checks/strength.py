@@ -16,9 +16,8 @@ from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
 from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
-from rigdesign.records.reversed_bending import ReversedBending, by_standard, of_history
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.records.tooth_history import GearInMesh, gear_meshes
+from rigdesign.records.tooth_history import GearInMesh, ReversedBending, by_standard, gear_meshes, of_history
 from rigdesign.results.check import Check
 from rigdesign.results.dynamics import FROM_INFLUENCE
 from rigdesign.results.loads import RootStressPath

@@ -15,7 +15,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.rows.history import UNITS
 from rigdesign.results.transient import Extreme
 from rigdesign.results.units import HOUR, DisplayUnit
-from rigdesign.transient.warm_up import Soak
+from rigdesign.transient.soak import Soak
 
 GROUP = "transient"
 MOVED_BY: frozenset[Influence] = frozenset({"housing", "test time", "thermal history"})

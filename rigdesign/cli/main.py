@@ -17,20 +17,15 @@ import sys
 from rigdesign.base.parallel import leave_interrupts, one_blas_thread
 from rigdesign.cli.application import app, run
 from rigdesign.cli.commands import (
-    calibrate,
     check,
     compare,
-    completion,
     diagnose,
     diff,
     doctor,
     explain,
     import_rexs,
-    list_built_in,
     mesh,
     new,
-    report,
-    schema,
     study,
     validate,
 )
@@ -39,22 +34,17 @@ from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [
     "app",
-    "calibrate",
     "check",
     "compare",
-    "completion",
     "diagnose",
     "diff",
     "doctor",
     "explain",
     "import_rexs",
-    "list_built_in",
     "main",
     "mesh",
     "new",
-    "report",
     "run",
-    "schema",
     "study",
     "validate",
 ]

@@ -10,8 +10,8 @@ from rigdesign.case.model import Case
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.user_mesh import step_part
 from rigdesign.run.solver_errors import solver_errors
-from thermal.housing.export import write_mesh
 from thermal.housing.gearbox import build_gearbox, mesh_sizes
+from thermal.housing.mesh_file import write_mesh
 from thermal.housing.step_file import FaceNames
 
 PICTURE_TRIANGLES = 0.06

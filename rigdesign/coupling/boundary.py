@@ -7,9 +7,8 @@ from dynamics.bearing.protocol import BearingState
 from rigdesign.case import surface_conditions as laws
 from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.geometry import bearing_on, conditions_of
-from rigdesign.case.given_film import ConstantFilm, TakenFrom
-from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
-from rigdesign.coupling.enclosures import enclosure_conditions
+from rigdesign.case.surface_conditions import ConstantFilm, TakenFrom
+from rigdesign.coupling.bearing_seats import seat_conditions, seat_sources
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.housing_context import (
     AIR,
@@ -18,10 +17,10 @@ from rigdesign.coupling.housing_context import (
     GEAR_OIL,
     HousingContext,
     OilFilm,
+    WettedSurface,
+    fluid_networks,
 )
-from rigdesign.coupling.housing_fluids import WettedSurface, fluid_networks
-from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses, heat_into_gear_oil
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
@@ -42,10 +41,11 @@ from thermal.conditions.boundary import (
     Radiation,
     SurfaceSource,
 )
+from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
-from thermal.housing.measures import SIDES
+from thermal.housing.shaft_geometry import SIDES
 
 
 def boundary_conditions(
@@ -323,3 +323,34 @@ def side_excess(rig: Rig, name: str, state: CouplingState, surface: str, fluid: 
     part = leak * (in_front if side == "front" else 1.0 - in_front)
     own = each * sum(bearing.side == side for bearing in box.bearings.values())
     return follows * ((own * cold + part * warm) / (own + part) - mixed) if own + part else 0.0
+
+
+# Chambers of a housing whose surfaces radiate at each other, as conditions of its temperature field.
+
+CHAMBER_RADIATION = "chamber_radiation"
+"""Kind of their rows in the heat balance."""
+
+
+def enclosure_conditions(rig: Rig, name: str) -> Iterator[Enclosure]:
+    """Enclosures of the housing of gearbox ``name``; CaseError for view factors that do not close."""
+    housing = rig.case.gearboxes[name].housing
+    assert housing is not None
+    for entry, enclosure in housing.enclosures.items():
+        emissivities = enclosure.emissivities(rig.surface_names(name))
+        surfaces = tuple(emissivities)
+        opening = enclosure.opening_temperature
+        at = f"gearboxes.{name}.housing.enclosures.{entry}.view_factors"
+        views = rig.chamber_views
+        rows = enclosure.rows(views.areas(name, surfaces))
+        if rows is None:
+            rows = views.between(name, surfaces, opening=opening is not None, at=at)
+        else:
+            views.require_closed(name, surfaces, rows, opening=opening is not None, at=at)
+        yield Enclosure(
+            name=entry,
+            surfaces=surfaces,
+            emissivities=tuple(emissivities.values()),
+            view_factors=rows,
+            opening_temperature=opening,
+            kind=CHAMBER_RADIATION,
+        )

@@ -3,20 +3,25 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, braced_state
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import StaticState
+from dynamics.drivetrain.parts import left_out
+from dynamics.drivetrain.static_loop import LoopLoad, StaticState
+from dynamics.elastic_rig.seen_system import TURNING
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.tables import has_individual_teeth
 from dynamics.response.harmonic_problem import HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS
+from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.periodic_response import period_length
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.rig.model import Rig
 
 
@@ -180,3 +185,83 @@ def shifted_laws(rig: Rig, models: Sequence[MeshModel], setting: BracingState) -
         law = laws[gear.mesh]
         laws[gear.mesh] = law._replace(offset=law.offset + gear.approach_per_shift * setting.shift)
     return laws
+
+
+# Teeth that differ from each other, and the period over which a periodic response is sought.
+#
+# A response over one mesh cannot tell one tooth from another, one over a turn of the pinion can tell those of the
+# wheel only if it ends the turn on the same tooth. Gears whose differences the period cannot hold are taken with
+# the mean of their teeth; the run in time and a response over the hunting cycle have them all.
+
+
+def periodic_laws(rig: Rig, laws: Sequence[MeshLaw]) -> list[MeshLaw]:
+    """Mesh laws with alike teeth on every gear that does not end the period of the response where it began."""
+    return [
+        alike_teeth(law, *(not whole for whole in back)) if has_individual_teeth(law) else law
+        for law, back in zip(laws, _whole_turns(rig, laws))
+    ]
+
+
+def averaged_gears(rig: Rig, laws: Sequence[MeshLaw]) -> list[str]:
+    """Gears ``gearbox.gear`` whose teeth differ and are taken with their mean in the periodic response."""
+    found = []
+    for name, law, back in zip(rig.mesh_names, laws, _whole_turns(rig, laws)):
+        for gear, own, whole in zip(rig.mesh_gears(name), _differ(law), back):
+            if own and not whole:
+                found.append(gear)
+    return list(dict.fromkeys(found))
+
+
+def _differ(law: MeshLaw) -> tuple[bool, bool]:
+    """Whether the teeth of pinion and wheel differ from each other."""
+    return (
+        bool(np.ptp(law.deviation_1, axis=0).any() or np.ptp(law.scale_1)),
+        bool(np.ptp(law.deviation_2, axis=0).any() or np.ptp(law.scale_2)),
+    )
+
+
+def _whole_turns(rig: Rig, laws: Sequence[MeshLaw]) -> list[tuple[bool, bool]]:
+    """Whether pinion and wheel of each mesh make whole turns in the period of the response."""
+    kind = rig.case.numerics.response_period
+    if kind != "revolution":
+        return [(kind == "hunting_cycle",) * 2] * len(laws)
+    speeds = [rig.shaft_speed(_pinion_shaft(rig, name), 1.0) for name in rig.mesh_names]
+    turns = [speed / speeds[0] for speed in speeds]
+    return [(_whole(own), _whole(own * law.teeth_1 / law.teeth_2)) for own, law in zip(turns, laws)]
+
+
+def _pinion_shaft(rig: Rig, name: str) -> str:
+    box, mesh = rig.mesh(name)
+    return box.gears[box.meshes[mesh].pinion].shaft
+
+
+def _whole(turns: float) -> bool:
+    return abs(turns - round(turns)) < 1e-6
+
+
+# Loads that alternate with a shaft, as the response holds them or leaves them out.
+
+
+def loads_left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | None = None) -> list[str]:
+    """Part and order of every oscillating torque that the period of the response cannot hold.
+
+    system : of the drivetrain; that of shafts that only twist when left out
+    """
+    return [name for name in _left_out(rig, laws, system) if not name.startswith(TURNING)]
+
+
+def lines_left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | None) -> list[str]:
+    """Shaft lines, by their first loaded shaft, whose unbalance, bow and run-out the period cannot hold."""
+    found = (name for name in _left_out(rig, laws, system) if name.startswith(TURNING))
+    return list(dict.fromkeys(name.partition(" of ")[2].partition(" order ")[0] for name in found))
+
+
+def _left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | None) -> list[str]:
+    system = rig.system if system is None else system
+    if system is None or not system.periodic_loads:
+        return []
+    ratios = pinion_ratios(system, laws)
+    pinions = [float(ratios[port]) for port in system.mesh_ports[:, 0]]
+    return left_out(
+        system.periodic_loads, ratios, period_length(laws, pinions, rig.case.numerics.response_period)
+    )

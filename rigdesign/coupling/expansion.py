@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.case.bearings import BearingInput
+from rigdesign.case.rolling_bearing import BearingSeats
 from rigdesign.coupling.bearing_seats import WarmBearing
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
-from thermal.expansion.clearances import BearingExpansion, CentreDistance
+from thermal.expansion.alignment import BearingExpansion, CentreDistance
 from thermal.expansion.expansion import Expansion, expand
 
 TOLERANCE = 1e-6

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
-from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
+from dynamics.drivetrain.linear_system import DrivetrainOverSpeed, SpeedBands
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_system import loop_system

@@ -12,18 +12,14 @@ from dynamics.losses.oil_jet import oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.response.response_curve import CurvePoint
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
-from rigdesign.case.gearbox import Gearbox, Seals
-from rigdesign.case.heat_split import HeatSplit
-from rigdesign.case.jets import mesh_jet
+from rigdesign.base.units import ZERO_CELSIUS
+from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet
 from rigdesign.coupling.bearing_films import constant_drag
-from rigdesign.coupling.bearing_heat import body_shares
+from rigdesign.coupling.bearing_seats import body_shares
 from rigdesign.coupling.braced_loop import first_torques
-from rigdesign.coupling.dip import churning
-from rigdesign.coupling.flank_heat import mesh_split
+from rigdesign.coupling.flank_heat import churning, mesh_split
 from rigdesign.coupling.mesh_models import MeshModel
-from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.point_losses import given_power
+from rigdesign.coupling.placed_loss import PlacedLoss, given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed, gear_oil

@@ -2,27 +2,37 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dynamics.contact.influence_law import ContactLines, ElasticPair, contact_lines, influence_law
-from dynamics.flank.axes import AxisMisalignment
-from dynamics.flank.microgeometry import Microgeometry
+from dynamics.flank.field import AxisMisalignment
+from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, default_slices, mesh_law
-from dynamics.mesh.friction import FrictionCoefficient
+from dynamics.mesh.friction import (
+    Doleschel,
+    FrictionCoefficient,
+    FrictionLaw,
+    GivenFriction,
+    Michaelis,
+    Schlenk,
+    friction_coefficient,
+)
 from dynamics.mesh.law import MeshLaw, in_parallel
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from rigdesign.case.drivetrain import MeshStiffness
-from rigdesign.coupling.mesh_axes import axes_in_mesh
-from rigdesign.coupling.mesh_damping import mesh_damping
-from rigdesign.coupling.mesh_friction import mesh_friction
-from rigdesign.coupling.microgeometry import mesh_microgeometry
+from rigdesign.case.gears import Gear
+from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.state import LEAST_TORQUE, CouplingState, OperatingPoint
+from rigdesign.properties.oil import Oil
+from rigdesign.rig.drivetrain import gear_inertia
+from rigdesign.rig.gears import NOT_MEASURED, FlankTopographies
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_feed
 from rigdesign.rig.tooth_influence import ToothInfluence
 from thermal.fe.kept_results import kept
 
@@ -85,7 +95,7 @@ def mesh_model(
 
     The flanks that carry the mean torque see the axes as made, ``axis_inclination`` and ``axis_skew``, and as bending
     shafts and journals tilt them. Not in the law: what the expansion of the warm housing adds to them, which the loaded
-    contact at the held points has (`rigdesign.records.contact_gap`).
+    contact at the held points has (`rigdesign.records.loaded_contact`).
     """
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
@@ -250,3 +260,163 @@ def _lines(
 ) -> ContactLines:
     """Contact lines of a cold pair: the displacements of its slices, the same at every temperature."""
     return contact_lines(pair, influence.compliances(pair), micro, discretisation=discretisation)
+
+
+# Damping of a mesh: a constant of the case, or a share of the critical damping of its two gear bodies.
+
+
+def mesh_damping(rig: Rig, name: str, law: MeshLaw) -> float:
+    """Damping along the line of action, of one half of a double-helical mesh [N s/m].
+
+    c = 2 zeta sqrt(k m_red), k the mean stiffness of the mesh and m_red = 1 / (r_b1^2/J_1 + r_b2^2/J_2) the gear
+    bodies reduced to the line of action: the ratio that the damping audit of `dynamics.drivetrain.modes` reports.
+
+    name : of the mesh, ``gearbox.mesh``; law : with mean stiffness and base radii
+    """
+    box_name, own = name.split(".")
+    box = rig.case.gearboxes[box_name]
+    mesh = box.meshes[own]
+    if mesh.damping is not None:
+        return mesh.damping
+    assert mesh.damping_ratio is not None
+    first, second = (
+        gear_inertia(rig.case, box_name, gear, rig.pairs, rig.materials) for gear in (mesh.pinion, mesh.wheel)
+    )
+    mobility = mesh.sharing * (law.base_radius_1**2 / first + law.base_radius_2**2 / second)
+    return 2.0 * mesh.damping_ratio * math.sqrt(law.mean_stiffness / mobility)
+
+
+# Friction of the teeth of a mesh: the coefficient that the case states or its oil gives.
+
+
+def mesh_friction(
+    rig: Rig, name: str, pair: GearPair, point: OperatingPoint, coupling_state: CouplingState
+) -> FrictionCoefficient:
+    """Friction coefficient of a mesh: one source for the torque in the loop and the heat in the box."""
+    box, mesh = rig.mesh(name)
+    entry = box.meshes[mesh]
+    gears = box.gears[entry.pinion], box.gears[entry.wheel]
+    box_name = name.split(".")[0]
+    chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
+    feed = gear_feed(rig, box_name, chamber, coupling_state.oil_supply)
+    temperature = feed.mean(chamber)
+    contact = ToothPath.of_pair(pair).contact(
+        max(abs(coupling_state.mesh_torque[name]) / entry.sharing, LEAST_TORQUE),
+        rig.shaft_speed(gears[0].shaft, point.speed),
+        reference_diameter_1=2.0 * pair.reference_radii[0],
+        roughness=0.5 * (gears[0].flank_roughness + gears[1].flank_roughness),
+        viscosity=feed.oil.dynamic_viscosity(temperature),
+    )
+    own = friction_coefficient(contact, friction_law(rig, feed.oil))
+    return scaled_friction(own, box.loss_factors.mesh * entry.friction_factor)
+
+
+def scaled_friction(own: FrictionCoefficient, factor: float) -> FrictionCoefficient:
+    """A friction coefficient times a factor that its inputs show unless it is 1."""
+    if factor == 1.0:
+        return own
+    return replace(own, value=factor * own.value, inputs=own.inputs | {"loss_factor": factor})
+
+
+def friction_law(rig: Rig, oil: Oil) -> FrictionLaw:
+    """The friction law of the case for this oil."""
+    friction = rig.case.losses.friction
+    factor = oil.lubricant_factor if friction.lubricant_factor is None else friction.lubricant_factor
+    match friction.law:
+        case "constant":
+            assert friction.coefficient is not None
+            return GivenFriction(value=friction.coefficient)
+        case "michaelis":
+            return Michaelis(lubricant_factor=factor)
+        case "doleschel":
+            assert friction.doleschel is not None
+            return Doleschel(**dict(friction.doleschel), pressure_viscosity=oil.pressure_viscosity)
+    return Schlenk(lubricant_factor=factor)
+
+
+# Modifications and deviations of the gears of a case as the mesh law reads them.
+
+
+def mesh_microgeometry(rig: Rig, name: str, pair: GearPair) -> tuple[Microgeometry, Microgeometry]:
+    """Modifications and deviations of pinion and wheel of a mesh as the mesh law reads them."""
+    box, mesh = rig.mesh(name)
+    entry = box.meshes[mesh]
+    first, second = rig.mesh_gears(name)
+    return (
+        microgeometry(box.gears[entry.pinion], pair, 0, measured=rig.topography(first)),
+        microgeometry(box.gears[entry.wheel], pair, 1, entry.tooth_offset, rig.topography(second)),
+    )
+
+
+def microgeometry(
+    gear: Gear,
+    pair: GearPair,
+    index: int,
+    tooth_offset: int = 0,
+    measured: FlankTopographies = NOT_MEASURED,
+) -> Microgeometry:
+    """Modifications and deviations of one gear as the mesh law reads them.
+
+    The law counts an eccentricity from the shaft; here it belongs to the teeth, and goes with them where the gear is
+    put on its shaft ``tooth_offset`` teeth further.
+    """
+    flank = gear.flank
+    relieved = {"both": (1.0, 1.0), "front": (1.0, 0.0), "rear": (0.0, 1.0)}[flank.end_relief_at]
+    return Microgeometry(
+        tip_relief=flank.tip_relief,
+        tip_relief_length=_tip_path(flank.tip_relief_length, pair, index),
+        tip_relief_exponent=flank.tip_relief_exponent,
+        root_relief=flank.root_relief,
+        root_relief_length=_root_path(flank.root_relief_length, pair, index),
+        root_relief_exponent=flank.root_relief_exponent,
+        end_relief=(relieved[0] * flank.end_relief, relieved[1] * flank.end_relief),
+        end_relief_length=flank.end_relief_length,
+        end_relief_exponent=flank.end_relief_exponent,
+        profile_crowning=flank.profile_crowning,
+        lead_crowning=flank.lead_crowning,
+        lead_crowning_form=flank.lead_crowning_form,
+        manufacturing_twist=flank.manufacturing_twist,
+        profile_slope=flank.profile_slope,
+        helix_slope=flank.helix_slope,
+        profile_twist=0.25 * flank.twist,
+        topography=measured[0],
+        back_topography=measured[1],
+        pitch_deviations=_tooth_places(gear),
+        run_out=0.5 * flank.run_out,
+        run_out_phase=flank.run_out_phase - 2.0 * math.pi * tooth_offset / gear.teeth,
+        profile_slopes=flank.profile_slope_scatter,
+        tooth_stiffness=_tooth_stiffness(gear),
+    )
+
+
+def _tooth_places(gear: Gear) -> tuple[float, ...]:
+    """Place of each tooth ahead of its ideal one [m], from single pitch and waves; empty for an ideal pitch."""
+    flank = gear.flank
+    single = cumulative_pitch(flank.single_pitch) if flank.single_pitch else ()
+    if not flank.pitch_waves:
+        return single
+    waves = pitch_waves(gear.teeth, ((wave.order, wave.amplitude, wave.phase) for wave in flank.pitch_waves))
+    return tuple(map(sum, zip(single, waves))) if single else waves
+
+
+def _tooth_stiffness(gear: Gear) -> tuple[float, ...]:
+    """Stiffness share of each tooth [-]; empty for equal teeth."""
+    weak, shares = gear.flank.weak_tooth, gear.flank.tooth_stiffness
+    if weak.stiffness == 1.0:
+        return shares
+    shares = shares or (1.0,) * gear.teeth
+    return tuple(share * (weak.stiffness if i == weak.tooth else 1.0) for i, share in enumerate(shares))
+
+
+def _tip_path(height: float, pair: GearPair, index: int) -> float:
+    """Path length of a tip relief from its radial height [m]."""
+    gear = pair.gears[index]
+    tip = pair.flanks[index].tip_radius
+    return gear.roll_length(tip) - gear.roll_length(tip - height)
+
+
+def _root_path(height: float, pair: GearPair, index: int) -> float:
+    """Path length of a root relief from its radial height above the start of the active profile [m]."""
+    gear = pair.gears[index]
+    start = pair.rolling_radii[index] + (pair.path.start if index == 0 else -pair.path.end)
+    return gear.roll_length(math.hypot(gear.base_radius, start) + height) - start

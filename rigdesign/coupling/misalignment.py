@@ -3,7 +3,7 @@
 Out of line as they were set up, and by what warm housings move the ends of their shafts. A coupling presses with its
 stiffness times what the shafts do not give way of the offset and angle: with bearings at the reference stiffness of the
 reduced rig, as the load decides on their own. Both act at the middle of the coupling. A cross joint under an angle
-bends both shafts by half of its torque times that angle on top (`dynamics.elastic_rig.cross_joints`).
+bends both shafts by half of its torque times that angle on top (`dynamics.elastic_rig.assembly`).
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.graph import Drivetrain
-from dynamics.elastic_rig import cross_joints
-from dynamics.elastic_rig.cross_joints import bending_moment
-from dynamics.elastic_rig.rotating_loads import misalignment_load
-from dynamics.elastic_rig.rotating_parts import AxisMisalignment
+from dynamics.elastic_rig import assembly as cross_joints
+from dynamics.elastic_rig.assembly import bending_moment
+from dynamics.elastic_rig.layout import AxisMisalignment
+from dynamics.elastic_rig.running_state import misalignment_load
 from rigdesign.coupling.alignment import coupling_places, end_motion
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig

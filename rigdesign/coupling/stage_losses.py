@@ -6,13 +6,11 @@ from dynamics.errors import DynamicsNotConverged
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, respond
-from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.losses import mesh_losses, oil_jets, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses, drag_torques
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.coupling.bearing_seats import bearing_seats
-from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.enclosures import CHAMBER_RADIATION
+from rigdesign.coupling.boundary import CHAMBER_RADIATION, boundary_conditions
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
-from rigdesign.coupling.point_losses import STORED, PointLosses
+from rigdesign.coupling.placed_loss import STORED, PointLosses
 from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import TemperatureSolution, solve_steady

@@ -16,12 +16,12 @@ from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import BracingState, locked_share, shifted_laws
-from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
+from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.placed_loss import drag_shafts, drag_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.rig.drivetrain import mesh_frequency
 from rigdesign.rig.model import Rig
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from rigdesign.diagnosis.constant_sources import SOURCES, Source
-from rigdesign.diagnosis.decision.verdict import Thresholds
+from rigdesign.diagnosis.decision.defaults import Thresholds
 from rigdesign.diagnosis.residual.baseline import Drift
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 

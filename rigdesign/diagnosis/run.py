@@ -11,9 +11,8 @@ import numpy as np
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.constants import Constants, constants
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.decision.patch import patched_values
+from rigdesign.diagnosis.decision.patch import Constants, constants, patched_values
 from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.proof import FullRun
 from rigdesign.diagnosis.decision.proposals import (
@@ -26,8 +25,7 @@ from rigdesign.diagnosis.decision.proposals import (
 from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS, Diagnosis, diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
-from rigdesign.diagnosis.library.candidates import spare_channels
-from rigdesign.diagnosis.library.costs import Costs
+from rigdesign.diagnosis.library.candidates import Costs, spare_channels
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.metrology import inspected
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain

@@ -6,10 +6,9 @@ from difflib import get_close_matches
 from typing import Any, Literal, get_args
 
 from rigdesign.base.errors import UsageError, shortened
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
-from rigdesign.case.defaults.limit_set import standard_limits
-from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Given
+from rigdesign.base.units import ZERO_CELSIUS
+from rigdesign.case.defaults.rule import Given, RawTree
+from rigdesign.case.defaults.runs import standard_limits
 from rigdesign.checks.registry import PATH, REGISTRY
 from rigdesign.explanation.keys import case_keys, starred
 from rigdesign.properties.fluid import FluidError, volumetric_heat

@@ -7,7 +7,7 @@ from rigdesign.base.units import show
 from rigdesign.case.defaults.rule import BY_THE_TOOL
 from rigdesign.case.model import Case
 from rigdesign.case.usual import unusual_inputs
-from rigdesign.explanation.rules import declared_rules
+from rigdesign.explanation.keys import declared_rules
 
 
 @dataclass(frozen=True, kw_only=True)

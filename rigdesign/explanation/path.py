@@ -6,14 +6,13 @@ from typing import Any, Literal
 
 from rigdesign.base.errors import UsageError
 from rigdesign.case.defaults.rule import BY_THE_TOOL
-from rigdesign.case.kinds import kind_key, of_kind, variant_of
+from rigdesign.case.fields import kind_key, of_kind, variant_of
 from rigdesign.case.model import Case
 from rigdesign.case.paths import known_paths, nearest_paths, path_pattern, slot_at
 from rigdesign.case.provenance import take_off
 from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks.assumptions import influences_of
-from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
-from rigdesign.explanation.rules import declared_checks, depends_on
+from rigdesign.explanation.keys import KeyEntry, case_keys, declared_checks, depends_on, entry_at, starred
 
 BasisKind = Literal["measured", "assumed", "source", "confirmed", "stated", "default", "left out"]
 """Where a value comes from: a measurement, an assumption, a printed source, the case alone, the tool."""

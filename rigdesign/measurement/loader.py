@@ -12,17 +12,15 @@ from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case import Case
 from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.measurement.places import Places
+from rigdesign.measurement.processing.features import with_rates
 from rigdesign.measurement.processing.impacts import read_impacts
 from rigdesign.measurement.processing.recorded import Readings, SetPlan, read_recordings
 from rigdesign.measurement.processing.sweeps import read_sweeps
-from rigdesign.measurement.processing.warming_rates import with_rates
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.reading.document import COST_ITEMS, MeasurementFile
-from rigdesign.measurement.reading.files import digest_of, document_text, set_file
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
-from rigdesign.measurement.reading.order_table import read_orders
-from rigdesign.measurement.reading.rows import Rows, points_of
-from rigdesign.measurement.reading.table import read_table
+from rigdesign.measurement.reading.rows import Rows, points_of, read_orders
+from rigdesign.measurement.reading.table import digest_of, document_text, read_table, set_file
 
 FILE = "measurement.toml"
 

@@ -10,7 +10,7 @@ from rigdesign.case import Case
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import housing_geometry
 from thermal.housing.geometry import HousingGeometry
-from thermal.housing.surfaces import body_names, surface_names
+from thermal.housing.housing_surfaces import body_names, surface_names
 
 MOTOR = "motor"
 ROUNDED = 1e-3

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base import units
-from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import KINDS
 
 Reading = TypeVar("Reading", float, NDArray[np.float64])
 SettingQuantity = Literal["speed", "torque", "inlet_temperature", "flow", "ambient_temperature"]
@@ -22,7 +22,7 @@ DIFFERENCES: Mapping[str, str] = {"temperature": "temperature_difference"}
 class Measured:
     """A quantity as it is read.
 
-    kind : name in ``rigdesign.base.quantity_kinds.KINDS`` of the reading
+    kind : name in ``rigdesign.base.units.KINDS`` of the reading
     uncertainty : an example of its uncertainty
     limits : lowest and highest reading that the quantity can have on any rig [SI; K]
     offset, scale : systematic uncertainty of a usual instrument where a setting states none [SI; K], relative

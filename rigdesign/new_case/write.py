@@ -10,13 +10,12 @@ from textwrap import wrap
 from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault, OutputError
 from rigdesign.base.output_folder import prepare_output, staged
-from rigdesign.case.defaults.known import WRITTEN_ONCE
+from rigdesign.case.defaults.fill import WRITTEN_ONCE
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.case.schema import json_schema
 from rigdesign.case.source import CASE_FILE
-from rigdesign.explanation.keys import entry_at
-from rigdesign.explanation.rules import declared_checks, depends_on
+from rigdesign.explanation.keys import declared_checks, depends_on, entry_at
 from rigdesign.new_case.outline import FLAGS, AnswerFault, AnswersError, Outline, locating_sister
 
 PLACES = {

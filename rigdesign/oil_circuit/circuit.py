@@ -11,9 +11,8 @@ import math
 from dataclasses import dataclass
 
 from rigdesign.base.errors import CaseError, Fault
-from rigdesign.base.number_faults import celsius, refuse, require_above, require_at_least
-from rigdesign.oil_circuit.cooler import Cooler, TankCooler
-from rigdesign.oil_circuit.parts import Consumer, Heater, Pipe, Pump, Tank
+from rigdesign.base.units import celsius, refuse, require_above, require_at_least
+from rigdesign.oil_circuit.parts import Consumer, Cooler, Heater, Pipe, Pump, Tank, TankCooler
 from rigdesign.properties.oil import Oil
 
 NO_PIPE = Pipe()

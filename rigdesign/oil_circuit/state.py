@@ -17,20 +17,20 @@ from typing import Literal
 from scipy.optimize import brentq
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.base.number_faults import celsius, require_above
+from rigdesign.base.units import celsius, require_above
 from rigdesign.oil_circuit.circuit import Circuit
-from rigdesign.oil_circuit.heat_content import enthalpy
-from rigdesign.oil_circuit.line_balance import HeatTaken, pipe_content
-from rigdesign.oil_circuit.steady import require_heats
-from rigdesign.oil_circuit.steady_result import SteadyCircuit
-from rigdesign.oil_circuit.tank_balance import (
+from rigdesign.oil_circuit.line_balance import (
     RANGE,
     Contents,
+    HeatTaken,
     Setpoints,
     TankBalance,
     TankEquation,
+    pipe_content,
     tank_content,
 )
+from rigdesign.oil_circuit.parts import enthalpy
+from rigdesign.oil_circuit.steady import SteadyCircuit, require_heats
 
 # On-off thermostats of a tank: when they switch next, and what they force while they do not.
 

@@ -5,14 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.coupling.acceleration import Anderson, Differences
-from rigdesign.coupling.convergence import ScaledTolerance
-from rigdesign.coupling.fixed_point import solve_fixed_point
+from rigdesign.coupling.fixed_point import (
+    Anderson,
+    Differences,
+    ScaledTolerance,
+    next_state,
+    ordered,
+    scaled,
+    solve_fixed_point,
+    unrelaxed,
+)
 from rigdesign.coupling.iteration import IterationParts, IterationResult, PointProblem
-from rigdesign.coupling.relaxation import next_state, unrelaxed
+from rigdesign.coupling.loop import last_step
 from rigdesign.coupling.state import CouplingState
-from rigdesign.coupling.state_vector import ordered, scaled
-from rigdesign.coupling.warm_up import last_step
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
 

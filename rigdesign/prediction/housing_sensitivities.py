@@ -12,8 +12,7 @@ from rigdesign.coupling.flank_heat import rim_surfaces
 from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
-from rigdesign.prediction.expansion_map import ExpansionMap
-from rigdesign.prediction.housings import ReducedField, ReducedHousings
+from rigdesign.prediction.housings import ExpansionMap, ReducedField, ReducedHousings
 from rigdesign.prediction.model import Channel
 from rigdesign.prediction.readings import Reading, Readings, count_of
 from rigdesign.prediction.sensitivities import STEP, PointSensitivities

@@ -14,30 +14,37 @@ import numpy as np
 
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import StaticState
+from dynamics.drivetrain.static_loop import LoopLoad, StaticState, port_model
 from dynamics.elastic_rig.mode_names import NamedMode
+from dynamics.errors import DynamicsNotConverged
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_problem import HarmonicSolution
-from dynamics.response.response_curve import CurvePoint
+from dynamics.response.harmonic_walk import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
+from dynamics.response.response_curve import CurvePoint, quasi_static_point
+from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
 from rigdesign.coupling.braced_loop import (
     BracingState,
     LoadedCircuit,
     brace_initial,
+    periodic_laws,
+    respond,
     shifted_laws,
     signed_torque,
 )
-from rigdesign.coupling.iteration import IterationParts, IterationResult
+from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult
 from rigdesign.coupling.loop_system import loop_system, running_state
-from rigdesign.coupling.mesh_axes import axes_in_mesh
-from rigdesign.coupling.mesh_damping import mesh_damping
-from rigdesign.coupling.mesh_friction import mesh_friction
-from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_model, mesh_phase
+from rigdesign.coupling.mesh_models import (
+    MeshModel,
+    laws_of,
+    mesh_damping,
+    mesh_friction,
+    mesh_model,
+    mesh_phase,
+)
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.prediction.slow_response import respond_at_any_speed
 from rigdesign.prediction.static_tests import modes_at_rest, rig_at_rest
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
@@ -248,3 +255,64 @@ def law_key(law: MeshLaw) -> tuple[object, ...]:
         (np.round(value, SAME_GAP) + 0.0).tobytes() if isinstance(value, np.ndarray) else value
         for value in law
     )
+
+
+# The response behind a prediction: as in a check, but for points so slow that harmonic balance has too many harmonics
+# below the highest mode, and for the number of harmonics of rigs with root gauges.
+#
+# An excitation that slow hardly moves the modes: the loop follows quasi-statically, as P1 takes its 100 rpm. Following
+# it in time instead takes minutes and as a rule does not settle; it is what remains where friction leaves no
+# quasi-static state. Loads that alternate with a shaft are left out there.
+
+REACH = 1.5
+"""Harmonics go up to this times the highest mode that counts (`dynamics.response.speed_sweep`)."""
+GAUGE_HARMONICS = 192
+"""Harmonics of the common mesh period of a rig with root gauges at least: the highest stress answers to their number
+by some tenths of a per cent, which a mode that just counts or does not would change from rig to rig."""
+FOLLOWED = 2.0
+"""Times the harmonics that harmonic balance takes at most from which a point is quasi-static; nearer to them it is
+followed in time, as in a check."""
+
+
+def respond_at_any_speed(
+    rig: Rig, circuit: LoadedCircuit, near: HarmonicSolution | None = None
+) -> CurvePoint:
+    """As `rigdesign.coupling.braced_loop.respond`, slow points quasi-static.
+
+    Raises
+    ------
+    DynamicsNotConverged
+        Neither harmonic balance nor time integration converges.
+    """
+    period = rig.case.numerics.response_period
+    ports = port_model(circuit.system, laws_of(circuit.models))
+    _, cell_angle = mesh_cells(ports, period, 0)
+    cells_a_second = rig.drive_speed(circuit.point.speed) / cell_angle
+    highest = highest_mode(ports, circuit.system.form, rig.highest_mode)
+    if REACH * highest <= FOLLOWED * MOST_HARMONICS * cells_a_second:
+        return respond(rig, circuit, near, GAUGE_HARMONICS if rig.strain_gauges else LEAST_HARMONICS)
+    try:
+        return _quasi_static(rig, circuit)
+    except DynamicsNotConverged:
+        return respond(rig, circuit, near)
+
+
+def _quasi_static(rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
+    """Raises DynamicsNotConverged where an angle has no state, as when friction reverses at the pitch point."""
+    setting = circuit.bracing
+    controlled = setting.mode == "torque_controlled"
+    return quasi_static_point(
+        circuit.system,
+        periodic_laws(rig, shifted_laws(rig, circuit.models, setting)),
+        rig.pinion_speed(circuit.point.speed),
+        LoopLoad(
+            torque=signed_torque(rig, circuit.point) if controlled else None,
+            twist=None if controlled else setting.twist,
+        ),
+        circuit.drags,
+        rig.case.numerics.response_period,
+    )
+
+
+AT_ANY_SPEED = replace(SOLVED, response=respond_at_any_speed)
+"""Parts of an iteration, every one solved in full, with that response."""

@@ -1,13 +1,19 @@
 """What is predicted: operating points as run, channels of the rig, and the numbers a channel gives at a point."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base import units
+from rigdesign.base.units import KINDS, QuantityKind
 from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
+from rigdesign.case.loader import changed_together
+from rigdesign.case.model import Case
+from rigdesign.case.paths import slot_at
+from rigdesign.case.provenance import take_off
 
 Quantity = Literal[
     "temperature",
@@ -26,7 +32,7 @@ Quantity = Literal[
     "root_strain",
 ]
 RootWindow = Literal["entry", "maximum", "exit", "unloaded"]
-"""Numbers of the curve of a root gauge; see `rigdesign.strain_gauge.curve_windows`."""
+"""Numbers of the curve of a root gauge; see `rigdesign.strain_gauge.turn_average`."""
 Part = Literal["value", "real", "imaginary"] | RootWindow
 ROOT_WINDOWS: tuple[RootWindow, ...] = ("entry", "maximum", "exit", "unloaded")
 """All of them, in their order."""
@@ -190,3 +196,104 @@ def measured_against(channels: Iterable[Channel]) -> PredictionModel:
     if lateral:
         return replace(OWN_MODEL, teeth=GAUGES_AGAINST.teeth) if gauges else OWN_MODEL
     return GAUGES_AGAINST if gauges else MEASURED_AGAINST
+
+
+# Changes of a case by dotted path, with bare numbers in SI where the file would want a unit.
+
+Changes = Mapping[str, object]
+"""Dotted path -> value as the file would hold it; a bare number at a place with a unit counts in SI, kelvin."""
+
+
+def changed_case(case: Case, changes: Changes) -> Case:
+    """The case with some values replaced, validated once.
+
+    Raises
+    ------
+    CaseError
+        A path that does not exist, or faults of the changed case.
+    """
+    if not changes:
+        return case
+    plain, _, _ = take_off(dict(case.origin.tree))
+    return changed_together(case, {path: _written(plain, path, value) for path, value in changes.items()})
+
+
+WARMING = "ambient.warming_time"
+"""Path of the time that a point had run where it was not steady."""
+
+
+def only_warming(changes: Changes | Sequence[Changes]) -> bool:
+    """Whether the time that points had run is all that changes."""
+    given = [changes] if isinstance(changes, Mapping) else changes
+    return any(given) and all(set(one) <= {WARMING} for one in given)
+
+
+def written(case: Case, path: str, value: object) -> object:
+    """A value of ``Changes`` as the file of this case would hold it."""
+    plain, _, _ = take_off(dict(case.origin.tree))
+    return _written(plain, path, value)
+
+
+def _written(plain: Mapping[str, object], path: str, value: object) -> object:
+    """The value as a file holds it."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or "*" in path:
+        return value
+    slot = slot_at(Case, plain, path.split("."))
+    if slot is None or slot.quantity is None:
+        return value
+    return _with_unit(float(value), KINDS[slot.quantity.kind])
+
+
+def _with_unit(value: float, kind: QuantityKind) -> str:
+    """A number in SI with the unit a file knows it by."""
+    spelling = next(unit for unit in kind.units if units.worth(kind.name, unit) == (1.0, 0.0))
+    return f"{value!r} {spelling}"
+
+
+# Operating points met again: how far two of them lie apart, and which of one set are those of another.
+
+NEAR = {"speed": 0.05, "torque": 0.05, "flow": 0.15, "temperature": 8.0}
+"""How far a point may lie from the plan for derivatives to carry it over: relative, temperatures in kelvin."""
+AGAIN = 2.0
+"""How far a point may lie from one of another set to be the same, met again (`apart`)."""
+
+T = TypeVar("T")
+
+
+def nearest_of(
+    wanted: Sequence[T], offered: Sequence[T], distance: Callable[[T, T], float], most: float
+) -> dict[int, int]:
+    """Place of a wanted one -> that of the nearest offered one, none used twice; without those that are farther off."""
+    found: dict[int, int] = {}
+    for number, one in enumerate(wanted):
+        free = [place for place in range(len(offered)) if place not in found.values()]
+        nearest = min(free, key=lambda place: distance(offered[place], one), default=None)
+        if nearest is not None and distance(offered[nearest], one) <= most:
+            found[number] = nearest
+    return found
+
+
+def apart(planned: OperatingCondition, run: OperatingCondition) -> float:
+    """Distance of a point from one of a plan, at most one where derivatives serve; infinite where they state
+    different things."""
+    if dict(planned.tooth_offset) != dict(run.tooth_offset):
+        return float("inf")
+    if set(planned.inlet_temperature) != set(run.inlet_temperature) or set(planned.flow) != set(run.flow):
+        return float("inf")
+    if (planned.ambient_temperature is None) != (run.ambient_temperature is None):
+        return float("inf")
+    shares = [
+        abs(run.speed / planned.speed - 1.0) / NEAR["speed"],
+        abs(run.torque - planned.torque) / max(abs(planned.torque), 1e-9) / NEAR["torque"],
+    ]
+    shares += [abs(run.flow[place] / value - 1.0) / NEAR["flow"] for place, value in planned.flow.items()]
+    warmer = [run.inlet_temperature[place] - value for place, value in planned.inlet_temperature.items()]
+    if planned.ambient_temperature is not None and run.ambient_temperature is not None:
+        warmer.append(run.ambient_temperature - planned.ambient_temperature)
+    return max(*shares, *(abs(step) / NEAR["temperature"] for step in warmer))
+
+
+def met_again(now: Sequence[OperatingCondition], before: Sequence[OperatingCondition]) -> dict[str, str]:
+    """Operating point -> that of the other set it is; the rig at rest is one of them."""
+    pairs = nearest_of(now, before, apart, AGAIN)
+    return {"": ""} | {now[here].name: before[there].name for here, there in pairs.items()}

@@ -21,7 +21,6 @@ from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws
-from rigdesign.prediction.exact_orders import exact_motion
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import (
     SAME_ORDER,
@@ -29,6 +28,7 @@ from rigdesign.prediction.order_motion import (
     DeviatingMotion,
     OrderMotion,
     ReferenceGear,
+    exact_motion,
     ideal_response,
 )
 from rigdesign.prediction.order_places import OscillatingTorque, motions, place_of

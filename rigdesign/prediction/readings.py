@@ -14,20 +14,18 @@ from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import LEAST_TORQUE
-from rigdesign.prediction.lateral_places import lateral_motion
 from rigdesign.prediction.model import LATERAL_QUANTITIES, ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import is_ideal
+from rigdesign.prediction.order_places import lateral_motion
 from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import place_weights
-from rigdesign.records.contact_gap import held_flanks
-from rigdesign.records.gauge_stress import stress_at
-from rigdesign.records.loaded_contact import HeldContact, kept_contact
+from rigdesign.records.loaded_contact import HeldContact, held_flanks, kept_contact, stress_at
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge
-from rigdesign.strain_gauge.curve_windows import curve_windows
+from rigdesign.strain_gauge.turn_average import curve_windows
 from thermal.conduction.capacity import StoredHeat
-from thermal.expansion.clearances import SealExpansion
+from thermal.expansion.alignment import SealExpansion
 
 Numbers = tuple[float, ...]
 """Numbers of one channel at one point, in the order of its features."""

@@ -19,10 +19,10 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, signed_torque
+from rigdesign.coupling.fixed_point import SCALES, numbering, scaled, unscaled
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.coupling.state_vector import SCALES, numbering, scaled, unscaled
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
 from rigdesign.prediction.housings import ReducedField
 from rigdesign.prediction.linearised_films import WAYS, Film, LinearisedFilms

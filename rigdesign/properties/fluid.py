@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from rigdesign.base.number_faults import celsius
+from rigdesign.base.units import celsius
 
 ATMOSPHERE = 101325.0
 """[Pa]"""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 
 Confidence = Literal["high", "medium", "low"]
 Treatment = Literal["case_hardened", "nitrided", "through_hardened"]

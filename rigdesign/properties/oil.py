@@ -6,12 +6,12 @@ with c = 0.7 (ASTM D341) or 0.8 (DIN 51563). The solvers get numbers or the boun
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal, Self
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 
 Confidence = Literal["high", "medium", "low"]
 WALTHER_CONSTANT = {"ASTM D341": 0.7, "DIN 51563": 0.8}
@@ -300,3 +300,46 @@ MIL_PRF_23699 = Oil.from_viscosities(
 )
 OILS: Mapping[str, Oil] = MappingProxyType({oil.name: oil for oil in (FVA_3, FVA_3A, MIL_PRF_23699)})
 """Built-in oils by name."""
+
+
+# Oil flows that meet: each knows how it was fed and what heat it has taken up since.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Portion:
+    """An oil flow on its way: how it was fed, and the heat it has taken up since."""
+
+    oil: Oil
+    inlet: float
+    """[K]"""
+    flow: float
+    """[m3/s], at the inlet."""
+    heat: float = 0.0
+    """[W]"""
+
+    def capacity(self, temperature: float) -> float:
+        """Mean heat capacity flow between inlet and a temperature [W/K]."""
+        mean = 0.5 * (self.inlet + temperature)
+        return self.oil.density(self.inlet) * self.flow * self.oil.heat_capacity(mean)
+
+    def heat_at(self, temperature: float) -> float:
+        """Heat with which it has a temperature [W]."""
+        return self.capacity(temperature) * (temperature - self.inlet)
+
+    def warmed(self, temperature: float) -> "Portion":
+        """The same at a temperature [K]."""
+        return replace(self, heat=self.heat_at(temperature))
+
+
+def mixed(portions: Sequence[Portion], heat: float = 0.0) -> float:
+    """Temperature of oil flows that meet and take up ``heat`` [W] together [K]: the sum of heats is kept."""
+    whole = heat + math.fsum(portion.heat for portion in portions)
+    temperature = math.fsum(portion.inlet for portion in portions) / len(portions)
+    for _ in range(100):
+        capacities = [portion.capacity(temperature) for portion in portions]
+        fed = math.fsum(c * portion.inlet for c, portion in zip(capacities, portions))
+        better = (whole + fed) / math.fsum(capacities)
+        if abs(better - temperature) < 1e-10:
+            return better
+        temperature = better
+    raise OilError(f"oil streams that mix under {whole:.4g} W find no temperature; correct flows or heat")

@@ -28,8 +28,7 @@ from rigdesign.reanalysis.modified_rig import coupled_again, with_records
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.flips import Flip, FlipSearch
-from rigdesign.results.result import RunResult
+from rigdesign.results.result import Flip, FlipSearch, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 from rigdesign.run.solver_errors import solver_errors

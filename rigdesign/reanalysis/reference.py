@@ -9,14 +9,13 @@ from dynamics.response.time_response import TimeResponse
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
-from rigdesign.coupling.acceleration import Anderson
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.fixed_point import Anderson
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
-from rigdesign.reanalysis.affected_parts import Part, Reanalysis
-from rigdesign.reanalysis.modified_rig import modified_rig, with_records
-from rigdesign.reanalysis.motor_torque import Array, losses_on_motor, peaks_only
+from rigdesign.reanalysis.modified_rig import Part, Reanalysis, modified_rig, with_records
+from rigdesign.reanalysis.shifted_run import Array, losses_on_motor, peaks_only
 from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import LawSpread, SolvedRig

@@ -12,8 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.modes import LoopMode, ModeShape
-from dynamics.drivetrain.tracked_modes import ShapedModes, TrackedMode, shaped_modes, tracked
+from dynamics.drivetrain.modes import LoopMode, ModeShape, ShapedModes, TrackedMode, shaped_modes, tracked
 from dynamics.elastic_rig.damped_modes import mode_character
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of

@@ -7,19 +7,17 @@ from functools import partial
 
 import numpy as np
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.response_curve import ResponseCurve
 from dynamics.response.speed_sweep import SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.coupling.braced_loop import locked_share, signed_torque
+from rigdesign.coupling.braced_loop import locked_share, periodic_laws, signed_torque
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points
-from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.records.loop_modes import warm_modes
-from rigdesign.records.loop_states import dwell_speeds, is_around
+from rigdesign.records.loop_states import dwell_speeds, is_around, warm_modes
 from rigdesign.results.dynamics import DynamicFactorPoint
 from rigdesign.rig.model import Rig
 

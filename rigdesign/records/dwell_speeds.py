@@ -20,7 +20,7 @@ from rigdesign.records.near_dwell import (
     root_shares,
     shaft_shares,
 )
-from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe, safe_windows
+from rigdesign.records.resonances import DynamicShare, bands, nearest_safe, safe_windows
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.start_torque import (
     USUAL_SHARE,

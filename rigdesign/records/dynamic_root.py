@@ -14,17 +14,15 @@ from numpy.typing import NDArray
 
 from dynamics.contact.root_field import PairForces, RootField, Side, root_field
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import port_model, solve_static
-from dynamics.gear.normal_arc import normal_arc
+from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
+from dynamics.gear.root_arc import normal_arc
 from dynamics.response.harmonic_walk import MOST_HARMONICS, mesh_cells
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from rigdesign.coupling.braced_loop import signed_torque
+from rigdesign.coupling.braced_loop import periodic_laws, signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.coupling.time_run import drags_at
-from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.records import root
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loaded_contact import ROOT
@@ -33,7 +31,7 @@ from rigdesign.results.dynamics import FROM_INFLUENCE, StressSource
 from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge
-from rigdesign.strain_gauge.placement import grid_weights
+from rigdesign.strain_gauge.measuring_point import grid_weights
 
 # Periodic response of the warm rig at a speed that no stage holds, under the torque of the governing held point.
 

@@ -6,19 +6,16 @@ from functools import cached_property
 
 from dynamics.contact.root_field import PairForces
 from dynamics.drivetrain.bracing import BracingDrift, LoopBracing, drift
-from dynamics.drivetrain.loop_crossings import loop_crossings
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modes import DampingRecord, LoopMode, damping_audit
-from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.drivetrain.modes import DampingRecord, LoopMode, damping_audit, loop_crossings
+from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.braced_loop import shifted_gear, signed_torque
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.records import root
 from rigdesign.records.curves import HARMONICS, LEAST_GAIN, Curves, own_ratio
-from rigdesign.records.loop_modes import held_modes
-from rigdesign.records.loop_states import chosen, dwell_speeds
+from rigdesign.records.loop_states import chosen, dwell_speeds, held_modes
 from rigdesign.records.resonances import mesh_resonances
 from rigdesign.records.time_run import contact_losses, stage_loads, torque_peak
 from rigdesign.records.tooth_history import tooth_histories

@@ -8,41 +8,49 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.lateral import LateralCoefficients
+from dynamics.bearing.protocol import LateralCoefficients
+from dynamics.drivetrain.graph import TorqueSection
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.twist_rows import TorqueSection
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.seen_system import SeenRig
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_channels import Channel, Watched, bearing_channels, torque_channels
 from dynamics.response.event_march import (
     Brake,
+    Channel,
     EventHistory,
     EventMarch,
+    SteadyStart,
     Trip,
+    Watched,
+    bearing_channels,
+    steady_start,
     time_to_standstill,
+    torque_channels,
+    without_teeth,
 )
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.periodic_response import TimeSettings
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.steady_start import SteadyStart, steady_start
-from dynamics.response.tooth_loss import without_teeth
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
-from rigdesign.coupling.braced_loop import BracingState, shifted_laws, signed_torque
+from rigdesign.coupling.braced_loop import (
+    BracingState,
+    lines_left_out,
+    loads_left_out,
+    periodic_laws,
+    shifted_laws,
+    signed_torque,
+)
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.loop_system import bearing_coefficients, loop_system, running_state
+from rigdesign.coupling.loop_system import bearing_coefficients, loop_system, running_state, twist_rows_of
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
-from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.coupling.twist_rows import twist_rows_of
 from rigdesign.records.curves import LEAST_GAIN
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_modes import held_modes
+from rigdesign.records.loop_states import held_modes
 from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.run_torques import shear_stress
 from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal

@@ -15,12 +15,12 @@ from dynamics.rating.scuffing import (
     scuffing_temperature,
 )
 from dynamics.standards import iso_ts_6336_22_2018
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.coupling.loop import PointResult
 from rigdesign.properties.materials import Material
 from rigdesign.properties.oil import Oil
 from rigdesign.records.gear_loads import flank_load, rated_cycles, rated_loads
-from rigdesign.records.heat_split import split_as_solved
+from rigdesign.records.housing import split_as_solved
 from rigdesign.results.teeth import FlankRating
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import OilFeed, gear_feed

@@ -13,7 +13,7 @@ from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.units import MM, UM
 from rigdesign.results.warm_gearbox import WarmGearbox
-from thermal.conduction.heat_rows import HeatFlow
+from thermal.conduction.balance import HeatFlow
 
 PLATE = (
     "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h the mean of the partition; the colder box round the plate "

@@ -1,13 +1,18 @@
 """Temperatures and heat of the solved rig: housings, heat balance of the rig, fields."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from rigdesign.base.units import celsius
+from rigdesign.case.geometry import conditions_of
 from rigdesign.case.rig_heat import OIL_COOLER
-from rigdesign.coupling.housing_fluids import (
+from rigdesign.case.surface_conditions import FlankFilm
+from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
+from rigdesign.coupling.housing_context import (
+    GEAR_OIL,
     STREAM,
     heat_carried_off,
     heat_given_off,
@@ -17,21 +22,30 @@ from rigdesign.coupling.housing_fluids import (
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import heater_and_cooler
-from rigdesign.coupling.oil_circuits import circuit_balances
-from rigdesign.coupling.rig_heat import drive_heat
-from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
-from rigdesign.records.heat_split import COMPARED, heat_splits
-from rigdesign.records.rig_heat import into_oil, rig_heat
+from rigdesign.coupling.oil_circuits import DriveHeat, circuit_balances, drive_heat, into_tank
+from rigdesign.coupling.temperatures import HousingField, body_mean, heat_stored, heat_to_room, solve_housing
+from rigdesign.oil_circuit.steady import SteadyCircuit
 from rigdesign.results.housing import (
     BodyTemperature,
     CoolingBalance,
     FluidTemperature,
+    GearHeatSplit,
+    HeatSource,
     HousingTemperatures,
     RadiationReadings,
+    RigHeat,
+    Sink,
 )
 from rigdesign.results.thermal import TemperatureField
 from rigdesign.rig.model import Rig
-from thermal.conduction.flux import heat_flux
+from rigdesign.rig.oil_supply import ChamberOil
+from rigdesign.rig_heat.component import ComponentHeat
+from rigdesign.rig_heat.room import RoomBalance, room_balance
+from thermal.conditions.boundary import Film, SurfaceSource
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import heat_flux
+from thermal.conduction.steady import solve_steady
+from thermal.films.flank import fin_efficiency, tooth_excess
 
 
 def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
@@ -198,3 +212,239 @@ def carried_and_given(rig: Rig, fields: Mapping[str, HousingField]) -> tuple[flo
     carried = math.fsum(heat_carried_off(fields[name].solution) for name in with_streams)
     given = math.fsum(heat_given_off(housing) for housing in with_volumes)
     return carried if with_streams else None, given if with_volumes else None
+
+
+# The heat split: share of the friction heat of each gear that goes into the oil, with its range.
+
+RANGED = ("wetted_share", "film_factor")
+"""Inputs of a flank film whose ranges make the range of the split, both at their low and both at their high end."""
+
+COMPARED = 1e-7
+"""Heat left over, relative to the heat turned over, of fields that are solved only to compare: microkelvins."""
+
+
+def heat_splits(rig: Rig, result: PointResult, field: HousingField) -> tuple[GearHeatSplit, ...]:
+    """Heat split of every gear of a housing at a held stage, with its range.
+
+    The range keeps losses, oil and warm gears of the converged state and solves the housing anew.
+    """
+    friction = friction_heat(rig, result, field.gearbox)
+    films = _films(rig, field.gearbox)
+    splits = split_as_solved(rig, result, field)
+    found: list[dict[str, GearHeatSplit]] = []
+    for end in (0, 1):
+        ends = _ends(rig, field.gearbox, films, end)
+        if ends is None:
+            return tuple(splits.values())
+        other = _solved_again(rig, result, field, friction, ends)
+        found.append({gear: _split(rig, result, other, gear, ends[gear]) for gear in splits})
+    low, high = found
+    return tuple(
+        replace(split, weak_film=low[gear], strong_film=high[gear]) for gear, split in splits.items()
+    )
+
+
+def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, GearHeatSplit]:
+    """Split of every meshed gear that friction heats, without its range: nothing is solved again."""
+    films, box = _films(rig, field.gearbox), rig.case.gearboxes[field.gearbox]
+    bodies = rig.models[field.gearbox].mesh.bodies
+    return {
+        gear: _split(rig, result, field, gear, films.get(gear))
+        for gear, heat in friction_heat(rig, result, field.gearbox).items()
+        if heat and f"gear_{box.gears[gear].shaft}" in bodies
+    }
+
+
+def friction_heat(rig: Rig, result: PointResult, name: str) -> dict[str, float]:
+    """Friction heat of all its meshes that enters the flanks of each gear of a gearbox [W]."""
+    box = rig.case.gearboxes[name]
+    heat = dict.fromkeys(box.gears, 0.0)
+    for placed in result.last.losses:
+        if placed.gearbox == name and placed.split is not None:
+            mesh = box.meshes[placed.part]
+            heat[mesh.pinion] += placed.split.pinion * placed.loss.power
+            heat[mesh.wheel] += (1.0 - placed.split.pinion) * placed.loss.power
+    return heat
+
+
+def _films(rig: Rig, name: str) -> dict[str, FlankFilm]:
+    box = rig.case.gearboxes[name]
+    return flank_films(box, rim_surfaces(box))
+
+
+def _ends(rig: Rig, name: str, films: Mapping[str, FlankFilm], end: int) -> dict[str, FlankFilm] | None:
+    """The films at one end of the ranges of the case; None where it states no range."""
+    box = rig.case.gearboxes[name]
+    if box.housing is None or box.heat_split.rule != "flank_film":
+        return None
+    ranges = {mark.path: mark.range for mark in rig.case.origin.marks if mark.range is not None}
+    rims = rim_surfaces(box)
+    entries = {surface: entry for entry, surface, _ in conditions_of(box.housing, rims.values())}
+    changed = {}
+    for gear, film in films.items():
+        at = f"gearboxes.{name}.housing.boundary.{entries[rims[gear]]}"
+        given = {key: float(ranges[f"{at}.{key}"][end]) for key in RANGED if f"{at}.{key}" in ranges}
+        changed[gear] = film.model_copy(update=given)
+    return changed if changed != dict(films) else None
+
+
+def _flanks(rig: Rig, result: PointResult, name: str, gear: str, film: FlankFilm) -> GearFlanks:
+    state = result.last.coupling_state
+    chamber = ChamberOil.of(name, state.oil_outlet, state.oil_supply)
+    return gear_flanks(rig, name, gear, result.point, film, chamber)
+
+
+def _solved_again(
+    rig: Rig,
+    result: PointResult,
+    field: HousingField,
+    friction: Mapping[str, float],
+    films: Mapping[str, FlankFilm],
+) -> HousingField:
+    """The field with other films on the teeth and what these let through to the rims."""
+    name = field.gearbox
+    gears = {surface: gear for gear, surface in rim_surfaces(rig.case.gearboxes[name]).items()}
+    bulk = result.last.coupling_state.gear_temperature
+    conditions: list[Condition] = []
+    for condition in field.conditions:
+        gear = gears.get(getattr(condition, "surface", ""))
+        if gear is not None and isinstance(condition, Film):
+            condition = _flanks(rig, result, name, gear, films[gear]).film(condition.surface, condition.kind)
+        elif gear is not None and isinstance(condition, SurfaceSource):
+            kept = _flanks(rig, result, name, gear, films[gear]).kept(bulk[f"{name}.{gear}"])
+            condition = replace(condition, power=kept * friction[gear])
+        conditions.append(condition)
+    setup = rig.conduction[name]
+    solution = solve_steady(setup, conditions, near=field.solution, tolerance=COMPARED)
+    return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
+
+
+def _split(
+    rig: Rig, result: PointResult, field: HousingField, gear: str, condition: FlankFilm | None
+) -> GearHeatSplit:
+    name = field.gearbox
+    box = rig.case.gearboxes[name]
+    rim = rim_surfaces(box)[gear]
+    heat = friction_heat(rig, result, name)[gear]
+    rows = [row for row in field.solution.balance.rows if row.surface == rim]
+    reached = math.fsum(row.power for row in rows if row.kind == "mesh_loss")
+    coefficient = efficiency = tooth = None
+    if condition is not None:
+        flanks = _flanks(rig, result, name, gear, condition)
+        wall = rows[0].mean_temperature
+        coefficient = flanks.law(wall, flanks.oil_temperature).value
+        efficiency = fin_efficiency(flanks.ring, coefficient)
+        excess = tooth_excess(flanks.ring, coefficient, heat, wall - flanks.oil_temperature)
+        tooth = flanks.oil_temperature + excess
+    return GearHeatSplit(
+        gear=f"{name}.{gear}",
+        rule=box.heat_split.rule,
+        friction=heat,
+        at_once=heat - reached,
+        film=-math.fsum(row.power for row in rows if row.kind == GEAR_OIL),
+        bulk_temperature=body_mean(rig, field, f"gear_{box.gears[gear].shaft}"),
+        tooth_temperature=tooth,
+        coefficient=coefficient,
+        fin_efficiency=efficiency,
+    )
+
+
+# Heat of the whole rig at a held stage: every source with its sinks, and the balance of the room.
+
+FAR_FROM_AMBIENT = 5.0
+"""Between the room and ``ambient.temperature``, from which it is named [K]."""
+
+
+def rig_heat(
+    rig: Rig,
+    last: IterationResult,
+    drive: DriveHeat,
+    circuits: Mapping[str, SteadyCircuit],
+    stated_heater: float,
+) -> RigHeat:
+    """Heat of the rig at one held stage.
+
+    drive : what drives it; circuits : oil circuits in balance
+    stated_heater : power that heats the oils whose inlet temperatures the case states [W]
+    """
+    sources = (
+        *_gearboxes(rig, last),
+        *_oil_supplies(circuits, stated_heater),
+        *(
+            HeatSource(name=part.name, kind="coupling", power=part.power, sinks={"room": part.power})
+            for part in drive.couplings
+        ),
+        *(_machine(rig, part) for part in drive.machines),
+    )
+    pumps = [placed.pumped for placed in last.losses]
+    pumps += [found.pump_heat + found.pump_to_room for found in circuits.values()]
+    heaters = [stated_heater, *(found.heater_power for found in circuits.values())]
+    room = _room(rig, sources)
+    return RigHeat(
+        stage=last.point.stage,
+        sources=sources,
+        drive_power=drive.power,
+        mains_power=drive.mains,
+        input_power=math.fsum((drive.mains, *pumps, *heaters)),
+        room=room,
+        warnings=_warnings(rig, drive, room),
+    )
+
+
+def _gearboxes(rig: Rig, last: IterationResult) -> Iterator[HeatSource]:
+    """Losses with the energy of the jets; what the walls do not give away leaves with the oil."""
+    steady = rig.case.ambient.warming_time is None
+    for name in rig.case.gearboxes:
+        own = [placed for placed in last.losses if placed.gearbox == name]
+        field = last.fields.get(name)
+        oil = (into_tank(rig, stream) for stream in last.streams if stream.name.startswith(f"{name}."))
+        sinks: dict[Sink, float] = {
+            "room": 0.0 if field is None else heat_to_room(field),
+            "oil": math.fsum(oil),
+            "no_heat": math.fsum(placed.not_heat for placed in own),
+        }
+        if field is not None and not steady:
+            sinks["stored"] = heat_stored(field)
+        power = math.fsum((*(placed.loss.power for placed in own), *(placed.pumped for placed in own)))
+        yield HeatSource(name=name, kind="gearbox", power=power, sinks=sinks)
+
+
+def _oil_supplies(circuits: Mapping[str, SteadyCircuit], stated_heater: float) -> Iterator[HeatSource]:
+    """Pumps and heaters of the oil circuits; their tanks and pipes give heat of the oil to the room."""
+    for name, found in circuits.items():
+        power = found.heater_power + found.pump_heat + found.pump_to_room
+        sinks: dict[Sink, float] = {"room": found.room_loss, "oil": power - found.room_loss}
+        yield HeatSource(name=name, kind="oil supply", power=power, sinks=sinks)
+    if stated_heater:
+        yield HeatSource(name="heaters", kind="oil supply", power=stated_heater, sinks={"oil": stated_heater})
+
+
+def _machine(rig: Rig, part: ComponentHeat) -> HeatSource:
+    sinks: dict[Sink, float] = {"room": part.to_room}
+    if part.to_coolant:
+        sinks["oil" if into_oil(rig, part) else "water"] = part.to_coolant
+    return HeatSource(name=part.name, kind="machine", power=part.power, sinks=sinks)
+
+
+def into_oil(rig: Rig, part: ComponentHeat) -> bool:
+    """Whether the coolant of a machine is an oil of the rig; else it is water of its own."""
+    return part.split.coolant in (*rig.case.oil_circuits, OIL_COOLER)
+
+
+def _room(rig: Rig, sources: Sequence[HeatSource]) -> RoomBalance | None:
+    room = rig.heat_parts.room
+    if room is None:
+        return None
+    heats = {f"{source.kind} {source.name}": source.sinks.get("room", 0.0) for source in sources}
+    return room_balance(room, {name: heat for name, heat in heats.items() if heat})
+
+
+def _warnings(rig: Rig, drive: DriveHeat, room: RoomBalance | None) -> tuple[str, ...]:
+    found = [f"{part.name}: {text}" for part in drive.components for text in part.warnings]
+    ambient = rig.case.ambient.temperature
+    if room is not None and abs(room.temperature - ambient) > FAR_FROM_AMBIENT:
+        found.append(
+            f"room: temperature = {celsius(room.temperature)}: the housings are computed in a room of "
+            f"{celsius(ambient)} (ambient.temperature); write that of the room and compute again"
+        )
+    return tuple(found)

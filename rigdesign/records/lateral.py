@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.drivetrain.power_loop import speed_ratios
-from dynamics.elastic_rig.lateral import (
+from dynamics.elastic_rig.damped_modes import (
     LineLoads,
     LineWhirl,
     RigMode,

@@ -9,25 +9,149 @@ axes, and so not in K_Hbeta.
 from dataclasses import dataclass
 from functools import cached_property
 from math import radians
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.contact_ratio import unloaded_contact_ratio
-from dynamics.contact.face import FaceGrid, default_positions
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.pitch_deviation import transverse_load_factor
-from dynamics.contact.root_course import RootCourse, root_course
+from dynamics.contact.compliance import InterpolatedCompliance
+from dynamics.contact.loaded_mesh import LoadedMesh, transverse_load_factor
+from dynamics.contact.mesh_cycle import MeshCycle, unloaded_contact_ratio
+from dynamics.contact.points import FaceGrid, FlankGap, default_positions, face_sense, modified_gap
+from dynamics.contact.root_field import RootCourse, root_course
+from dynamics.flank.field import AxisMisalignment, Flank
+from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
+from dynamics.gear.root_arc import normal_arc
+from dynamics.influence.numbers import InfluenceNumbers
+from dynamics.mesh.pair_gap import PairGap
+from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.mesh_models import mesh_microgeometry
 from rigdesign.coupling.state import LEAST_TORQUE
-from rigdesign.records.contact_gap import HeldFlanks, held_flanks
-from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
-from rigdesign.results.teeth import LoadedContact
+from rigdesign.results.teeth import GaugeStress, LoadedContact
 from rigdesign.rig.model import Rig
+from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.rig.tooth_influence import ToothInfluence
+from rigdesign.strain_gauge.measuring_point import GaugeCurve, gauge_curve
 from thermal.fe.kept_results import kept
+
+# Root stress at the strain gauges of a mesh, from its loaded contact and the influence numbers of its gears.
+#
+# A gauge is reported in the first mesh of its gear. What a second mesh of the same gear does to it, at another rolling
+# angle, is not in the curve.
+
+GEARS = ("pinion", "wheel")
+
+
+class ElasticGear(NamedTuple):
+    """Influence numbers of a gear and the compliance made of them, on the face positions of the contact."""
+
+    numbers: InfluenceNumbers
+    compliance: InterpolatedCompliance
+
+
+def gauge_stresses(
+    rig: Rig,
+    mesh: str,
+    cycle: MeshCycle,
+    gears: tuple[ElasticGear, ElasticGear],
+    flank: Flank = "front",
+) -> tuple[GaugeStress, ...]:
+    """Stress at the gauges of pinion and wheel of a mesh, ``gearbox.mesh``, under the torque of a cycle.
+
+    flank : that carries
+    """
+    box, own = rig.mesh(mesh)
+    found = []
+    for name, gauge in rig.strain_gauges.items():
+        first, side = box.first_meshes().get(gauge.gear.split(".")[1], ("", 0))
+        if gauge.gear == rig.mesh_gears(mesh)[side] and first == own:
+            found.append(
+                GaugeStress(
+                    name=name.split(".")[2],
+                    gear=GEARS[side],
+                    tooth=gauge.tooth,
+                    front=gauge.front,
+                    point=gauge.point,
+                    curve=stress_at(gauge, cycle, gears[side], rig.pairs[mesh], 1 if side else 0, flank),
+                )
+            )
+    return tuple(found)
+
+
+def stress_at(
+    gauge: RootGauge,
+    cycle: MeshCycle,
+    gear: ElasticGear,
+    pair: GearPair,
+    index: Literal[0, 1],
+    flank: Flank = "front",
+) -> GaugeCurve:
+    """Curve of one gauge on the pinion (0) or wheel (1) of a pair, which is the cold one; ``flank`` carries."""
+    under_load = gauge.front == (flank == "front")
+    course = root_course(cycle, gear.numbers, gear.compliance, index, 1 if under_load else -1)
+    if face_sense(flank) < 0.0:
+        course = course.turned()
+    fillet = gear.numbers.fillet
+    places = normal_arc(pair.gears[index], fillet.point, fillet.arc)
+    sense = -1.0 if index else 1.0
+    return gauge_curve(course, places, gauge.point, sense / pair.base_radii[index])
+
+
+# Flanks and axes of a mesh at a held point, as its loaded contact sees them: the flanks that carry, and what the
+# expansion of the warm housing makes of the axes over the face.
+#
+# The axes stand as made (``axis_inclination``, ``axis_skew``), are moved by the bores of the warm housing and, where
+# shafts bend, tilted by them and by the journals in their clearance. Signs: `rigdesign.coupling.alignment`.
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldFlanks:
+    """Flanks of a warm mesh that carry at a held point, and its axes.
+
+    micro : modifications and deviations of pinion and wheel; axes : over z
+    """
+
+    pair: GearPair
+    micro: tuple[Microgeometry, Microgeometry]
+    axes: AxisMisalignment
+    flank: Flank
+
+    @property
+    def gap(self) -> FlankGap:
+        """Gap of the loaded flanks, all teeth alike with their modifications, at the face positions of the contact.
+
+        Raises DynamicsInputError for a micro-geometry that does not fit.
+        """
+        return modified_gap(PairGap.of_pair(self.pair, self.micro, self.axes), self.flank)
+
+    @property
+    def face_sense(self) -> float:
+        """Face position z per face position of the contact, 1 or -1."""
+        return face_sense(self.flank)
+
+
+def held_flanks(rig: Rig, point: PointResult, mesh: int) -> HeldFlanks:
+    """Flanks of a mesh, by its number, that its mean torque loads at a held point."""
+    name, model = rig.mesh_names[mesh], point.last.models[mesh]
+    response = point.last.response
+    assert response is not None
+    return HeldFlanks(
+        pair=model.pair,
+        micro=mesh_microgeometry(rig, name, model.pair),
+        axes=warm_axes(rig, point, mesh),
+        flank="front" if response.flank[mesh] > 0.0 else "back",
+    )
+
+
+def warm_axes(rig: Rig, point: PointResult, mesh: int) -> AxisMisalignment:
+    """Misalignment of a mesh as made, by its shafts and by the expansion of its housing, where these are computed."""
+    name = rig.mesh_names[mesh]
+    expansion = point.last.expansion.get(name.split(".")[0])
+    shape = None if expansion is None else expansion.deformed
+    return axes_in_mesh(rig, name, point.last.coupling_state, shape)
+
 
 Array = NDArray[np.float64]
 ROOT = radians(15.0)

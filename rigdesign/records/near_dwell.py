@@ -10,9 +10,8 @@ from dynamics.drivetrain.modes import LoopMode
 from rigdesign.records.campbell import excitation_orders
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loop_modes import modes_at
-from rigdesign.records.loop_states import AROUND, dwell_speeds, is_around, state_at
-from rigdesign.records.resonance_bands import USUAL_MARGIN, DynamicShare, resonances
+from rigdesign.records.loop_states import AROUND, dwell_speeds, is_around, modes_at, state_at
+from rigdesign.records.resonances import USUAL_MARGIN, DynamicShare, resonances
 from rigdesign.records.torques_over_speed import LoopOverSpeed, torques_over_speed
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.vibration import AvoidedResonance, CampbellCrossing, NearResonance, TorqueOverSpeed

@@ -4,25 +4,23 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from rigdesign.base.finite import finite
+from rigdesign.base.json_text import finite
 from rigdesign.case.model import Case
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun, SolvedLoads
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.near_dwell import NearDwell
-from rigdesign.records.part_torques import PartTorque, part_torques
-from rigdesign.records.press_fits import press_fits
-from rigdesign.records.spline_capacity import spline_stresses
+from rigdesign.records.press_fits import press_fits, spline_stresses
+from rigdesign.records.run_torques import PartTorque, part_torques
 from rigdesign.records.vibration import LoopVibration
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
 from rigdesign.results.events import EventRecord
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.lateral import LateralVibration
-from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.loads import DynamicLoads, PressFitCapacity, SplineStress
 from rigdesign.results.result import DiscretisationRow, MeshShift
-from rigdesign.results.seats import PressFitCapacity, SplineStress
 from rigdesign.results.transient import HistoryExtremes
 from rigdesign.results.vibration import HeldTorque
 from rigdesign.results.warm_gearbox import WarmGearbox

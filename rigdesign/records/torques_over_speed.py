@@ -16,12 +16,12 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.rating.dynamic_factor import parabola_apex
 from dynamics.response.response_curve import CurvePoint, ResponseCurve
 from dynamics.response.section_torque import SectionTorques, section_torques
+from rigdesign.coupling.braced_loop import periodic_laws
 from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.coupling.twist_rows import twist_rows_of
-from rigdesign.records.held_torques import section_swings
 from rigdesign.records.loop_states import LoopState, dwell_speeds, is_around, nearest
+from rigdesign.records.run_torques import section_swings
 from rigdesign.results.vibration import TorqueOverSpeed, TorquePlace, TorqueSwing
 from rigdesign.rig.model import Rig
 

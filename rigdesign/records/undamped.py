@@ -9,8 +9,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.curves import own_ratio
 from rigdesign.records.dynamics import mode_crossings
-from rigdesign.records.loop_modes import held_modes
-from rigdesign.records.loop_states import dwell_speeds, dwell_stages
+from rigdesign.records.loop_states import dwell_speeds, dwell_stages, held_modes
 from rigdesign.results.loads import ModeCrossing
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig

@@ -10,10 +10,10 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.records.campbell import campbell
 from rigdesign.records.curves import dense, response_solver
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.held_torques import held_torques
 from rigdesign.records.lateral import lateral_vibration, seal_whirls
 from rigdesign.records.loop_states import LoopState, loop_states
 from rigdesign.records.near_dwell import NearDwell, near_dwells
+from rigdesign.records.run_torques import held_torques
 from rigdesign.records.start_torque import StartResponse, start_response
 from rigdesign.records.torques_over_speed import LoopOverSpeed, Solve, torques_over_speed
 from rigdesign.results.lateral import LateralVibration

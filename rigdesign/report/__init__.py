@@ -7,9 +7,8 @@ from typing import Any
 from rigdesign.base.errors import NonFiniteResultError, OutputError
 from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import file_stem, prepare_output, remove_published, staged, write_whole
-from rigdesign.report.failure import FAILURE, write_failure
-from rigdesign.report.issue import Issue
-from rigdesign.report.results_json import results_document
+from rigdesign.report.input_sheets import Issue
+from rigdesign.report.results_json import FAILURE, results_document, write_failure
 from rigdesign.results.result import RunResult
 
 __all__ = [

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.output_folder import file_stem
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.results.thermal import TemperatureField
 from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh
 

@@ -2,9 +2,8 @@
 
 from rigdesign.base.units import number_match
 from rigdesign.report.numbers import margin_unit, number_text, quantity_text, stated_text
-from rigdesign.results.flips import Flip
 from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
-from rigdesign.results.result import RunResult
+from rigdesign.results.result import Flip, RunResult
 
 SHOWN = 4
 """Inputs on the first page."""

@@ -1,16 +1,101 @@
 """The data sheets of the report: gears, materials and oils as the case states them."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import date
+from typing import Any
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
-from rigdesign.base.units import QuantityError, parse
+from rigdesign.base.units import ZERO_CELSIUS, QuantityError, parse
+from rigdesign.case.provenance import InputRow
 from rigdesign.properties.materials import MATERIALS
 from rigdesign.properties.oil import OILS, Oil
-from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.numbers import number_text, quantity_text, stated_text
 from rigdesign.results.dynamics import GearboxDynamics
 from rigdesign.results.result import RunResult
+
+# The stated values of a case as a tree again: what the input sheets and the drawing of the rig read.
+
+
+@dataclass(frozen=True)
+class CaseSheet:
+    """A table of the case by key: a table again, or a row with value and basis."""
+
+    entries: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, rows: Sequence[InputRow]) -> "CaseSheet":
+        """The tree of ``RunResult.inputs``."""
+        tree: dict[str, Any] = {}
+        for row in rows:
+            *tables, key = row.path.split(".")
+            node = tree
+            for table in tables:
+                node = node.setdefault(table, {})
+            node[key] = row
+        return cls(tree)
+
+    def table(self, path: str) -> "CaseSheet":
+        """The table at a dotted path; an empty one where the case has none."""
+        node: Any = self.entries
+        for key in path.split("."):
+            node = node.get(key, {}) if isinstance(node, Mapping) else {}
+        return CaseSheet(node if isinstance(node, Mapping) else {})
+
+    def tables(self, path: str) -> Iterator[tuple[str, "CaseSheet"]]:
+        """Name and content of every table in the table at a path."""
+        for name, node in self.table(path).entries.items():
+            if isinstance(node, Mapping):
+                yield name, CaseSheet(node)
+
+    def raw(self, path: str, absent: str = "") -> str:
+        """A value as the case writes it."""
+        parent, _, key = path.rpartition(".")
+        row = (self.table(parent) if parent else self).entries.get(key)
+        return row.value if isinstance(row, InputRow) else absent
+
+    def value(self, path: str, absent: str = "–") -> str:
+        """A value as it reads in a report."""
+        found = self.raw(path)
+        return stated_text(found) if found else absent
+
+
+# What makes a printed report a document: who prepared it, for what, and when it was issued.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Issue:
+    """One issue of a report.
+
+    date : the one thing of the page that differs between two runs of one case, apart from computing times
+    author : in place of ``document.author`` of the case
+    """
+
+    date: date = field(default_factory=date.today)
+    author: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signatures:
+    """What stands in and above the block of signatures; empty where the case says nothing."""
+
+    project: str
+    number: str
+    prepared: str
+    checked: str
+    approved: str
+
+
+def signatures(result: RunResult, issue: Issue) -> Signatures:
+    """From the table ``document`` of the case."""
+    document = CaseSheet.of(result.inputs).table("document")
+    return Signatures(
+        project=document.raw("project"),
+        number=document.raw("number"),
+        prepared=issue.author or document.raw("author"),
+        checked=document.raw("checked_by"),
+        approved=document.raw("approved_by"),
+    )
+
 
 Row = tuple[str, list[str]]
 """Name of a quantity, and a cell for each column."""
@@ -225,3 +310,109 @@ def _material_cells(case: CaseSheet, name: str) -> list[str]:
         "–" if steel.root_strength is None else f"{number_text(1e-6 * steel.root_strength)} N/mm²",
         "–" if tempering is None else f"{number_text(tempering - ZERO_CELSIUS)} °C",
     ]
+
+
+# The data sheets of the drivetrain as the case states it: shafts with their discs, joints, bearings.
+
+
+def shaft_sheet(result: RunResult) -> Sheet | None:
+    """Shafts of the drivetrain: length, diameters, discs."""
+    case = CaseSheet.of(result.inputs)
+    shafts = list(case.tables("drivetrain.shafts"))
+    if not shafts:
+        return None
+    rows = [(name.replace("_", " "), _shaft_cells(shaft)) for name, shaft in shafts]
+    return Sheet(title="Shafts", columns=["length", "outer diameters", "discs", "material"], rows=rows)
+
+
+def _shaft_cells(shaft: CaseSheet) -> list[str]:
+    sections = [section for _, section in shaft.tables("sections")]
+    lengths = [stated_number(section.raw("length"), "length") for section in sections]
+    total = sum(length for length in lengths if length is not None)
+    diameters = [section.value("outer_diameter").removesuffix(" mm") for section in sections]
+    discs = [
+        f"{name.replace('_', ' ')} {_together(disc, 'inertia', 'mass', 'diametral_inertia')}"
+        for name, disc in shaft.tables("discs")
+    ]
+    return [
+        f"{number_text(1e3 * total)} mm",
+        f"{', '.join(diameters)} mm",
+        ", ".join(discs) or "–",
+        shaft.raw("material").replace("_", " "),
+    ]
+
+
+def _together(part: CaseSheet, *keys: str) -> str:
+    """Those of the values that the case states."""
+    return ", ".join(part.value(key) for key in keys if part.raw(key)) or "–"
+
+
+def bearing_sheet(result: RunResult) -> Sheet | None:
+    """What the case states of the bearings as springs under shafts that bend; None where it leaves all to the run."""
+    case = CaseSheet.of(result.inputs)
+    power = case.table("drivetrain")
+    if not power.entries or power.raw("shaft_model") == "torsional":
+        return None
+    radial = power.raw("bearing_coefficients") == "stated"
+    rows: list[Row] = [
+        (
+            f"{box_name}.{name}",
+            [
+                bearing.raw("shaft").replace("_", " "),
+                _together(bearing, "radial_stiffness", "radial_damping") if radial else "computed",
+                bearing.value("axial_stiffness"),
+                _together(bearing, "support_stiffness", "support_damping", "support_mass"),
+            ],
+        )
+        for box_name, box in case.tables("gearboxes")
+        for name, bearing in box.tables("bearings")
+    ]
+    if not radial and all(cells[2:] == ["–", "–"] for _, cells in rows):
+        return None
+    columns = ["on", "radial stiffness, damping", "axial stiffness", "support"]
+    return Sheet(title="Bearings under the shafts", columns=columns, rows=rows)
+
+
+def joint_sheet(result: RunResult) -> Sheet | None:
+    """Couplings, splines and motor: stiffness, damping, inertia."""
+    case = CaseSheet.of(result.inputs)
+    rows: list[Row] = [
+        (
+            f"coupling {name.replace('_', ' ')}",
+            [
+                coupling.raw("shafts").replace("_", " "),
+                coupling.value("torsional_stiffness"),
+                coupling.value("torsional_damping"),
+                "–",
+                _together(coupling, "radial_stiffness", "axial_stiffness", "angular_stiffness"),
+            ],
+        )
+        for name, coupling in case.tables("drivetrain.couplings")
+    ]
+    for box_name, box in case.tables("gearboxes"):
+        for name, gear in box.tables("gears"):
+            spline = gear.table("spline")
+            cells = [
+                gear.raw("shaft").replace("_", " "),
+                spline.value("torsional_stiffness"),
+                f"loss factor {spline.value('loss_factor')}"
+                if float(spline.raw("loss_factor") or 0.0)
+                else spline.value("torsional_damping"),
+                gear.value("inertia"),
+                "–",
+            ]
+            rows.append((f"gear {box_name}.{name}", cells))
+    motor = case.table("drivetrain.motor")
+    if motor.entries:
+        limit = f"torque limit {motor.value('torque_limit')}"
+        rows.append(
+            (f"motor, {limit}", [motor.raw("shaft").replace("_", " "), "–", "–", motor.value("inertia"), "–"])
+        )
+    columns = [
+        "on",
+        "torsional stiffness",
+        "torsional damping",
+        "inertia",
+        "radial, axial, angular stiffness",
+    ]
+    return Sheet(title="Couplings, splines, motor", columns=columns, rows=rows) if rows else None

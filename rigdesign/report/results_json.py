@@ -1,11 +1,13 @@
 """results.json: every result but the nodal fields, the same bytes for the same case; and read again."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from rigdesign.base.errors import WIDEST_PLACE, UsageError, shortened
-from rigdesign.base.json_text import to_plain
+from rigdesign.base.errors import WIDEST_PLACE, NotConvergedError, UsageError, shortened
+from rigdesign.base.json_text import to_plain, to_text
+from rigdesign.base.output_folder import write_whole
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
 from rigdesign.difference.reading import AGAIN, read_document
 from rigdesign.results.check import Check, Checks
@@ -124,3 +126,35 @@ def _histories(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         residuals = {key: value for key, value in row.items() if key not in ("stage", "pass")}
         by_stage.setdefault(row["stage"], []).append(residuals)
     return [{"stage": stage, "iterations": len(own), "residuals": own} for stage, own in by_stage.items()]
+
+
+# failure.json: what a run without convergence leaves to look at.
+
+FAILURE = "failure.json"
+"""Written next to the files of an earlier run, which stay; a run that ends well removes it."""
+
+
+def write_failure(error: NotConvergedError, out: Path) -> Path | None:
+    """Write what an iteration went through to ``out``/failure.json; its path, None where the error holds nothing.
+
+    Raises
+    ------
+    OutputError
+        If the folder cannot be written.
+    """
+    if not error.history:
+        return None
+    document = {"tool_version": __version__, "error": str(error), "history": _finite(error.history)}
+    write_whole(out / FAILURE, to_text(to_plain(document)))
+    return out / FAILURE
+
+
+def _finite(value: Any) -> Any:
+    """The same with texts for numbers that JSON has no form for: a run that diverges may end in them."""
+    if isinstance(value, Mapping):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Literal
 
-from dynamics.elastic_rig.lateral import RigMode
+from dynamics.elastic_rig.damped_modes import RigMode
 
 RIGID, SWAYING = 0.05, 0.1
 """Strain energy over kinetic energy, and frequency over that of the fastest shaft, below which a mode is no vibration
@@ -139,3 +139,54 @@ class LateralVibration:
     def of(self, torque: Torque) -> tuple[StageLateral, ...]:
         """Stages with their torque, or without."""
         return tuple(stage for stage in self.stages if stage.torque == torque)
+
+
+# Rolling bearings at the held stages: SI records.
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollingBearingRecord:
+    """One rolling bearing at one held stage."""
+
+    name: str
+    """``gearbox.bearing``."""
+    stage: str
+    designation: str
+    radial_load: float
+    """[N]"""
+    axial_load: float
+    """Inside the bearing, the induced one included [N]."""
+    speed: float
+    """[rad/s]"""
+    torques: tuple[float, float, float, float]
+    """Rolling, sliding, seals, drag [N m]."""
+    power: float
+    """Friction by its law [W]."""
+    temperature: float
+    """Of rolling elements and lubricant [K]."""
+    inner_ring: float
+    """[K]"""
+    outer_ring: float
+    """[K]"""
+    heat_to_shaft: float
+    """[W]"""
+    heat_to_housing: float
+    """[W]"""
+    clearance: float
+    """Radial internal clearance as it runs, on the diameter; negative is preload [m]."""
+    basic_life: float
+    """L_10h [h]; infinite at rest."""
+    modified_life: float
+    """L_nmh [h]; infinite at rest."""
+    static_safety: float
+    viscosity_ratio: float
+    speed_utilisation: float
+    """Speed over the limiting speed."""
+    minimum_load: float
+    """[N]"""
+    radial_stiffness: float
+    """[N/m]"""
+    axial_stiffness: float
+    """[N/m]"""
+    tilting_stiffness: float
+    """In the plane of the radial load [N m/rad]."""

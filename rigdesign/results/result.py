@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
-from rigdesign.case.inputs import InputRow
+from rigdesign.case.provenance import InputRow
 from rigdesign.results.check import STATUSES, Checks, Status
 from rigdesign.results.curves import Columns, curves_of, lateral_curves
 from rigdesign.results.dynamics import DynamicsResult
-from rigdesign.results.flips import Flip, FlipSearch
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.thermal import ExpansionResult, LossRow, OilRow, TemperatureField, ThermalResult
 from rigdesign.results.transient import TransientResult
@@ -23,6 +22,43 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     import pandas
+
+# Inputs that would turn failing checks: immutable records, named as they stand in results.json.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flip:
+    """One input at the value at which a check changes between held and broken, all others as stated.
+
+    path : of the input; empty for the limit of the check itself; ``*`` where several move together
+    stated, needed : as the case would write them; ``needed`` is empty where no value is known
+    check : the check; ``holds`` says whether it holds at the stated value
+    turns : whether the verdict turns with it: no other check fails then
+    effect : what follows, in words
+    """
+
+    path: str
+    title: str
+    stated: str
+    needed: str
+    check: str
+    holds: bool
+    turns: bool
+    effect: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlipSearch:
+    """What was looked at for `Flip` rows.
+
+    inputs : titles of the inputs that were moved, each alone
+    checks : ids of the checks that they were to turn; ``not_searched`` the other failing
+        ones, which would take the run again
+    """
+
+    inputs: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
+    not_searched: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,20 +6,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.flank_gap import face_sense
 from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.root_course import RootCourse
-from dynamics.contact.tooth_turn import Fillet, ToothTurn
-from dynamics.flank.axes import AxisMisalignment
-from dynamics.flank.field import Flank
+from dynamics.contact.points import face_sense
+from dynamics.contact.root_field import Fillet, RootCourse, ToothTurn
+from dynamics.flank.field import AxisMisalignment, Flank
 from dynamics.rating.flank_contact import ContactFactors
-from dynamics.rating.mean_stress import MeanRootStress, mean_stress_factor
 from dynamics.rating.micropitting import FilmRatios
 from dynamics.rating.pitting import Pitting
+from dynamics.rating.root_stress import MeanRootStress, mean_stress_factor
 from dynamics.rating.scuffing import ContactTemperature
 from rigdesign.results.dynamics import StressSource
-from rigdesign.strain_gauge.gauge_curve import GaugeCurve
-from rigdesign.strain_gauge.measuring_point import MeasuringPoint
+from rigdesign.strain_gauge.measuring_point import GaugeCurve, MeasuringPoint
 
 Array = NDArray[np.float64]
 Row = tuple[float, ...]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from rigdesign.transient.warm_up import Soak
+from rigdesign.transient.soak import Soak
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 
 ZERO = ZERO_CELSIUS
 """0 degC [K]."""

@@ -5,9 +5,14 @@ file does not state or states unusably. Positions count along the shaft from its
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from math import cos, fsum
 from typing import Literal
+
+from rigdesign.rexs.attribute_log import AttributeLog
+from rigdesign.rexs.model import AttributeValueError, Component, RexsModel
+from rigdesign.rexs.versions import before_1_1
 
 Vector = tuple[float, float, float]
 
@@ -262,3 +267,203 @@ class GearUnit:
     def shaft(self, number: int) -> UnitShaft:
         """Shaft of this id; KeyError for none."""
         return self._shafts_by_id[number]
+
+
+# Cylindrical gears and their meshes.
+
+_APPLICATION_FACTORS = (
+    "application_factor_iso_6336_2019", "application_factor_iso_6336_2006", "application_factor_din_3990_1987",
+)  # fmt: skip
+_DEEPEST_TIP, _HIGHEST_TIP = -1.25, 2.0
+"""Modules from the shifted reference circle between which a tip circle lies."""
+
+
+def read_gears(model: RexsModel, log: AttributeLog) -> tuple[UnitGear, ...]:
+    """Cylindrical gears with outer teeth, in the order of the file."""
+    return tuple(_gear(model, log, component) for component in model.of_type("cylindrical_gear"))
+
+
+def read_meshes(model: RexsModel, log: AttributeLog, gears: tuple[UnitGear, ...]) -> tuple[UnitMesh, ...]:
+    """Cylindrical stages of two such gears; stages with a ring gear are left out."""
+    known = {gear.id: gear for gear in gears}
+    meshes = []
+    for stage in model.of_type("cylindrical_stage"):
+        relations = model.relations_of("stage", "stage", stage.id)
+        pair = [relations[0].with_role(role) for role in ("gear_1", "gear_2")] if relations else [None, None]
+        first, second = (known.get(number) if number is not None else None for number in pair)
+        if first is not None and second is not None and first is not second:
+            meshes.append(_mesh(model, log, stage, first, second))
+        else:
+            log.list_rest(stage, "a stage that is not of two cylindrical gears with outer teeth")
+    return tuple(meshes)
+
+
+def _gear(model: RexsModel, log: AttributeLog, component: Component) -> UnitGear:
+    here = f"gears[{component.id}]"
+    width = log.number(component, "face_width", "mm", f"{here}.face_width", above=0.0)
+    gear = UnitGear(
+        id=component.id,
+        name=component.name,
+        shaft=shaft_of(model, component.id),
+        position=gear_position(model, log, component, width),
+        teeth=log.whole_number(component, "number_of_teeth", f"{here}.teeth", least=3),
+        normal_module=log.number(component, "normal_module", "mm", f"{here}.normal_module", above=0.0),
+        helix_angle=log.number(component, "helix_angle_reference_diameter", "deg", f"{here}.helix_angle"),
+        face_width=width,
+        tip_diameter=log.number(component, "tip_diameter", "mm", f"{here}.tip_diameter", above=0.0),
+        bore_diameter=log.number(component, "inner_diameter", "mm", f"{here}.bore_diameter"),
+        quality_grade=log.whole_number(
+            component, "global_tolerance_class_iso_1328_2013", f"{here}.quality_grade", least=1
+        ),
+        flank_roughness=log.number(
+            component,
+            "arithmetic_mean_roughness_flank_iso_4287_1997",
+            "mum",
+            f"{here}.flank_roughness",
+            above=0.0,
+        ),
+        material=_material_of(model, component.id),
+    )
+    return _with_plausible_tip(log, component, _with_flanks(model, log, component, gear))
+
+
+def _with_flanks(model: RexsModel, log: AttributeLog, component: Component, gear: UnitGear) -> UnitGear:
+    """Pressure angle and profile shift, which REXS states of each flank; the left one counts."""
+    flanks = [
+        flank for side in ("left", "right") for flank in model.related("flank", "gear", component.id, side)
+    ]
+    here = f"gears[{gear.id}]"
+    angles = [
+        log.number(flank, "normal_pressure_angle", "deg", f"{here}.pressure_angle", above=0.0)
+        for flank in (*flanks, component)
+    ]
+    shifts = [_profile_shift(log, flank, gear, here) for flank in (*flanks, component)]
+    for attribute, values in (
+        ("normal_pressure_angle", angles), ("addendum_modification_coefficient", shifts),
+    ):  # fmt: skip
+        for flank, value in zip(flanks[1:], values[1:], strict=False):
+            if value is not None and values[0] is not None and abs(value - values[0]) > 1e-9:
+                log.refuse(flank, attribute, "not that of the left flank, which counts for both")
+    return replace(gear, pressure_angle=_first(angles), profile_shift=_first(shifts))
+
+
+def _profile_shift(log: AttributeLog, flank: Component, gear: UnitGear, here: str) -> float | None:
+    target = f"{here}.profile_shift"
+    stated = log.number(flank, "addendum_modification_coefficient", "none", target)
+    if stated is not None or gear.normal_module is None:
+        return stated
+    length = log.number(flank, "addendum_modification", "mm", target)
+    return None if length is None else length / gear.normal_module
+
+
+def _with_plausible_tip(log: AttributeLog, component: Component, gear: UnitGear) -> UnitGear:
+    """Drop a tip diameter that cannot be that of the gear; some exporters write 1 mm for one that is not set."""
+    module, tip = gear.normal_module, gear.tip_diameter
+    if module is None or gear.teeth is None or tip is None or gear.teeth > 10_000:
+        return gear
+    reference = gear.teeth * module / max(abs(cos(gear.helix_angle or 0.0)), 0.1)
+    least, most = (
+        reference + 2.0 * module * ((gear.profile_shift or 0.0) + height)
+        for height in (_DEEPEST_TIP, _HIGHEST_TIP)
+    )
+    if least < tip < most:
+        return gear
+    reason = f"not the tip of {gear.teeth} teeth of this module ({least * 1e3:.4g} to {most * 1e3:.4g} mm)"
+    log.refuse(component, "tip_diameter", reason)
+    return replace(gear, tip_diameter=None)
+
+
+def _mesh(
+    model: RexsModel, log: AttributeLog, stage: Component, first: UnitGear, second: UnitGear
+) -> UnitMesh:
+    here = f"meshes[{stage.id}]"
+    swapped = first.teeth is not None and second.teeth is not None and second.teeth < first.teeth
+    pinion, wheel = (second, first) if swapped else (first, second)
+    factors = [
+        log.number(stage, name, "none", f"{here}.application_factor", above=0.0)
+        for name in _APPLICATION_FACTORS
+    ]
+    return UnitMesh(
+        id=stage.id,
+        name=stage.name,
+        pinion=pinion.id,
+        wheel=wheel.id,
+        centre_distance=log.number(stage, "center_distance", "mm", f"{here}.centre_distance", above=0.0),
+        application_factor=_first(factors),
+        face_load_factor=log.number(
+            stage, "face_load_factor_contact_stress", "none", f"{here}.face_load_factor", above=0.0
+        ),
+    )
+
+
+def _material_of(model: RexsModel, part: int) -> int | None:
+    found = model.related("reference", "origin", part, "referenced")
+    return next((item.id for item in found if item.type == "material"), None)
+
+
+def _first(values: list[float | None]) -> float | None:
+    return next((value for value in values if value is not None), None)
+
+
+# Where a part sits on its shaft, from its coordinate on the shaft and from its place in the gear unit.
+
+SAME_PLACE = 1e-6
+"""Difference of two statements of one position that is round-off [m]."""
+
+
+def shaft_of(model: RexsModel, part: int) -> int | None:
+    """Id of the shaft that a part is assembled on, None for none."""
+    owners = model.related("assembly", "part", part, "assembly")
+    return next((owner.id for owner in owners if owner.type == "shaft"), None)
+
+
+def place_of(component: Component, log: AttributeLog, target: str) -> tuple[Vector | None, Vector | None]:
+    """Origin [m] and unit vector of a component's axis in the coordinates it refers to; None where not stated."""
+    origin = log.vector(component, "support_vector", "mm", f"{target}.origin")
+    return origin, log.direction(component, "u_axis_vector", f"{target}.axis")
+
+
+def gear_position(
+    model: RexsModel, log: AttributeLog, gear: Component, face_width: float | None
+) -> float | None:
+    """Middle of the face of a gear from the start of its shaft [m].
+
+    ``u_coordinate_on_shaft`` counts to the middle; files of REXS 1.0 have it to the start of the face. The place of the
+    gear in the gear unit always is that of its middle, so that it decides where the two differ.
+    """
+    target = f"gears[{gear.id}].position"
+    coordinate = log.number(gear, "u_coordinate_on_shaft", "mm", target)
+    shaft = shaft_of(model, gear.id)
+    middle = None if shaft is None else _along(model, log, gear, model.component(shaft), target)
+    if middle is not None:
+        if coordinate is not None and abs(middle - coordinate) > SAME_PLACE:
+            reason = (
+                f"not the middle of the face, which its place in the gear unit puts at {middle * 1e3:.6g} mm"
+            )
+            log.refuse(gear, "u_coordinate_on_shaft", reason)
+        return middle
+    if coordinate is not None and face_width is not None and before_1_1(model.version):
+        return coordinate + 0.5 * face_width
+    return coordinate
+
+
+def _along(
+    model: RexsModel, log: AttributeLog, part: Component, shaft: Component, target: str
+) -> float | None:
+    """Distance of a part from the start of its shaft along the axis, where both refer to the same coordinates."""
+    frames = [_reference(component) for component in (part, shaft)]
+    if frames[0] is None or frames[0] != frames[1] or not model.has(frames[0]):
+        return None
+    origin, axis = place_of(shaft, log, f"shafts[{shaft.id}]")
+    place = log.vector(part, "support_vector", "mm", target)
+    if origin is None or axis is None or place is None:
+        return None
+    return fsum((there - here) * along for there, here, along in zip(place, origin, axis, strict=True))
+
+
+def _reference(component: Component) -> int | None:
+    found = component.attribute("reference_component_for_position")
+    try:
+        return found.whole_number() if found else None
+    except AttributeValueError:
+        return None

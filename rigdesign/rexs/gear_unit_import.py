@@ -18,10 +18,12 @@ from rigdesign.rexs.gear_unit import (
     UnitLubricant,
     UnitMaterial,
     UnitShaft,
+    place_of,
+    read_gears,
+    read_meshes,
+    shaft_of,
 )
 from rigdesign.rexs.model import Component, RexsModel
-from rigdesign.rexs.positions import place_of, shaft_of
-from rigdesign.rexs.toothing import read_gears, read_meshes
 from rigdesign.rexs.versions import ROLLING_BEARINGS, Renaming, in_newest_names
 
 # Bearings and couplings: what they join, where, and what the file says of them.

@@ -1,12 +1,13 @@
 """REXS in JSON (.rexsj): the model of the XML with the value type as key, after the JSON schema of FVA."""
 
+import binascii
 import json
+import struct
+from base64 import b64decode
 from collections.abc import Mapping
 from typing import Any, NoReturn, get_args
 
-from rigdesign.rexs.coded_numbers import CodedNumbersError, coded_array, coded_matrix
-from rigdesign.rexs.consistency import check_model, check_version
-from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList, printable
+from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList, check_model, check_version, printable
 from rigdesign.rexs.model import (
     Attribute,
     Component,
@@ -196,3 +197,51 @@ def _coded(kind: ValueKind, given: Any) -> Value:
     if not isinstance(rows, int) or not isinstance(columns, int):
         raise ValueError("a coded matrix without rows and columns")
     return coded_matrix(given["code"], given["value"], rows, columns)
+
+
+# Arrays that REXS stores as base64 of little-endian numbers (``code`` int32, float32, float64).
+
+_FORMATS = {"int32": ("i", 4), "float32": ("f", 4), "float64": ("d", 8)}
+
+
+class CodedNumbersError(ValueError):
+    """Text that is no base64 of numbers of this code."""
+
+
+def coded_array(code: str, text: str) -> tuple[float, ...]:
+    """Numbers of a coded array.
+
+    Parameters
+    ----------
+    code : int32, float32 or float64
+    text : base64; blanks and line ends are skipped
+
+    Raises
+    ------
+    CodedNumbersError
+        Another code, text that is no base64, or bytes that do not divide into numbers.
+    """
+    if code not in _FORMATS:
+        raise CodedNumbersError(f"code {code[:20]!r} is none of {', '.join(_FORMATS)}")
+    letter, size = _FORMATS[code]
+    try:
+        content = b64decode("".join(text.split()), validate=True)
+    except (binascii.Error, ValueError):
+        raise CodedNumbersError("no base64 text") from None
+    if len(content) % size:
+        raise CodedNumbersError(f"{len(content)} bytes do not divide into numbers of {size}")
+    return struct.unpack(f"<{len(content) // size}{letter}", content)
+
+
+def coded_matrix(code: str, text: str, rows: int, columns: int) -> tuple[tuple[float, ...], ...]:
+    """Numbers of a coded matrix, shape (rows, columns).
+
+    Raises
+    ------
+    CodedNumbersError
+        As ``coded_array``, or a shape that does not fit the numbers.
+    """
+    numbers = coded_array(code, text)
+    if rows < 0 or columns < 0 or rows * columns != len(numbers):
+        raise CodedNumbersError(f"{rows} rows of {columns} do not hold {len(numbers)} numbers")
+    return tuple(numbers[row * columns : (row + 1) * columns] for row in range(rows))

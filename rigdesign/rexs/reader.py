@@ -9,11 +9,9 @@ from zipfile import BadZipFile, ZipFile, ZipInfo
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.files import foreign, read_regular
-from rigdesign.rexs.coded_numbers import CodedNumbersError, coded_array, coded_matrix
-from rigdesign.rexs.consistency import check_model, check_version
 from rigdesign.rexs.external_parts import with_external_parts
-from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList, printable
-from rigdesign.rexs.json_reader import parse_json
+from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList, check_model, check_version, printable
+from rigdesign.rexs.json_reader import CodedNumbersError, coded_array, coded_matrix, parse_json
 from rigdesign.rexs.model import (
     Attribute,
     Component,

@@ -6,8 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rigdesign.rexs.gear_unit import UnitGear, UnitMaterial
-from rigdesign.rexs_case.entries import Entry, Origins, assumed, millimetres, needed, quantity
-from rigdesign.rexs_case.stage import GearStage, SeatedGear
+from rigdesign.rexs_case.stage import (
+    Entry,
+    GearStage,
+    Origins,
+    SeatedGear,
+    assumed,
+    millimetres,
+    needed,
+    quantity,
+)
 
 CASE_HARDENING = re.compile(r"\d+\s*(Cr|Mn|Ni|Mo)[A-Za-z]*\s*\d")
 """Designations of alloyed steels in which case-hardening steels are written: 16MnCr5, 18CrNiMo7-6."""

@@ -14,8 +14,7 @@ from rigdesign.rexs.faults import printable
 from rigdesign.rexs.gear_unit_import import LEFT_OVER, GearUnitImport, import_gear_unit
 from rigdesign.rexs.reader import read_rexs
 from rigdesign.rexs_case.case_tables import LIKE_THE_TEST, case_tables
-from rigdesign.rexs_case.entries import CaseTable, Entry, toml_text
-from rigdesign.rexs_case.stage import chosen_stage, left_out
+from rigdesign.rexs_case.stage import CaseTable, Entry, chosen_stage, left_out, toml_text
 
 OTHER_PART = "of another stage, or a value that the case works out itself"
 REASONS = {

@@ -9,7 +9,7 @@ from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.properties.materials import Material
 from rigdesign.rig.shaft_axes import ShaftAxis
-from thermal.expansion.seat_condensation import condense_seats
+from thermal.expansion.elastic import condense_seats
 from thermal.housing.stations import GearboxModel
 
 DAMPING_TIME = 1.6e-6

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, joints
+from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, at_speed, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.layout import HousingSupport
 from dynamics.gear.pair import GearPair
-from dynamics.influence.gear_model import FACE_POSITIONS
+from dynamics.influence.elastic_segment import FACE_POSITIONS
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
@@ -23,35 +23,63 @@ from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
-from rigdesign.rig.drivetrain import build_drivetrain
-from rigdesign.rig.elastic_rig import ElasticDrivetrain, elastic_rig, pressed_bearings
-from rigdesign.rig.flank_topography import NOT_MEASURED, FlankTopographies, flank_topographies
-from rigdesign.rig.gears import build_pairs
+from rigdesign.rig.drivetrain import build_drivetrain, gearbox_forces, loop_forces
+from rigdesign.rig.elastic_rig import (
+    ElasticDrivetrain,
+    elastic_rig,
+    pressed_bearings,
+    without_residual_unbalance,
+)
+from rigdesign.rig.gears import NOT_MEASURED, FlankTopographies, build_pairs, flank_topographies
 from rigdesign.rig.housing_seats import housing_supports
-from rigdesign.rig.influence_store import Progress
-from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.resolution import (
     AS_RULED,
     Coarsening,
     counted_frequency,
     highest_bending_mode,
     highest_mode,
+    refuse_uncovered_speeds,
+    speed_ratios,
     with_elements,
 )
-from rigdesign.rig.rotating_parts import without_residual_unbalance
 from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, shaft_axes
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
-from rigdesign.rig.speeds import refuse_uncovered_speeds, speed_ratios
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
-from rigdesign.rig.tooth_influence import QUICK_POSITIONS, Count, ToothInfluence
-from rigdesign.rig.twisting_loop import TwistingLoop
+from rigdesign.rig.tooth_influence import QUICK_POSITIONS, Count, Progress, ToothInfluence
 from rigdesign.rig.user_mesh import user_model
 from thermal.conduction.steady import ConductionSetup
 from thermal.expansion.expansion import ExpansionSetup
 from thermal.housing.gearbox import build_gearbox, mesh_sizes
 from thermal.housing.geometry import HousingGeometry
+from thermal.housing.housing_surfaces import surface_names
 from thermal.housing.stations import GearboxModel
-from thermal.housing.surfaces import surface_names
+
+# The power circuit with shafts that only twist, at every speed: friction of splines follows the mesh frequency.
+
+
+@dataclass(frozen=True, eq=False)
+class TwistingLoop:
+    """Matrices by stated speed; drive_ratio : speed of the motor per stated speed."""
+
+    drivetrain: Drivetrain
+    drive_ratio: float
+    _systems: dict[float, LinearSystem] = field(default_factory=dict, repr=False)
+
+    @property
+    def follows_speed(self) -> bool:
+        """Whether a spline has a loss factor; all others are the same at every speed."""
+        return any(gear.loss_factor for gear in self.drivetrain.gears)
+
+    def parts(self, speed: float) -> Drivetrain:
+        """Parts with the dampers of splines at a stated speed [rad/s]."""
+        return at_speed(self.drivetrain, self.drive_ratio * speed)
+
+    def at(self, speed: float) -> LinearSystem:
+        """Matrices without the meshes at a stated speed [rad/s]."""
+        key = speed if self.follows_speed else 0.0
+        if key not in self._systems:
+            self._systems[key] = assemble(self.parts(key))
+        return self._systems[key]
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.jets import injected_flow
+from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.case.lubrication import JetOil
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig

@@ -7,7 +7,7 @@ from rigdesign.case.drivetrain import DrivetrainInput, ShaftInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.rig.model import Rig
-from thermal.housing.measures import SIDES
+from thermal.housing.shaft_geometry import SIDES
 
 
 @dataclass(frozen=True, kw_only=True)

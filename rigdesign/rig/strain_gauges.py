@@ -10,15 +10,12 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.root_arc import RootArc, root_arc
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import show
-from rigdesign.case.gears import Gear
+from rigdesign.case.gears import PLACES, Gear, StrainBridge, StrainGaugeInput
 from rigdesign.case.model import Case
-from rigdesign.case.strain_gauges import PLACES, StrainBridge, StrainGaugeInput
 from rigdesign.properties.materials import Material
 from rigdesign.strain_gauge.bridge import Bridge
 from rigdesign.strain_gauge.gauge import StrainGauge
-from rigdesign.strain_gauge.measuring_point import MeasuringPoint
-from rigdesign.strain_gauge.placement import GaugePlacement, RootRegion
-from rigdesign.strain_gauge.surface_stress import SurfaceStress
+from rigdesign.strain_gauge.measuring_point import GaugePlacement, MeasuringPoint, RootRegion, SurfaceStress
 
 BRIDGE_KEYS = tuple(StrainBridge.model_fields)
 KINDS = {"tangent_angle": "angle", "root_diameter": "length"}

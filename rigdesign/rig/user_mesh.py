@@ -25,16 +25,13 @@ from thermal.housing.face_rules import FaceRule
 from thermal.housing.fitted import ROUND, fit_cylinder, fitted_model
 from thermal.housing.gearbox import build_field, build_shaft
 from thermal.housing.geometry import HousingGeometry
-from thermal.housing.housing_surfaces import FOOT
-from thermal.housing.measures import MINIMUM_LAND, SIDES
+from thermal.housing.housing_surfaces import FOOT, body_names, joined_surfaces
 from thermal.housing.mesh_file import read_mesh
-from thermal.housing.parametric_stations import bearing_stations, seal_stations
-from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_geometry import MINIMUM_LAND, SIDES, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import MeshSizes
-from thermal.housing.stations import GearboxModel, Point
+from thermal.housing.stations import GearboxModel, Point, bearing_stations, seal_stations
 from thermal.housing.step_file import BODY, StepPart, part_size, read_part, read_step
-from thermal.housing.surfaces import body_names, joined_surfaces
 
 LARGEST_MESH = 2_000_000_000
 """Bytes of a mesh file; a gearbox of a million nodes has a tenth."""

@@ -1,10 +1,162 @@
 """Heat of a component and where it goes."""
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol, Self
 
-from rigdesign.base.number_faults import require_share
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.losses.windage import Mist, disc_coefficient, shaft_windage
+from rigdesign.base.errors import CaseError
+from rigdesign.base.units import refuse, require_above, require_at_least, require_share, show
+from thermal.films.air import air
+
+# Loss of a machine over speed and torque of its output shaft: constant efficiency, or a measured map.
+
+FloatArray = NDArray[np.float64]
+SAME = 1e-9
+"""Distance from the edge of a map that still counts as on it, as a share of its largest value."""
+
+
+class MachineLoss(Protocol):
+    """Loss over the operating point of the output shaft."""
+
+    @property
+    def source(self) -> str:
+        """What it follows from."""
+
+    def power(self, speed: float, torque: float) -> float:
+        """Loss [W] at a speed [rad/s] and a torque [Nm] of the output; their signs do not matter."""
+
+    def nearest(self, speed: float, torque: float) -> tuple[float, float]:
+        """Operating point nearest to this one at which the loss is known."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EfficiencyLoss:
+    """Loss by a constant efficiency, output over input power: P (1/efficiency - 1).
+
+    It vanishes without load; a machine that idles needs a map.
+    """
+
+    efficiency: float
+
+    def __post_init__(self) -> None:
+        require_share("efficiency", self.efficiency, "give output over input power", zero=False)
+
+    @property
+    def source(self) -> str:
+        """What it follows from."""
+        return f"efficiency {self.efficiency:.4g}"
+
+    def power(self, speed: float, torque: float) -> float:
+        """Loss [W] at a speed [rad/s] and a torque [Nm] of the output."""
+        return abs(speed * torque) * (1.0 / self.efficiency - 1.0)
+
+    def nearest(self, speed: float, torque: float) -> tuple[float, float]:
+        """The operating point itself."""
+        return speed, torque
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LossMap:
+    """Loss measured on a grid, bilinear between its points.
+
+    speeds : (n,) of the output [rad/s], rising; torques : (m,) [Nm], rising; losses : (n, m) [W]
+
+    Raises CaseError for a grid that does not rise, and outside of it: a map is not extrapolated.
+    """
+
+    speeds: FloatArray
+    torques: FloatArray
+    losses: FloatArray
+
+    def __post_init__(self) -> None:
+        for key, axis in (("speeds", self.speeds), ("torques", self.torques)):
+            if axis.ndim != 1 or len(axis) < 2 or not np.all(np.diff(axis) > 0.0) or axis[0] < 0.0:
+                refuse(
+                    f"loss_map.{key}",
+                    f"{len(axis)} values",
+                    "must rise from 0 or more, two at least",
+                    "sort them",
+                )
+        expected = len(self.speeds), len(self.torques)
+        if self.losses.shape != expected:
+            shape = " x ".join(str(length) for length in self.losses.shape)
+            refuse(
+                "loss_map.losses", shape, f"must be {expected[0]} x {expected[1]}", "give one for every point"
+            )
+        if not (np.all(np.isfinite(self.losses)) and np.all(self.losses >= 0.0)):
+            refuse("loss_map.losses", "", "must be finite and not negative", "correct the map")
+
+    @classmethod
+    def from_columns(cls, speeds: Sequence[float], torques: Sequence[float], losses: Sequence[float]) -> Self:
+        """Map from the columns of a table with one row a point, in any order; every point of the grid once."""
+        if not len(speeds) == len(torques) == len(losses):
+            refuse(
+                "loss_map",
+                f"{len(speeds)}, {len(torques)}, {len(losses)} rows",
+                "must be as many",
+                "complete it",
+            )
+        first, row = np.unique(np.asarray(speeds, dtype=np.float64), return_inverse=True)
+        second, column = np.unique(np.asarray(torques, dtype=np.float64), return_inverse=True)
+        counts = np.zeros((len(first), len(second)), dtype=np.int64)
+        np.add.at(counts, (row, column), 1)
+        if not np.all(counts == 1):
+            at = tuple(np.argwhere(counts != 1)[0])
+            refuse(
+                "loss_map",
+                f"{show(float(first[at[0]]), 'speed')}, {show(float(second[at[1]]), 'torque')}",
+                f"must occur once, occurs {counts[at]} times",
+                "give every speed with every torque",
+            )
+        grid = np.zeros(counts.shape)
+        grid[row, column] = losses
+        return cls(speeds=first, torques=second, losses=grid)
+
+    @property
+    def source(self) -> str:
+        """What it follows from."""
+        return f"loss map, {len(self.speeds)} speeds by {len(self.torques)} torques"
+
+    def power(self, speed: float, torque: float) -> float:
+        """Loss [W] at a speed [rad/s] and a torque [Nm] of the output. Raises CaseError outside the map."""
+        row, along = _cell("speed", self.speeds, abs(speed))
+        column, across = _cell("torque", self.torques, abs(torque))
+        corners = self.losses[row : row + 2, column : column + 2]
+        return float(np.array([1.0 - along, along]) @ corners @ np.array([1.0 - across, across]))
+
+    def nearest(self, speed: float, torque: float) -> tuple[float, float]:
+        """Operating point of the map nearest to this one."""
+        return _within(self.speeds, speed), _within(self.torques, torque)
+
+    def holds_speed(self, speed: float) -> bool:
+        """Whether the map reaches a speed [rad/s] of the output."""
+        slack = SAME * float(self.speeds[-1])
+        return bool(self.speeds[0] - slack <= abs(speed) <= self.speeds[-1] + slack)
+
+
+def _within(axis: FloatArray, value: float) -> float:
+    return min(max(abs(value), float(axis[0])), float(axis[-1]))
+
+
+def _cell(kind: str, axis: FloatArray, value: float) -> tuple[int, float]:
+    """Number of the interval a value lies in, and its share of it; kind : of quantity, speed or torque."""
+    low, high = float(axis[0]), float(axis[-1])
+    if not low - SAME * high <= value <= high + SAME * high:
+        refuse(
+            f"loss_map.{kind}s",
+            show(value, kind),
+            f"must lie within the map, {show(low, kind)} to {show(high, kind)}",
+            "extend the map to this operating point; it is not extrapolated",
+        )
+    value = min(max(value, low), high)
+    at = min(int(np.searchsorted(axis, value, side="right")) - 1, len(axis) - 2)
+    return at, float((value - axis[at]) / (axis[at + 1] - axis[at]))
+
 
 ROOM = "room"
 """Where heat goes that no coolant takes."""
@@ -54,3 +206,124 @@ def heat_by_sink(components: Iterable[ComponentHeat]) -> dict[str, float]:
         if each.split.coolant_share:
             parts.setdefault(each.split.coolant, []).append(each.to_coolant)
     return {sink: math.fsum(values) for sink, values in parts.items()}
+
+
+# Windage of a shaft coupling in the air of its guard: two free faces and a smooth cylinder.
+#
+#     P = rho omega^3 R^5 C_disc / 2  +  pi C_cylinder rho omega^3 R^4 L
+#
+# Source: free disc (Schlichting, Boundary-Layer Theory) and rotating cylinder (Theodorsen and Regier, NACA Report 793),
+# both of `dynamics.losses.windage`. Bolt heads and a tight guard are not in it: take a rig's measured torque where they
+# count.
+
+
+@dataclass(frozen=True, kw_only=True)
+class CouplingRotor:
+    """Coupling as the air sees it.
+
+    radius : of its rim [m]; length : of its rim [m]
+    hub_radius : inside of which its faces are covered by the shafts [m]
+    """
+
+    name: str
+    radius: float
+    length: float
+    hub_radius: float = 0.0
+    split: HeatSplit = field(default_factory=HeatSplit)
+
+    def __post_init__(self) -> None:
+        require_above(f"{self.name}.length", self.length, "m", "give the length of the rim")
+        require_at_least(f"{self.name}.hub_radius", self.hub_radius, "m", "give 0 for whole faces")
+        require_above(
+            f"{self.name}.radius", self.radius, "m", "the rim is outside of the hub", limit=self.hub_radius
+        )
+
+
+def coupling_windage(rotor: CouplingRotor, speed: float, air_temperature: float) -> ComponentHeat:
+    """Heat of a coupling [W] at a speed [rad/s] in air of a temperature [K] at one atmosphere.
+
+    The faces are those of a disc less what the shafts cover, each with the coefficient of its own radius.
+    """
+    gas = air(air_temperature)
+    mist = Mist(density=gas.density, viscosity=gas.viscosity)
+    rim = shaft_windage(rotor.name, rotor.radius, rotor.length, speed, mist)
+    faces = _faces(rotor.radius, speed, mist) - _faces(rotor.hub_radius, speed, mist)
+    return ComponentHeat(
+        name=rotor.name,
+        power=rim.power + faces,
+        split=rotor.split,
+        source="free disc (Schlichting) and rotating cylinder (NACA Report 793)",
+        warnings=rim.warnings,
+    )
+
+
+def _faces(radius: float, speed: float, mist: Mist) -> float:
+    """Friction of both faces of a disc [W]."""
+    return 0.5 * mist.density * abs(speed) ** 3 * radius**5 * disc_coefficient(mist.reynolds(speed, radius))
+
+
+# From the power a back-to-back rig takes to the mains: transmission gearbox, motor, drive, each with its loss.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Machine:
+    """A machine between the mains and the rig.
+
+    loss : over the operating point of its output
+    speed_ratio : speed of its input over that of its output [-]; for a motor, and for a frequency converter, 1: a loss
+        map of a converter stands over speed and torque of its motor
+    """
+
+    name: str
+    loss: MachineLoss
+    speed_ratio: float = 1.0
+    split: HeatSplit = field(default_factory=HeatSplit)
+
+    def __post_init__(self) -> None:
+        require_above(f"{self.name}.speed_ratio", self.speed_ratio, "", "give input over output speed")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveTrainHeat:
+    """Heat of every machine, and the power taken from the mains [W]."""
+
+    components: tuple[ComponentHeat, ...]
+    input_power: float
+
+
+def drive_train_heat(
+    speed: float, power: float, machines: Sequence[Machine], *, nearest: bool = False
+) -> DriveTrainHeat:
+    """Losses of the machines that drive a rig.
+
+    Parameters
+    ----------
+    speed : of the shaft that drives the rig [rad/s], above 0
+    power : at that shaft [W]; in a back-to-back rig the sum of its losses
+    machines : from the rig to the mains, each driving the one before
+    nearest : an operating point outside of a loss map has the loss of the nearest one in it, for a power that is not
+        yet the final one
+
+    Raises CaseError for a negative power, or an operating point outside of a loss map.
+    """
+    require_above("drive.speed", speed, "rad/s", "give the speed of the driven shaft")
+    require_at_least("drive.power", power, "W", "the losses of the rig cannot be negative")
+    found = []
+    for machine in machines:
+        lost = _lost(machine, speed, power / speed, nearest=nearest)
+        found.append(
+            ComponentHeat(name=machine.name, power=lost, split=machine.split, source=machine.loss.source)
+        )
+        power += lost
+        speed *= machine.speed_ratio
+    return DriveTrainHeat(components=tuple(found), input_power=power)
+
+
+def _lost(machine: Machine, speed: float, torque: float, *, nearest: bool) -> float:
+    """Loss of a machine [W]; faults begin with its name."""
+    try:
+        return machine.loss.power(*(machine.loss.nearest(speed, torque) if nearest else (speed, torque)))
+    except CaseError as error:
+        raise CaseError(
+            [replace(fault, path=f"{machine.name}.{fault.path}") for fault in error.faults]
+        ) from error

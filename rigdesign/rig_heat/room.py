@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rigdesign.base.number_faults import celsius, refuse, require_above, require_at_least
+from rigdesign.base.units import celsius, refuse, require_above, require_at_least
 from thermal.films.air import air
 
 

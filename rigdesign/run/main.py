@@ -16,7 +16,7 @@ from dynamics.kernels.march import compiled
 from dynamics.response.time_march import compile_time_integration
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.base.finite import require_finite
+from rigdesign.base.json_text import require_finite
 from rigdesign.base.parallel import BackgroundTasks, one_core
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
@@ -34,21 +34,28 @@ from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.events import solve_events
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, fields_of
-from rigdesign.records.rolling_bearings import rolling_bearings
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.records.undamped import held_crossings, require_damping
+from rigdesign.records.warm_gearbox import rolling_bearings
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.events import event_row
-from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
+from rigdesign.results.rows.housing import (
+    circuit_rows,
+    cooling_row,
+    coupling_row,
+    loss_rows,
+    oil_rows,
+    rig_heat_row,
+    rolling_bearing_row,
+    thermal_row,
+)
 from rigdesign.results.rows.lateral import lateral_row
-from rigdesign.results.rows.rig import circuit_rows, coupling_row, rig_heat_row, rolling_bearing_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
 from rigdesign.run.load_convergence import load_errors
-from rigdesign.run.mesh_convergence import discretisation
-from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
+from rigdesign.run.mesh_convergence import BackgroundMeshing, discretisation, looping_rig, on_mesh
 from rigdesign.run.rival_laws import law_spreads
 from rigdesign.run.solver_errors import solver_errors
 from rigdesign.run.warnings import not_modelled, warnings_of, without_effect

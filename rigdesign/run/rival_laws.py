@@ -13,7 +13,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.records.solved_rig import LawSpread
 from rigdesign.rig.model import Rig
-from rigdesign.run.mesh_refinement import checked, on_mesh
+from rigdesign.run.mesh_convergence import checked, on_mesh
 
 NOTABLE = 0.3
 """Share of a loss by which another law has to differ to count: below it laws agree as well as measurements do."""

@@ -26,11 +26,9 @@ from rigdesign.results.transient import (
 from rigdesign.results.units import MM, RPM, ZERO
 from rigdesign.rig.model import Rig
 from rigdesign.run.warnings import oil_at_room_temperature
-from rigdesign.transient.branch import Branch, clearance_limits, limited
-from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
 from rigdesign.transient.oil_power import OilPower
 from rigdesign.transient.phases import SCHEDULE
-from rigdesign.transient.soak import hours
+from rigdesign.transient.soak import QUANTITIES, Branch, Quantity, clearance_limits, hours, limited, smallest
 from rigdesign.transient.thermal_history import TransientRun, run_transient
 from thermal.transient.history import settling_time
 

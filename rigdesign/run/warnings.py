@@ -10,24 +10,23 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.band_change import FADE
+from dynamics.response.march_inputs import FADE
 from dynamics.response.response_curve import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.case.model import Case
-from rigdesign.case.rules.rotating_parts import sideways_keys
+from rigdesign.case.rules.elastic_shafts import sideways_keys
 from rigdesign.case.usual import stated_numbers
 from rigdesign.checks.assumptions import depends, influences_of
 from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.boundary import printed_films
+from rigdesign.coupling.braced_loop import averaged_gears, lines_left_out, loads_left_out
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop_over_speed import band_limits
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.periodic_loads import lines_left_out, loads_left_out
 from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.temperatures import HousingField
-from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, own_ratio, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
@@ -38,7 +37,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
 from rigdesign.run.load_convergence import missing_load_errors
 from thermal.conditions.boundary import Film, Radiation
-from thermal.conduction.audit import assumed_difference, audit_conditions, radiation_too_small
+from thermal.conduction.condition_checks import assumed_difference, audit_conditions, radiation_too_small
 
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
@@ -340,7 +339,7 @@ def not_modelled(solved: SolvedRig) -> list[str]:
 # Ramps that pass a resonance faster than the time run updates the bearing positions.
 #
 # From one speed band to the next the time run changes the mean position of the gears in their bearings, hence the
-# approach of their flanks, over the time `FADE` (`dynamics.response.band_change`). A band that is passed in less is
+# approach of their flanks, over the time `FADE` (`dynamics.response.march_inputs`). A band that is passed in less is
 # left before the change is complete.
 
 Array = NDArray[np.float64]

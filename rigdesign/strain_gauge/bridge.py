@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import Fault, MeasurementError
-from rigdesign.base.number_faults import refuse, require_above, require_at_least
+from rigdesign.base.units import refuse, require_above, require_at_least
 from rigdesign.strain_gauge.gauge import StrainGauge
 
 Array = NDArray[np.float64]

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.number_faults import refuse, require_above
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS, refuse, require_above
 
 Array = NDArray[np.float64]
 REFERENCE_TEMPERATURE = 20.0 + ZERO_CELSIUS

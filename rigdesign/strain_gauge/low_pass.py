@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.number_faults import refuse, require_above
+from rigdesign.base.units import refuse, require_above
 
 Array = NDArray[np.float64]
 LowPassKind = Literal["butterworth", "bessel"]

@@ -1,12 +1,14 @@
 """A signal over time as a curve over the rolling angle of one turn: mean over turns, scatter, and by mating tooth."""
 
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import Fault, MeasurementError
-from rigdesign.base.number_faults import require_at_least
+from rigdesign.base.units import refuse, require_above, require_at_least
 
 Array = NDArray[np.float64]
 
@@ -109,3 +111,139 @@ def _curve(within: Array, rows: Array, whole: int, mates: NDArray[np.intp], grid
 
 def _refused(key: str, given: str, problem: str, remedy: str) -> MeasurementError:
     return MeasurementError([Fault(key, given, problem, remedy)])
+
+
+# A few numbers of the curve of a root gauge over the rolling angle of its tooth, for recorded and computed ones alike.
+#
+# Angles count from the centroid of the loaded part of the curve, so that neither the index angle of a recording nor the
+# rotation at which a calculation begins is needed; a shift of the whole curve is not seen. All are strains above that
+# of the unloaded tooth: a lost zero, thermal output and centrifugal strain are in the strain of the unloaded tooth
+# alone.
+
+LOADED = 0.2
+"""Share of the highest strain from which the tooth counts as loaded: the part whose centroid is the zero angle."""
+TOP = 0.1
+"""Angle over which ``maximum`` is the mean of the highest strains, wherever they are [angular pitches]: as smooth as
+the curve itself, where the single highest value jumps with samples and noise; some tenths of a per cent below it."""
+FLANKS = (0.2, 0.5)
+"""Distance from the centroid between which ``entry`` and ``exit`` are means [angular pitches]: the rise to the
+maximum and the fall from it, where neighbouring pairs take over."""
+AWAY = 2.0
+"""Distance from the centroid beyond which neither the tooth nor its neighbours carry [angular pitches]."""
+REACH = 1.2
+"""Angle to both sides of the highest strain that belongs to the tooth [angular pitches]."""
+STEPS = 400
+"""Steps of an angular pitch in which the curve is interpolated, and places of a mean over a window."""
+
+
+def curve_windows(angle: Array, strain: Array, pitch: float) -> Mapping[str, float]:
+    """Entry, maximum, exit and unloaded strain of a curve.
+
+    Parameters
+    ----------
+    angle : (n,) of the gear in the order in which the tooth goes through the mesh, increasing [rad]
+    strain : (n,) [-]
+    pitch : angle from tooth to tooth [rad]
+
+    Returns
+    -------
+    ``unloaded``: median away from the tooth's own mesh and those of its neighbours, zero where the curve does not
+    cover a pitch of it; ``entry``, ``maximum``, ``exit``: above it [-]. In a fillet that is pressed ``maximum`` is
+    the lowest.
+    """
+    away = np.abs(angle - angle[np.argmax(np.abs(strain - np.median(strain)))]) > AWAY * pitch
+    covered = float(np.gradient(angle)[away].sum())
+    unloaded = float(np.median(strain[away])) if covered > pitch else 0.0
+    above = strain - unloaded
+    highest = int(np.argmax(np.abs(above)))
+    sign = float(np.sign(above[highest]))
+    step = pitch / STEPS
+    around = np.arange(angle[highest] - REACH * pitch, angle[highest] + REACH * pitch, step)
+    fine = sign * np.interp(around, angle, above)
+    middle = _centroid(around, fine)
+    low, high = FLANKS[0] * pitch, FLANKS[1] * pitch
+
+    def mean(first: float, last: float) -> float:
+        return sign * float(np.interp(np.linspace(first, last, STEPS), around, fine).mean())
+
+    return {
+        "entry": mean(middle - high, middle - low),
+        "maximum": sign * float(np.sort(fine)[-round(TOP * STEPS) :].mean()),
+        "exit": mean(middle + low, middle + high),
+        "unloaded": unloaded,
+    }
+
+
+def _centroid(angle: Array, strain: Array) -> float:
+    """Of the loaded part around the highest strain [rad]."""
+    highest = int(np.argmax(strain))
+    loaded = strain > LOADED * strain[highest]
+    before = np.flatnonzero(~loaded[:highest])
+    after = np.flatnonzero(~loaded[highest:])
+    first = int(before[-1]) + 1 if before.size else 0
+    last = highest + int(after[0]) if after.size else len(strain)
+    total = float(strain[first:last].sum())
+    return float((angle * strain)[first:last].sum()) / total if total else float(angle[highest])
+
+
+# Rolling angle over time: at constant speed, from a recorded speed, and the turns until the same teeth meet again.
+#
+# Index pulses, tooth-passing pulses and encoders: ``rigdesign.measurement.reading.tach``, whose ``TurnAngle.at`` is a
+# `RollingAngle` as those of this module are.
+
+RollingAngle = Callable[[Array], Array]
+"""Angle of the gear [rad] at (n,) points in time [s]; NaN where it is not known."""
+
+
+def at_constant_speed(speed: float, start: float = 0.0) -> RollingAngle:
+    """phi = omega t + start, with omega = 2 pi n / 60 (n in 1/min): P1's conversion of time steps to rolling angles.
+
+    P1 shows its formula in Figure 5 only as a picture; this is the one that its text describes.
+
+    Parameters
+    ----------
+    speed : [rad/s]
+    start : angle at t = 0 [rad]
+    """
+    require_above("speed", speed, "rad/s", "write the speed of the gear with the gauge")
+    return lambda time: start + speed * np.asarray(time, dtype=float)
+
+
+def from_speed(time: Array, speed: Array, start: float = 0.0) -> RollingAngle:
+    """Angle whose derivative is a recorded speed: the integral of a cubic spline through it.
+
+    Parameters
+    ----------
+    time : (n,) increasing [s]
+    speed : (n,) above zero [rad/s]
+    start : angle at the first sample [rad]
+
+    Raises
+    ------
+    MeasurementError
+        Fewer than two samples, missing ones, or a speed not above zero.
+    """
+    from scipy.interpolate import CubicSpline
+
+    problem = ""
+    if len(time) < 2:
+        problem = f"{len(time)} samples, at least 2 are needed"
+    elif not np.all(np.isfinite(speed)):
+        problem = f"{np.count_nonzero(~np.isfinite(speed))} samples are missing"
+    elif not np.all(speed > 0.0):
+        problem = "must be above 0 throughout"
+    if problem:
+        given = f"{np.nanmin(speed):.6g} rad/s at the least" if np.isfinite(speed).any() else ""
+        raise MeasurementError([Fault(
+            "speed", given, problem, "leave run-up and stop out, turn the sign of the channel, or use a tach",
+        )])  # fmt: skip
+    integral = CubicSpline(time, speed, extrapolate=False).antiderivative()
+    return lambda at: np.asarray(start + integral(np.asarray(at, dtype=float)))
+
+
+def turns_until_same_teeth(teeth: int, mating_teeth: int) -> int:
+    """Turns of a gear until each of its teeth meets the same mating tooth: z_2 / gcd(z_1, z_2); 1 in P1's 1:1 pair."""
+    for key, count in (("teeth", teeth), ("mating_teeth", mating_teeth)):
+        if count < 1:
+            refuse(key, str(count), "must be at least 1", "write the number of teeth")
+    return mating_teeth // math.gcd(teeth, mating_teeth)

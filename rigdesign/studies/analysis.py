@@ -5,10 +5,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rigdesign.results.result import Finding
-from rigdesign.studies.crossings import crossings_over
 from rigdesign.studies.design import Plan
 from rigdesign.studies.result import Crossing, StudyPoint, StudyResult, check_ids
-from rigdesign.studies.tornado import swings
+from rigdesign.studies.statistics import crossings_over, swings
 
 if TYPE_CHECKING:
     from rigdesign.case import Case

@@ -12,7 +12,7 @@ from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.checks import estimated_checks
-from rigdesign.reanalysis.affected_parts import Reanalysis, reanalysis
+from rigdesign.reanalysis.modified_rig import Reanalysis, reanalysis
 from rigdesign.reanalysis.reference import Reference, reanalysed, restored, solve_reference
 from rigdesign.results.check import overall
 from rigdesign.rig.model import build_rig

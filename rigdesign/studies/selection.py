@@ -61,7 +61,7 @@ class CheckSelection:
     def applied(self, solved: "SolvedRig", result: "RunResult") -> "RunResult":
         """The result of a run in which the checks that are not selected do not apply, and its verdict then."""
         from rigdesign.checks.rules import not_applicable
-        from rigdesign.explanation.rules import declared_rules
+        from rigdesign.explanation.keys import declared_rules
         from rigdesign.results.check import Checks, overall
         from rigdesign.results.result import Finding
 
@@ -109,7 +109,7 @@ def declared_ids(case: "Case", *, transient: bool = False) -> list[str]:
 
     transient : with those of the thermal history
     """
-    from rigdesign.explanation.rules import declared_rules
+    from rigdesign.explanation.keys import declared_rules
 
     ids = [rule.id for _, rule in declared_rules(case)]
     return ids if transient else [identity for identity in ids if not identity.startswith("transient.")]

@@ -11,10 +11,9 @@ from rigdesign.base.errors import CaseError, MissingLibraryError
 from rigdesign.base.version import __version__
 from rigdesign.base.worker_pool import DIED, LostWorkersError, Workers
 from rigdesign.studies.design import DesignPoint
-from rigdesign.studies.ledger import point_key, read_points
+from rigdesign.studies.ledger import Entry, Shard, StudyLedgers, point_key, read_points
 from rigdesign.studies.point import PointOutcome, PointSetup, compute_point
 from rigdesign.studies.result import Record, StudyPoint
-from rigdesign.studies.shards import Entry, Shard, StudyLedgers
 
 if TYPE_CHECKING:
     from rigdesign.base.fidelity import Fidelity

@@ -6,17 +6,16 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TypeAlias, TypeVar
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.coupling.bearing_seats import WarmBearing, bearings_between
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.oil import OilStream
 from rigdesign.coupling.oil_circuits import wall_slopes
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.transient.bearing_nodes import between
-from rigdesign.transient.oil import oil_conditions, supplied
+from rigdesign.transient.oil import between, oil_conditions, supplied
 from rigdesign.transient.oil_supply import SupplyHistory, WallAnswer
 from rigdesign.transient.phases import Phase
 from thermal.conditions.boundary import BodySource, Exchange, Film, SurfaceSource

@@ -12,20 +12,23 @@ of the teeth stays in the gears, that of the bearings in the oil of their films.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from rigdesign.case.jets import injected_flow
+from dynamics.bearing.protocol import HeatStar
+from rigdesign.case.gearbox import injected_flow
 from rigdesign.case.lubrication import DipOil
-from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
+from rigdesign.coupling.bearing_seats import (
+    BEARING_LOSS,
+    BEARING_SEATS,
+    bearing_seats,
+    conductances,
+    on_surface,
+)
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL, OilFilm
-from rigdesign.coupling.housing_fluids import without_oils
-from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL, OilFilm, without_oils
+from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses, heat_into_gear_oil
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, wall_flow
-from rigdesign.transient.bearing_nodes import bearing_nodes, seated_bearings, with_nodes
-from rigdesign.transient.still_air import at_least, still
 from thermal.conditions.boundary import Film
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
 from thermal.conduction.capacity import StoredHeat
@@ -330,3 +333,103 @@ def _felt(law: FilmLaw, supply: float, share: float) -> FilmLaw:
         return law(wall, share * supply + (1.0 - share) * fluid)
 
     return mixed
+
+
+# Films of surfaces in air that hardly moves: a lower bound under laws that vanish at standstill.
+
+SOURCE = "transient.still_film"
+
+
+def still(value: float) -> FilmLaw:
+    """The same coefficient [W/(m2 K)] whatever the temperatures."""
+    coefficient = FilmCoefficient(
+        value=value,
+        formula="still_film",
+        inputs={"value": value},
+        valid_range="as given; free convection in a chamber is usually 3 to 10 W/(m2 K)",
+        source=SOURCE,
+    )
+    return lambda wall, fluid: coefficient
+
+
+def at_least(law: FilmLaw, floor: float) -> FilmLaw:
+    """A law, or the coefficient of still air [W/(m2 K)] where that is more; its range then does not matter."""
+    least = still(floor)
+
+    def bounded(wall: float, fluid: float) -> FilmCoefficient:
+        found = law(wall, fluid)
+        return found if found.value >= floor else least(wall, fluid)
+
+    return bounded
+
+
+# Bearings that conduct heat to their seats, over time: each a volume between shaft, housing and its oil.
+#
+# At a held stage the node has the temperature of the steady star; without oil it is left with its seats alone.
+
+BEARING_TO_OIL = "bearing to oil"
+"""Kind of the links between bearings that are not fed and the oil of the chamber."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingNode:
+    """One bearing with the films to its seats; oil : conductance to the oil that passes it [W/K]."""
+
+    part: str
+    volume: Volume
+    films: tuple[VolumeFilm, ...]
+    oil: float
+
+
+def seated_bearings(rig: Rig, name: str) -> list[str]:
+    """Bearings of the gearbox ``name`` that conduct heat to a seat, by their own names."""
+    return [part for part in rig.case.gearboxes[name].bearings if bearing_seats(rig, f"{name}.{part}")]
+
+
+def bearing_nodes(
+    rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]
+) -> dict[str, BearingNode]:
+    """Nodes of the gearbox ``name`` by bearing."""
+    nodes = {}
+    for part in seated_bearings(rig, name):
+        full = f"{name}.{part}"
+        star = state.bearings[full].star
+        assert star is not None
+        kind = f"{BEARING_FILM}:{part}"
+        friction = math.fsum(p.loss.power for p in losses if p.name == full and p.loss.kind == "bearing")
+        nodes[part] = BearingNode(
+            part=part,
+            volume=Volume(name=kind, power=friction),
+            films=tuple(
+                VolumeFilm(
+                    surface=seat.surface, volume=kind, kind=kind, law=on_surface(rig, full, seat, conductance)
+                )
+                for seat, conductance in conductances(rig, full, star)
+            ),
+            oil=star.oil,
+        )
+    return nodes
+
+
+def with_nodes(network: StreamNetwork, nodes: Mapping[str, BearingNode], oil: str | None) -> StreamNetwork:
+    """A network with bearings that live on its volume ``oil``; None where no oil reaches them."""
+    links = (
+        VolumeLink(a=node.volume.name, b=oil, conductance=node.oil, kind=BEARING_TO_OIL)
+        for node in nodes.values()
+        if oil is not None
+    )
+    return replace(
+        network,
+        volumes=(*network.volumes, *(node.volume for node in nodes.values())),
+        films=(*network.films, *(film for node in nodes.values() for film in node.films)),
+        links=(*network.links, *links),
+    )
+
+
+def between(first: HeatStar, second: HeatStar, share: float, *, oil: bool) -> HeatStar:
+    """A bearing ``share`` of the way between two operating points; without its oil where none runs."""
+    mixed = {
+        key: (1.0 - share) * getattr(first, key) + share * getattr(second, key)
+        for key in ("shaft", "housing", "oil", "oil_temperature", "heat")
+    }
+    return HeatStar(**mixed | ({} if oil else {"oil": 0.0}))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.case.jets import injected_flow
+from rigdesign.case.gearbox import injected_flow
 from rigdesign.case.model import Case
 from rigdesign.coupling.housing_context import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.oil import heater_and_cooler, oil_streams

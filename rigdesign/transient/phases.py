@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.case.model import Case
-from rigdesign.case.schedule import StageValues
-from rigdesign.case.transient import Event
+from rigdesign.case.schedule import Event, StageValues
 from rigdesign.coupling.state import OperatingPoint
 
 PARTS = 4

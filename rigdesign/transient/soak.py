@@ -4,11 +4,159 @@ The gears warm in minutes, the box in hours. What the gears are ahead takes back
 while; a warm-up at standstill with the oil on brings the box along.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.case.model import Case
-from rigdesign.transient.branch import Branch, broken, clearance_limits
-from rigdesign.transient.warm_up import Soak
+from rigdesign.coupling.alignment import Alignment
+from rigdesign.coupling.bearing_seats import WarmBearing
+from rigdesign.coupling.expansion import hot_clearances, named_expansion
+from rigdesign.rig.model import Rig
+from rigdesign.transient.phases import Timeline
+from thermal.expansion.alignment import ShaftAxis
+from thermal.expansion.expansion import Expansion
+
+# Temperatures and clearances of one housing over the schedule or an event, and the limits they are held against.
+
+# Clearances of one housing at one moment: seals, shafts, bearings and meshes.
+
+Quantity = Literal["seal_gap", "axial_play", "bearing_clearance", "backlash", "tip_clearance"]
+QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+Clearances = Mapping[Quantity, Mapping[str, float]]
+"""Quantity -> place -> clearance [m]."""
+
+
+def clearances(
+    rig: Rig,
+    name: str,
+    temperature: NDArray[np.float64],
+    shape: Expansion,
+    speed: float,
+    seated: Mapping[str, WarmBearing] | None = None,
+) -> Clearances:
+    """Every clearance of the housing of gearbox ``name``.
+
+    speed : where the case counts it [rad/s]; seated : bearings that conduct heat to their seats, by ``gearbox.bearing``
+
+    Gears grow with the mean temperature of their bodies and with their speed, journals with theirs.
+    """
+    expansion = named_expansion(rig, name, shape)
+    box = rig.case.gearboxes[name]
+    bulk = {
+        gear: rig.conduction[name].elements.body_mean(temperature, f"gear_{entry.shaft}")
+        for gear, entry in box.gears.items()
+    }
+    backlash, tip = {}, {}
+    for own, mesh in box.meshes.items():
+        full = f"{name}.{own}"
+        gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
+        first, second = (rig.materials[gear.material].expansion_coefficient for gear in gears)
+        pair = rig.pairs[full].warm(
+            bulk[mesh.pinion],
+            bulk[mesh.wheel],
+            expansion.centre_distance[full],
+            reference_temperature=rig.case.ambient.reference_temperature,
+            expansion_coefficients=(first, second),
+            speed=rig.shaft_speed(gears[0].shaft, speed),
+        )
+        backlash[full], tip[full] = pair.transverse_backlash, min(pair.tip_clearances)
+    play = {b.shaft: b.axial_play for b in box.bearings.values() if b.locating}
+    bearings = hot_clearances(rig, speed, {name: expansion}, seated)
+    return {
+        "seal_gap": {seal.name: seal.minimum for seal in shape.seals.values()},
+        "axial_play": {s.name: play[s.name] - s.axial_play_change for s in shape.shafts.values()},
+        "bearing_clearance": {key: value for key, value in bearings.items() if key.split(".")[0] == name},
+        "backlash": backlash,
+        "tip_clearance": tip,
+    }
+
+
+def smallest(found: Clearances, quantity: Quantity) -> tuple[float, str]:
+    """Least clearance of a kind [m] and where it is."""
+    place = min(found[quantity], key=lambda key: found[quantity][key])
+    return found[quantity][place], place
+
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Branch(Timeline):
+    """Thermal history of one housing: over the schedule, or over what an event makes of it."""
+
+    temperatures: Mapping[str, FloatArray]
+    """Probe -> (n,) [K]."""
+    clearances: tuple[Clearances, ...]
+    """At every time."""
+    alignment: tuple[Alignment, ...]
+    """At every time."""
+    axes: tuple[Mapping[str, ShaftAxis], ...]
+    """Hot axis of every shaft at every time."""
+    energy_closure: float
+    warnings: tuple[str, ...]
+
+    def ends(self, name: str) -> int:
+        """Number of the last time of a phase."""
+        number = [phase.name for phase in self.phases].index(name)
+        return int(np.flatnonzero(self.phase == number)[-1])
+
+
+def clearance_limits(case: Case) -> dict[Quantity, float]:
+    """Least clearance of every kind the case limits [m]."""
+    limits = case.limits.clearances
+    films = any(bearing.has_film for box in case.gearboxes.values() for bearing in box.bearings.values())
+    stated: dict[Quantity, float | None] = {
+        "seal_gap": limits.seal_gap_minimum,
+        "axial_play": limits.axial_play_minimum,
+        "bearing_clearance": limits.bearing_clearance_minimum if films else None,
+        "backlash": limits.backlash_minimum,
+        "tip_clearance": limits.tip_clearance_minimum,
+    }
+    return {quantity: limit for quantity, limit in stated.items() if limit is not None}
+
+
+def limited(case: Case, found: Clearances) -> Clearances:
+    """Those that limits are for: clearances of plain bearings where the rig has any, else of its rolling bearings."""
+    films = {
+        f"{name}.{part}"
+        for name, box in case.gearboxes.items()
+        for part, bearing in box.bearings.items()
+        if bearing.has_film
+    }
+    if not films:
+        return found
+    plain = {place: value for place, value in found["bearing_clearance"].items() if place in films}
+    return {**found, "bearing_clearance": plain}
+
+
+def broken(case: Case, found: Clearances) -> Iterator[tuple[Quantity, str, float]]:
+    """Quantity, place and clearance [m] of every limit that does not hold at a moment."""
+    held = limited(case, found)
+    for quantity, limit in clearance_limits(case).items():
+        if not held[quantity]:
+            continue
+        value, place = smallest(held, quantity)
+        if value < limit:
+            yield quantity, place, value
+
+
+# Warm-up that a gearbox needs before full torque.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Soak:
+    """Warm-up a gearbox needs before it may run up to full torque."""
+
+    gearbox: str
+    stage: str
+    soak_time_s: float | None
+    """Shortest warm-up after which every clearance limit holds up to the end of the dwell; None if none does."""
+    reason: str
+
 
 TRIALS = 4
 """Runs between a warm-up that is too short and one that is long enough."""

@@ -24,8 +24,15 @@ from rigdesign.results.ranges import (
     TemperatureRange,
 )
 from rigdesign.results.result import RunResult
-from rigdesign.uncertainty.plan import RangeEnd, plan
-from rigdesign.uncertainty.point import FIDELITY, CheckAtEnd, EndResult, solve_end, solve_stated
+from rigdesign.uncertainty.plan import (
+    FIDELITY,
+    CheckAtEnd,
+    EndResult,
+    RangeEnd,
+    plan,
+    solve_end,
+    solve_stated,
+)
 
 # Verdicts over ranges: margins of the run shifted by what every end changes, and what a check is worth then.
 #

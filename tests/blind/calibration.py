@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rigdesign.diagnosis.residual.baseline import Change, Drift
-from rigdesign.diagnosis.residual.calibration import fit_amplitudes, fit_drift, group_of
+from rigdesign.diagnosis.residual.baseline import Change, Drift, fit_amplitudes, fit_drift, group_of
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from tests.blind.covariance_inflation import inflate

@@ -23,7 +23,7 @@ from rigdesign.diagnosis.run import mesh_orders
 from rigdesign.diagnosis.statistics.columns import Array, series_numbers
 from rigdesign.measurement import Data, features, load_measurement
 from rigdesign.prediction.model import MEASURED_AGAINST, PredictionModel
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor
 from tests.blind.score import case_of, effects_for, set_of
 from tests.virtual_rig.generate import make_set
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.number_faults import celsius, refuse
+from rigdesign.base.units import celsius, refuse
 from rigdesign.oil_circuit.circuit import SupplyLine
 from rigdesign.oil_circuit.line_balance import HeatTaken
 from rigdesign.oil_circuit.state import CircuitState, CircuitStep, Energies

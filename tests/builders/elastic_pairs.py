@@ -5,13 +5,12 @@ from functools import lru_cache
 from math import cos, radians
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FlankGap, no_gap
+from dynamics.contact.points import FaceGrid, FlankGap, no_gap
 from dynamics.gear.pair import GearPair
 from dynamics.influence.build import influence_numbers
+from dynamics.influence.elastic_segment import GearModel
 from dynamics.influence.gear_body import SectionDivision
-from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers
 from rigdesign.rig.tooth_influence import gear_model
 

@@ -7,9 +7,8 @@ import numpy as np
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.influence.elastic_segment import Elastic
+from dynamics.influence.elastic_segment import Elastic, GearModel
 from dynamics.influence.gear_body import GearBody, SectionDivision
-from dynamics.influence.gear_model import GearModel
 from dynamics.influence.numbers import InfluenceNumbers, RootFillet
 
 STEEL = Elastic(young=206e9, poisson=0.3)

@@ -3,12 +3,10 @@
 import numpy as np
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FlankGap
+from dynamics.contact.points import FaceGrid, FlankGap, flank_gap
 from dynamics.contact.slice_compliance import SliceCompliance
-from dynamics.flank.axes import AxisMisalignment
+from dynamics.flank.field import AxisMisalignment
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.pair_gap import PairGap

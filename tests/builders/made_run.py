@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.drivetrain.twist_rows import TorqueSection
+from dynamics.drivetrain.graph import TorqueSection
 from dynamics.response.envelopes import EnvelopeWindows
 from dynamics.response.state_reader import SectionEnvelopes
 from rigdesign.coupling.time_run import schedule_of, stage_names

@@ -15,12 +15,12 @@ from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models
 from rigdesign.coupling.state import OperatingPoint
+from rigdesign.prediction.full import modelled_rig
 from rigdesign.prediction.model import Channel, PredictionModel
-from rigdesign.prediction.operating import modelled_rig
 from rigdesign.rig.model import Rig
 
 

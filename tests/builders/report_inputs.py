@@ -1,6 +1,6 @@
 """Stated values of a small rig, for tests of input sheets and drawing."""
 
-from rigdesign.case.inputs import InputRow, input_rows
+from rigdesign.case.provenance import InputRow, input_rows
 
 RIG = {
     "gearboxes": {

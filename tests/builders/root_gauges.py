@@ -10,7 +10,7 @@ from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.model import GAUGES_AGAINST
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor
 from rigdesign.prediction.readings import StrainCurve, strain_curve
 from rigdesign.rig.model import Rig
 from tests.builders.paths import CASES

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.bearing.lateral import LateralCoefficients
+from dynamics.bearing.protocol import LateralCoefficients
 from dynamics.errors import DynamicsInputError
 
 SPEEDS = 60

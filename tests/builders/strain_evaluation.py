@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from rigdesign.strain_gauge.low_pass import LowPass
 from rigdesign.strain_gauge.measuring_point import MeasuringPoint, StrainRecord
-from rigdesign.strain_gauge.rolling_angle import RollingAngle
-from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve, turn_average
+from rigdesign.strain_gauge.turn_average import AngleGrid, RollingAngle, TurnCurve, turn_average
 from tests.builders.strain_zero import UnloadedAngles, ZeroReadings
 
 Array = NDArray[np.float64]

@@ -6,9 +6,7 @@ import numpy as np
 
 from rigdesign.strain_gauge.bridge import Bridge
 from rigdesign.strain_gauge.gauge import StrainGauge
-from rigdesign.strain_gauge.measuring_point import MeasuringPoint
-from rigdesign.strain_gauge.placement import GaugePlacement, RootRegion
-from rigdesign.strain_gauge.surface_stress import SurfaceStress
+from rigdesign.strain_gauge.measuring_point import GaugePlacement, MeasuringPoint, RootRegion, SurfaceStress
 
 STEEL = SurfaceStress(youngs_modulus=206e9, poisson_ratio=0.3)
 REGION = RootRegion(face_width=25e-3, fillet_start=-2e-3, fillet_end=2e-3)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.number_faults import refuse, require_above, require_at_least
+from rigdesign.base.units import refuse, require_above, require_at_least
 from rigdesign.strain_gauge.low_pass import LowPass
 from rigdesign.strain_gauge.measuring_point import MeasuringPoint, StrainRecord
-from rigdesign.strain_gauge.rolling_angle import RollingAngle
+from rigdesign.strain_gauge.turn_average import RollingAngle
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.case.assumptions import AssumptionRecord
-from rigdesign.case.inputs import InputRow
+from rigdesign.case.provenance import InputRow
 from rigdesign.report.pages.study import write_study
 from rigdesign.studies import run as study
 from rigdesign.studies.design import StudyDesign

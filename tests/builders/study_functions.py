@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.case.assumptions import AssumptionRecord
-from rigdesign.case.inputs import InputRow
+from rigdesign.case.provenance import InputRow
 from tests.builders.report import make_check, make_result
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from rigdesign import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.temperatures import HousingField, solve_housing
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig

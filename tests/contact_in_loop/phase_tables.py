@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from dynamics.contact.compliance import LocalModel
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.local_approach import LocalModel
 from dynamics.contact.points import ContactPoints
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.tip_contact import path_reach
+from dynamics.mesh.pair_gap import path_reach
 from tests.contact_in_loop.integration import PhaseTable
 
 Array = NDArray[np.float64]

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.errors import DynamicsInputError
-from dynamics.response.held_speed import HeldSpeed
 from dynamics.response.initial_state import pinion_ratios, wound_state
+from dynamics.response.periodic_response import HeldSpeed
 from tests.contact_in_loop.loop import ContactLoop, LoopRecord, MeshInLoop
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.seen_system import wrench_rows
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth

@@ -12,8 +12,7 @@ from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.library.build import run_places
 from rigdesign.diagnosis.run import diagnose_measurement
 from rigdesign.prediction import OWN_MODEL, TORSIONAL, Channel, OperatingCondition
-from rigdesign.prediction.predict import predict
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor, predict
 from tests.builders.paths import CASES
 
 RIGS = {"uhcf_prototype": ("set_2", "set_3"), "loop_1to1": ("set_1",)}

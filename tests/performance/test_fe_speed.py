@@ -30,8 +30,7 @@ from tests.performance.ribbed_box import write_ribbed_box
 from thermal.conditions.boundary import BoundaryCondition
 from thermal.expansion.elastic import three_two_one
 from thermal.fe.elements import FiniteElements
-from thermal.fe.mesh import NamedMesh, box_mesh, facet_table
-from thermal.fe.numbering import inverse
+from thermal.fe.mesh import NamedMesh, box_mesh, facet_table, inverse
 from thermal.housing.gearbox import (
     ClampingField,
     EndBearing,

@@ -13,12 +13,11 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
+from dynamics.contact.points import FaceGrid
 from rigdesign.case.loader import load_case
-from rigdesign.rig.influence_store import InfluenceStore
 from rigdesign.rig.model import build_rig
-from rigdesign.rig.tooth_influence import gear_model
+from rigdesign.rig.tooth_influence import InfluenceStore, gear_model
 
 pytestmark = pytest.mark.performance
 

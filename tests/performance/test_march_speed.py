@@ -12,14 +12,12 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.mesh.contact_table import contact_tables
-from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.force import evaluate_mesh, evaluate_table
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.table_force import evaluate_table
 from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import DriveLoads, MarchSettings, march_model
 from dynamics.response.time_march import TimeMarch
 from tests.performance.test_dynamics_speed import SAMPLE_RATE, TORQUE, phase_laws, rig, shipped_laws
 from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen

@@ -19,8 +19,7 @@ from rigdesign import load_case
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.mesh_convergence import EDGE_ORDER, Numbers, numbers, richardson
-from rigdesign.run.mesh_refinement import on_mesh
+from rigdesign.run.mesh_convergence import EDGE_ORDER, Numbers, numbers, on_mesh, richardson
 from tests.builders.paths import CASES
 from thermal.housing.gearbox import MeshSizes, build_gearbox, mesh_sizes
 

@@ -16,15 +16,13 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
 from dynamics.response.initial_state import WoundLoop, wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import DriveLoads, MarchSettings, march_model
 from dynamics.response.time_march import TimeMarch
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.exudyn_march import ExudynSolver, Motion, WaveMesh, exudyn_march

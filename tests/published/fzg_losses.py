@@ -10,11 +10,16 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal_characteristic import characteristic
+from dynamics.bearing.journal_film import characteristic
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
-from dynamics.mesh.friction import Schlenk, friction_coefficient
-from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
+from dynamics.mesh.friction import (
+    Schlenk,
+    ToothPath,
+    friction_coefficient,
+    ohlendorf_factor,
+    tooth_loss_factor,
+)
 from dynamics.mesh.stiffness import pair_stiffness
 from tests.published.rows import Gate, Goal, PublishedQuantity, ValidationRow, compare
 

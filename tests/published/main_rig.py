@@ -112,9 +112,7 @@ def _row(
     reading: str, published: PublishedQuantity, computed: float, goal: Goal, remark: str
 ) -> ValidationRow:
     """Row of one reading of the paper: with the fitted coefficients, or with the printed ones."""
-    mark, words = (
-        ("", "fitted coefficients") if reading == "fitted" else ("-printed", "printed coefficients")
-    )
+    mark, words = ("", "fitted coefficients") if reading == "fitted" else ("-printed", "printed coefficients")
     named = replace(published, id=f"{published.id}{mark}", text=f"main rig, {published.text}, {words}")
     return compare(
         named,

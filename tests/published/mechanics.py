@@ -6,17 +6,15 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modal_form import modal_form
-from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.drivetrain.linear_system import LinearSystem, line_shapes, modal_form
+from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
-from dynamics.response.waveform import waveform
+from dynamics.response.response_curve import waveform
 from rigdesign.rig.model import Rig
 from tests.published.prototype import RPM, TEST_TORQUE, Prototype
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare, not_modelled

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.contact.points import FaceGrid
 from dynamics.gear.pair import GearPair
 from dynamics.influence.build import influence_numbers
 from dynamics.rating.iso_rating import RatingOptions, mesh_data, mesh_stiffness
-from dynamics.standards import iso6336_1_2006_stiffness
+from dynamics.standards import iso6336_1_2006 as iso6336_1_2006_stiffness
 from rigdesign.rig.tooth_influence import gear_model
 from tests.published.rows import Goal, PublishedQuantity, ValidationRow, compare
 

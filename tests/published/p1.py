@@ -58,7 +58,7 @@ SPEED: dict[str, PublishedQuantity] = {
 
 if TYPE_CHECKING:
     from rigdesign.rig.model import Rig
-    from rigdesign.strain_gauge.gauge_curve import GaugeCurve
+    from rigdesign.strain_gauge.measuring_point import GaugeCurve
 
 
 def p1_rows() -> Iterator[ValidationRow]:
@@ -113,7 +113,7 @@ def contact_rows() -> Iterator[ValidationRow]:
     """Contact ratios, pattern, gauge stress and the effect of speed of the shipped case on influence numbers."""
     from rigdesign.case import load_case
     from rigdesign.case.shipped import case_folder
-    from rigdesign.coupling.microgeometry import mesh_microgeometry
+    from rigdesign.coupling.mesh_models import mesh_microgeometry
     from rigdesign.rig.model import build_rig
     from tests.published.p1_contact import (
         corner_load,

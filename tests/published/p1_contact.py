@@ -16,21 +16,18 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.contact_ratio import unloaded_contact_ratio
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import ContactPattern, MeshCycle
+from dynamics.contact.mesh_cycle import ContactPattern, MeshCycle, unloaded_contact_ratio
+from dynamics.contact.points import FaceGrid, flank_gap
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
+from dynamics.influence.elastic_segment import GearModel
 from dynamics.influence.gear_body import SectionDivision
-from dynamics.influence.gear_model import GearModel
 from dynamics.mesh.pair_gap import PairGap
-from rigdesign.records.gauge_stress import ElasticGear, stress_at
-from rigdesign.rig.influence_store import InfluenceStore
+from rigdesign.records.loaded_contact import ElasticGear, stress_at
 from rigdesign.rig.strain_gauges import RootGauge
-from rigdesign.rig.tooth_influence import gear_model
-from rigdesign.strain_gauge.gauge_curve import GaugeCurve
+from rigdesign.rig.tooth_influence import InfluenceStore, gear_model
+from rigdesign.strain_gauge.measuring_point import GaugeCurve
 
 Divided = Callable[[GearModel], GearModel]
 """Model of a gear with the elements that are wanted."""

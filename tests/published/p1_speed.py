@@ -9,15 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records import root
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.strain_gauge.gauge_curve import GaugeCurve
+from rigdesign.strain_gauge.measuring_point import GaugeCurve
 
 Array = NDArray[np.float64]
 START = 0.1

@@ -9,7 +9,7 @@ import json
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.diagnosis.decision.competing_causes import credible_places, leading
+from rigdesign.diagnosis.decision.proposals import credible_places, leading
 from rigdesign.diagnosis.run import diagnose_measurement
 from tests.blind.metrics import canonical
 from tests.builders.paths import ROOT

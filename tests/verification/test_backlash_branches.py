@@ -12,18 +12,15 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modal_form import modal_form
-from dynamics.drivetrain.static_loop import port_model
+from dynamics.drivetrain.linear_system import modal_form
+from dynamics.drivetrain.static_loop import LoopLoad, port_model
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.harmonic_balance import solve_periodic
-from dynamics.response.harmonic_branches import instability
-from dynamics.response.harmonic_continuation import CRAWLING, BranchTrace, SpeedProblem
+from dynamics.response.harmonic_branches import CRAWLING, BranchTrace, SpeedProblem, instability
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.response_curve import Method, ResponseCurve
+from dynamics.response.response_curve import Method, ResponseCurve, waveform
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.waveform import waveform
 from tests.builders.rig import prototype, prototype_laws
 from tests.published.mechanics import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 

@@ -12,13 +12,18 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
+from dynamics.mesh.force import evaluate_table
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.table_force import evaluate_table
-from dynamics.response.band_change import FADE, static_position
 from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import (
+    FADE,
+    DriveLoads,
+    DriveState,
+    MarchSettings,
+    march_model,
+    static_position,
+)
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, wavy_law
 from tests.builders.rig import prototype_laws

@@ -7,7 +7,7 @@ from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_loads import bearing_loads, shaft_loads
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign.coupling.housing_fluids import heat_carried_off
+from rigdesign.coupling.housing_context import heat_carried_off
 from rigdesign.coupling.temperatures import HousingField, heat_into_oil, heat_to_room
 from rigdesign.records.housing import fluid_temperatures
 from rigdesign.rig.model import Rig

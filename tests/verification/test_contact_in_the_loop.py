@@ -9,13 +9,12 @@ import pytest
 import scipy.linalg
 from numpy.typing import NDArray
 
-from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.contact.points import FaceGrid
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig, wrench_rows
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports, wrench_rows
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import in_parallel
 from dynamics.response.initial_state import wound_state

@@ -8,8 +8,8 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementQuad2, ElementVector, FacetBasis, LinearForm, MeshQuad, asm
 from skfem.models.elasticity import linear_elasticity
 
+from dynamics.contact.compliance import EdgeModel, LocalModel, elastic_moduli, wedge_factor
 from dynamics.contact.corner import contact_places, tip_ends
-from dynamics.contact.local_approach import EdgeModel, LocalModel, elastic_moduli, wedge_factor
 from dynamics.kernels.loaded_contact import ContactProblem, local_approach, press_points
 from tests.builders.loaded_mesh import equal_gears, sliced_mesh
 

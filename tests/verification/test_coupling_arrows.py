@@ -24,11 +24,10 @@ from rigdesign.case import Case, load_case
 from rigdesign.coupling.alignment import coupled_ends, coupling_places
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.braced_loop import LoadedCircuit, respond
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, solve_point
-from rigdesign.coupling.loop_system import bearing_coefficients
+from rigdesign.coupling.loop_system import bearing_coefficients, mesh_placements
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models
-from rigdesign.coupling.shaft_positions import mesh_placements
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.dynamics import bracing_drift

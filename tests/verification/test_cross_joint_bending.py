@@ -6,12 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.cross_joints import CrossJointLoad, bending_moment, cross_joint_loads, standing_load
-from dynamics.elastic_rig.mesh_rows import mesh_ports
+from dynamics.elastic_rig.assembly import (
+    CrossJointLoad,
+    ElasticModel,
+    assemble_rig,
+    bending_moment,
+    cross_joint_loads,
+    standing_load,
+)
+from dynamics.elastic_rig.layout import CrossJoint
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.rotating_parts import CrossJoint
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 
 TORQUE = 180.0

@@ -11,8 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_static
+from dynamics.drivetrain.static_loop import LoopLoad, SlowRotation, port_model, solve_static
 from dynamics.mesh.flank import reach_beyond
 from dynamics.response.command import Command, MotorDrive, Sampling
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
@@ -20,7 +19,7 @@ from dynamics.response.time_response import run_schedule
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.braced_loop import brace_initial
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid, solve_bvp, trapezoid
 
-from dynamics.losses.churning import LAWS
-from dynamics.losses.churning_comparison import compare_churning
+from dynamics.losses.churning import LAWS, compare_churning
 from dynamics.losses.immersion import immersion, tooth_space_flow
 from dynamics.standards.iso_ts_6336_22_2018 import theta_M
 from rigdesign.properties.oil import FVA_3

@@ -14,9 +14,9 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.parts import BearingPlace, GearBody, MeshConnection, Motor
 from dynamics.drivetrain.shaft import Section, Shaft
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.layout import (
     AxialLocation,
@@ -25,13 +25,13 @@ from dynamics.elastic_rig.layout import (
     ShaftPlacement,
     double_helical_stiffness,
 )
-from dynamics.elastic_rig.mesh_rows import approach_row
 from dynamics.elastic_rig.running_state import RowSpring, RunningState, isotropic_bearing
+from dynamics.elastic_rig.seen_system import approach_row
 from dynamics.mesh.law import in_parallel
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign import load_case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig

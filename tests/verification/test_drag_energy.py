@@ -12,8 +12,7 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
-from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings, march_model
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import spur_law
 

@@ -9,7 +9,7 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.periodic_response import PeriodicResponse, TimeSettings, periodic_by_time
 from tests.builders.rig import prototype, prototype_laws

@@ -16,14 +16,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.mesh.contact_table import contact_tables
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.force import evaluate_mesh, evaluate_table
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import pair_stiffness
-from dynamics.mesh.table_force import evaluate_table
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.mesh import chain

@@ -10,9 +10,8 @@ from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace, d
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
 from dynamics.mesh.law import MeshLaw
 from tests.builders.elastic_rig import bearings, prototype_drivetrain, prototype_rig, running
 from tests.builders.mesh import wavy_law

@@ -9,7 +9,7 @@ mesh period. Speeds without the error of the trapezoid, of which the mesh damper
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings
 from dynamics.response.modal_model import DEFAULT_CUTOFF

@@ -5,11 +5,10 @@ import pytest
 
 from dynamics.response.section_torque import section_torques
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.braced_loop import respond, shifted_laws
-from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.coupling.twist_rows import twist_rows_of
+from rigdesign.coupling.braced_loop import periodic_laws, respond, shifted_laws
+from rigdesign.coupling.loop_system import twist_rows_of
+from rigdesign.prediction.full import like
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.operating import like
 from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.builders.order import changed, channels, settled

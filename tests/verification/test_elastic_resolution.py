@@ -24,9 +24,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.speed_bands import SpeedBands
+from dynamics.drivetrain.linear_system import LinearSystem, SpeedBands
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings
@@ -35,7 +34,7 @@ from dynamics.response.time_march import TimeMarch
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import signed_torque
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points

@@ -13,12 +13,11 @@ from dynamics.drivetrain.parts import BearingPlace, MeshConnection, Motor
 from dynamics.drivetrain.shaft import STEEL_DENSITY, STEEL_SHEAR_MODULUS, Disc, Section, Shaft
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.beam import ShearRule, shear_coefficient
-from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
-from dynamics.elastic_rig.lateral import orbit
+from dynamics.elastic_rig.damped_modes import damped_modes, mode_character, orbit
 from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
-from dynamics.elastic_rig.mesh_rows import approach_row
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
+from dynamics.elastic_rig.seen_system import approach_row
 from tests.builders.elastic_rig import bearings, gear_on, prototype_drivetrain, prototype_rig, single_shaft
 from tests.builders.full_matrices import full_matrices
 from tests.builders.harmonic_response import Unbalance, unbalance_load

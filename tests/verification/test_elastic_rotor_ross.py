@@ -14,9 +14,9 @@ from dynamics.drivetrain.shaft import Disc, Section, Shaft
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.damped_modes import damped_modes
 from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
-from dynamics.elastic_rig.mesh_rows import approach_row
 from dynamics.elastic_rig.reduction import ReducedElasticRig, reduce_rig
 from dynamics.elastic_rig.running_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
+from dynamics.elastic_rig.seen_system import approach_row
 from tests.builders.full_matrices import full_matrices
 from tests.builders.harmonic_response import Unbalance, unbalance_load
 

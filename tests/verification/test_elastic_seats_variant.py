@@ -12,8 +12,8 @@ import pytest
 
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.layout import ElasticRig
-from dynamics.elastic_rig.mesh_rows import approach_row
 from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
+from dynamics.elastic_rig.seen_system import approach_row
 from rigdesign import load_case
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

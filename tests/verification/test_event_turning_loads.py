@@ -7,27 +7,32 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.graph import assemble, torsional_twist_rows
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, harmonic_loads, rotating_load
-from dynamics.drivetrain.twist_rows import torsional_twist_rows
+from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad, harmonic_loads, rotating_load
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
+from dynamics.elastic_rig.layout import ShaftUnbalance
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.rotating_parts import ShaftUnbalance
 from dynamics.elastic_rig.running_state import RunningState
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_channels import Channel, Watched, bearing_channels, torque_channels
-from dynamics.response.event_march import Brake, EventMarch, Trip
+from dynamics.response.event_march import (
+    Brake,
+    Channel,
+    EventMarch,
+    Trip,
+    Watched,
+    bearing_channels,
+    steady_start,
+    torque_channels,
+)
 from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.march_inputs import TurningLoads
 from dynamics.response.periodic_response import TimeSettings
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.steady_start import steady_start
-from dynamics.response.turning_loads import TurningLoads
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, chain, wavy_law
 from tests.builders.rig import prototype, prototype_laws

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid, default_positions
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.root_course import root_course
+from dynamics.contact.points import FaceGrid, default_positions
+from dynamics.contact.root_field import root_course
 from dynamics.gear.pair import GearPair
 from dynamics.influence.build import influence_numbers
 from rigdesign.case import load_case

@@ -12,8 +12,7 @@ import skfem
 from scipy import sparse
 
 from thermal import forms
-from thermal.conduction.capacity import HeatCapacity
-from thermal.conduction.conductivity import VariableConduction
+from thermal.conduction.capacity import HeatCapacity, VariableConduction
 from thermal.fe.bases import LINEAR, VECTOR
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, named_mesh

@@ -9,8 +9,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import mesh_loss
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.force import evaluate_mesh, tooth_forces
-from dynamics.mesh.friction import GivenFriction, friction_coefficient
-from dynamics.mesh.sliding import ToothPath
+from dynamics.mesh.friction import GivenFriction, ToothPath, friction_coefficient
 from dynamics.mesh.stiffness import pair_stiffness
 from tests.builders.p2_gears import helical_pair, spur_pair
 

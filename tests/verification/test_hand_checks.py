@@ -11,7 +11,7 @@ from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
 from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.expansion import centrifugal_expansion
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.mesh.law import DampedRate
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response

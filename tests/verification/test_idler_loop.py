@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modes import loop_modes
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
-from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_walk import mesh_cells
 from dynamics.response.periodic_response import periodic_by_time

@@ -16,8 +16,8 @@ from dynamics.errors import DynamicsInputError
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.flank import ContactDiscretisation, mesh_law
+from dynamics.mesh.force import StaticCycle, static_cycle
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.static_cycle import StaticCycle, static_cycle
 from dynamics.mesh.stiffness import pair_stiffness
 from tests.builders.elastic_pairs import coarse_gears, equal_helical_pair, loaded, plane_gears
 from tests.builders.loaded_mesh import gap_of

@@ -16,16 +16,14 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.flank_gap import flank_gap
 from dynamics.contact.loaded_mesh import LoadedMesh
+from dynamics.contact.points import FaceGrid, flank_gap
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence import build
 from dynamics.influence import build as local_part
-from dynamics.influence.elastic_segment import Elastic
+from dynamics.influence.elastic_segment import Elastic, GearModel
 from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
-from dynamics.influence.gear_model import GearModel
 from dynamics.mesh.pair_gap import PairGap
 from dynamics.rating.root_stress import root_influence
 from tests.builders.loaded_mesh import fzg_c

@@ -11,14 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.bearing.journal_characteristic import short_bearing_attitude
 from dynamics.bearing.journal_feed import film_arcs
-from dynamics.bearing.journal_film import solve_arc, solve_film
-from dynamics.bearing.journal_grid import film_grid
-from dynamics.bearing.journal_lateral import RunningFilm, coefficient_table, journal_lateral
-from dynamics.bearing.journal_perturbation import film_coefficients
-from dynamics.bearing.lateral import LateralCoefficients
-from dynamics.bearing.protocol import LateralOperation
+from dynamics.bearing.journal_film import film_grid, short_bearing_attitude, solve_arc, solve_film
+from dynamics.bearing.journal_lateral import (
+    RunningFilm,
+    coefficient_table,
+    film_coefficients,
+    journal_lateral,
+)
+from dynamics.bearing.protocol import LateralCoefficients, LateralOperation
 from dynamics.kernels.journal import short_bearing_load
 from tests.builders.rotor_stability import rotor_stability, threshold_speed
 

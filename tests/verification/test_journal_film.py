@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from dynamics.bearing.journal_characteristic import (
+from dynamics.bearing.journal_film import (
     characteristic,
     short_bearing_attitude,
     short_bearing_side_flow,
+    solve_film,
 )
-from dynamics.bearing.journal_film import solve_film
 from dynamics.kernels.journal import short_bearing_load
 
 # A. A. Raimondi, J. Boyd, A solution for the finite journal bearing III, ASLE Trans. 1 (1958), full bearing:

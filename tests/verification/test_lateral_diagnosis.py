@@ -16,8 +16,7 @@ import rigdesign.diagnosis.run as diagnosis
 from rigdesign.case import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.prediction.changes import changed_case
-from rigdesign.prediction.model import OWN_MODEL, Channel, Feature, OperatingCondition
+from rigdesign.prediction.model import OWN_MODEL, Channel, Feature, OperatingCondition, changed_case
 from rigdesign.prediction.predict import predict
 from tests.builders.order import shipped
 

@@ -20,7 +20,7 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.response.periodic_response import periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.rig import prototype, prototype_laws

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.contact.local_approach import EdgeModel
+from dynamics.contact.compliance import EdgeModel
 from dynamics.mesh.stiffness import pair_stiffness, single_pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from tests.builders.loaded_mesh import equal_gears, fzg_c, sliced_mesh

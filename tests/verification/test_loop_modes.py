@@ -14,8 +14,7 @@ import pytest
 from scipy.linalg import eigvals
 
 from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.loop_crossings import loop_crossings
-from dynamics.drivetrain.modes import closed_matrices, loop_modes
+from dynamics.drivetrain.modes import closed_matrices, loop_crossings, loop_modes
 from dynamics.mesh.law import MeshLaw
 from tests.builders.rig import prototype, prototype_laws
 

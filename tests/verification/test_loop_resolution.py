@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.shaft import Section, Shaft, free_frequencies
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case import Case, load_case
 from rigdesign.checks import all_checks
 from rigdesign.coupling.braced_loop import LoadedCircuit, respond, signed_torque
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.response.initial_state import WoundLoop, wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings
 from dynamics.response.time_march import TimeMarch

@@ -10,8 +10,7 @@ from rigdesign import load_case
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.mesh_convergence import Numbers, discretisation, numbers, richardson
-from rigdesign.run.mesh_refinement import on_mesh
+from rigdesign.run.mesh_convergence import Numbers, discretisation, numbers, on_mesh, richardson
 from tests.builders.paths import CASES
 from tests.builders.poisson import solved
 from tests.performance.test_mesh_study import sized

@@ -5,8 +5,13 @@ import math
 import pytest
 
 from dynamics.losses.mesh_loss import mesh_loss
-from dynamics.mesh.friction import Schlenk, friction_coefficient
-from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
+from dynamics.mesh.friction import (
+    Schlenk,
+    ToothPath,
+    friction_coefficient,
+    ohlendorf_factor,
+    tooth_loss_factor,
+)
 
 TEST_SPEED = 12000 * math.pi / 30
 

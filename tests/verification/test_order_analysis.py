@@ -10,8 +10,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from rigdesign.measurement.processing.averaging import signal_orders
 from rigdesign.measurement.processing.features import gain
+from rigdesign.measurement.processing.recorded import signal_orders
 from rigdesign.measurement.reading.document import Tach, Transfer
 from rigdesign.measurement.reading.signals import Signal
 from rigdesign.measurement.reading.tach import TachError, pulse_counts, rising_edges, turn_angle

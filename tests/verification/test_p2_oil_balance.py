@@ -9,8 +9,7 @@ to" the 390 kW. P2 names no oil, no flow of a single circuit and no pump.
 import pytest
 
 from rigdesign.oil_circuit.circuit import Circuit, SupplyLine
-from rigdesign.oil_circuit.cooler import Coolant, Cooler
-from rigdesign.oil_circuit.parts import Consumer, Pump, Tank
+from rigdesign.oil_circuit.parts import Consumer, Coolant, Cooler, Pump, Tank
 from rigdesign.oil_circuit.steady import SteadyCircuit, steady_circuit
 from rigdesign.properties.oil import MIL_PRF_23699, OILS
 from rigdesign.rig_heat.room import Room, room_balance

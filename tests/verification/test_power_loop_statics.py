@@ -8,13 +8,11 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
-from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_static
+from dynamics.drivetrain.static_loop import LoopLoad, SlowRotation, port_model, solve_static
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.force import evaluate_mesh, static_cycle
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.static_cycle import static_cycle
 from dynamics.response.initial_state import wound_state
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 

@@ -22,10 +22,9 @@ from rigdesign.case.loader import changed_together
 from rigdesign.case.paths import Slot, known_paths, slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.checks.assumptions import depends, with_assumptions
-from rigdesign.reanalysis.affected_parts import PARTS, Part, parts_of
+from rigdesign.reanalysis.modified_rig import PARTS, Part, parts_of
 from rigdesign.reanalysis.reference import Reference
-from rigdesign.uncertainty.plan import ALIKE, RangeEnd, plan
-from rigdesign.uncertainty.point import EndResult, solve_end, solve_stated
+from rigdesign.uncertainty.plan import ALIKE, EndResult, RangeEnd, plan, solve_end, solve_stated
 from rigdesign.uncertainty.run import LEAST_MOVE
 from tests.builders.checks import EXPECTED, check, limit_of
 from tests.builders.paths import CASES

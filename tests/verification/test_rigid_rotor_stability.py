@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.bearing.lateral import LateralCoefficients
+from dynamics.bearing.protocol import LateralCoefficients
 from dynamics.errors import DynamicsInputError
 from tests.builders.rotor_stability import rotor_stability, threshold_speed
 

@@ -7,25 +7,22 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.parts import Coupling, JointStiffness
-from dynamics.drivetrain.periodic_load import LoadOrder, harmonic_loads, rotating_load
+from dynamics.drivetrain.parts import Coupling, JointStiffness, LoadOrder, harmonic_loads, rotating_load
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS, Disc, Section
-from dynamics.drivetrain.static_loop import line_ratios
+from dynamics.drivetrain.static_loop import LoopLoad, line_ratios
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.layout import ElasticRig, ShaftPlacement
-from dynamics.elastic_rig.mesh_rows import mesh_ports
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.rotating_loads import line_loads, misalignment_load
-from dynamics.elastic_rig.rotating_parts import (
+from dynamics.elastic_rig.layout import (
     AxisMisalignment,
+    ElasticRig,
     FlangeRunOut,
     RotatingPart,
     ShaftBow,
+    ShaftPlacement,
     ShaftUnbalance,
 )
-from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.reduction import reduce_rig
+from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing, line_loads, misalignment_load
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, single_shaft
 from tests.builders.full_matrices import full_matrices

@@ -4,16 +4,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.speed_bands import DrivetrainOverSpeed, SpeedBands
-from dynamics.drivetrain.twist_rows import TwistRows, torsional_twist_rows
+from dynamics.drivetrain.graph import TwistRows, assemble, torsional_twist_rows
+from dynamics.drivetrain.linear_system import DrivetrainOverSpeed, SpeedBands
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.elastic_rig.twist_rows import elastic_twist_rows
+from dynamics.elastic_rig.seen_system import SeenRig, elastic_twist_rows, mesh_ports
 from dynamics.response.command import Command, MotorDrive, Sampling
-from dynamics.response.event_channels import Watched, torque_channels
+from dynamics.response.event_march import Watched, torque_channels
 from dynamics.response.time_response import TimeResponse, run_schedule
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.rig import prototype, prototype_laws

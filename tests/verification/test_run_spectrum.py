@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.command import Command, MotorDrive, Sampling
 from dynamics.response.initial_state import wound_state

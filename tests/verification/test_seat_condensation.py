@@ -13,7 +13,7 @@ from rigdesign.rig.model import build_rig
 from tests.builders.expansion import IRON, STEEL, geometry
 from tests.builders.paths import CASES
 from thermal import forms
-from thermal.expansion.seat_condensation import CondensedSeats, condense_seats
+from thermal.expansion.elastic import CondensedSeats, condense_seats
 from thermal.fe.bases import VECTOR
 from thermal.fe.elements import FiniteElements
 from thermal.housing.gearbox import build_gearbox

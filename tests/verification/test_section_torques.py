@@ -5,19 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.graph import assemble, torsional_twist_rows
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad
-from dynamics.drivetrain.twist_rows import torsional_twist_rows
+from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.elastic_rig.twist_rows import elastic_twist_rows
+from dynamics.elastic_rig.seen_system import SeenRig, elastic_twist_rows, mesh_ports
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.motion_kind import Motion
+from dynamics.response.periodic_response import Motion
 from dynamics.response.response_curve import CurvePoint
 from dynamics.response.section_torque import section_torques
 from dynamics.response.speed_sweep import periodic_response

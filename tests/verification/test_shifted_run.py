@@ -7,8 +7,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.reanalysis.affected_parts import PARTS, Reanalysis
-from rigdesign.reanalysis.modified_rig import modified_rig
+from rigdesign.reanalysis.modified_rig import PARTS, Reanalysis, modified_rig
 from rigdesign.reanalysis.reference import Reference, restored, solve_reference
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.loads import StageLoad

@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.loss_factor import at_speed, with_spline_dampers
+from dynamics.drivetrain.graph import (
+    Drivetrain,
+    assemble,
+    at_speed,
+    torsional_twist_rows,
+    with_spline_dampers,
+)
 from dynamics.drivetrain.parts import GearBody, MeshConnection, Motor
 from dynamics.drivetrain.shaft import DrivetrainError, Section, Shaft
-from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.layout import ElasticRig
 from dynamics.elastic_rig.reduction import reduce_rig

@@ -6,28 +6,29 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble, shaft_chains
+from dynamics.drivetrain.graph import assemble, shaft_chains, torsional_twist_rows
 from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
-from dynamics.drivetrain.twist_rows import torsional_twist_rows
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_directions, mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import RunningState
-from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.elastic_rig.twist_rows import elastic_twist_rows
+from dynamics.elastic_rig.seen_system import SeenRig, elastic_twist_rows, mesh_directions, mesh_ports
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import tooth_forces
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_channels import Watched, bearing_channels, torque_channels
 from dynamics.response.event_march import (
     Brake,
     EventMarch,
+    SteadyStart,
     Trip,
+    Watched,
+    bearing_channels,
+    steady_start,
+    teeth_in_mesh,
     time_to_standstill,
+    torque_channels,
+    without_teeth,
 )
 from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.steady_start import SteadyStart, steady_start
-from dynamics.response.tooth_loss import teeth_in_mesh, without_teeth
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.rig import prototype, prototype_laws
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.periodic_response import (
     PeriodicResponse,

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.elastic_rig.mesh_rows import Face, mesh_directions, mesh_ports
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.drivetrain.static_loop import LoopLoad
+from dynamics.elastic_rig.seen_system import Face, SeenRig, mesh_directions, mesh_ports
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings
 from dynamics.response.time_march import TimeMarch

@@ -7,11 +7,11 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad
+from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.command import Command, MotorDrive, Sampling
+from dynamics.response.march_inputs import FollowingLoads, TurningLoads
 from dynamics.response.time_response import TimeResponse, run_schedule
-from dynamics.response.turning_loads import FollowingLoads, TurningLoads
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, wavy_law
 
 Array = NDArray[np.float64]

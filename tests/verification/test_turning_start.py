@@ -8,13 +8,12 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.periodic_load import LoadOrder, rotating_load
+from dynamics.drivetrain.parts import LoadOrder, rotating_load
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
+from dynamics.elastic_rig.layout import FlangeRunOut, ShaftBow
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.rotating_parts import FlangeRunOut, ShaftBow
 from dynamics.elastic_rig.running_state import RunningState
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
 from dynamics.mesh.law import MeshLaw
 from dynamics.response import time_response
 from dynamics.response.command import Command, MotorDrive, Sampling

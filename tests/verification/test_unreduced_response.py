@@ -16,7 +16,7 @@ import pytest
 from dynamics.elastic_rig.running_state import RowSpring
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points

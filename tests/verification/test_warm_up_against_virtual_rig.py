@@ -8,7 +8,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.prediction import Channel, OperatingCondition
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor
 from tests.builders.paths import CASES
 from tests.virtual_rig.heat_truth import HeatTruth, rig
 

@@ -25,19 +25,95 @@ from thermal.conditions.streams import StreamNetwork, inlet_share
 from thermal.conditions.view_factor_closure import close_view_factors
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
-from thermal.conduction.heat_rows import HeatFlow, exchange_rows, film_row, radiation_row, surface_row
-from thermal.conduction.heat_rows import HeatFlow as HeatRow
 from thermal.conduction.setup import ConductionSetup
-from thermal.fe.elements import FiniteElements
+from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.mesh import FloatArray
-from thermal.films.law import STEFAN_BOLTZMANN
+from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
+
+# Rows of the heat balance: one condition at one place, integrated from its own law.
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeatFlow:
+    """Heat of one condition at one place."""
+
+    surface: str
+    """Surface, body for a source in a body, or volume."""
+    kind: str
+    power: float
+    """[W], positive into the solid or volume."""
+    area: float
+    """[m2]; 0 for a source in a body and for a volume."""
+    mean_temperature: float
+    """Area mean of the surface, volume mean of the body, outlet temperature of the volume [K]."""
+    piece: int
+    """Number of the connected piece of the mesh that takes the heat; volumes count on from the last piece."""
+    coefficient: FilmCoefficient | None = None
+
+
+def surface_row(
+    surface: SurfaceElements,
+    name: str,
+    kind: str,
+    power: float,
+    temperature: FloatArray,
+    coefficient: FilmCoefficient | None = None,
+) -> HeatFlow:
+    """A row of a surface with its area and mean temperature; power [W] into the solid."""
+    return HeatFlow(
+        surface=name,
+        kind=kind,
+        power=power,
+        area=surface.area,
+        mean_temperature=surface.mean(temperature),
+        piece=surface.piece,
+        coefficient=coefficient,
+    )
+
+
+def film_row(surface: SurfaceElements, film: Film, temperature: FloatArray) -> HeatFlow:
+    """Heat of a film, its coefficient at the mean wall temperature."""
+    coefficient = film.law(surface.mean(temperature), film.fluid_temperature)
+    power = coefficient.value * surface.integral(film.fluid_temperature - surface.at_points(temperature))
+    return surface_row(surface, film.surface, film.kind, power, temperature, coefficient)
+
+
+def radiation_row(surface: SurfaceElements, radiation: Radiation, temperature: FloatArray) -> HeatFlow:
+    """Heat from large surroundings, integrated over T^4."""
+    wall, room = surface.at_points(temperature), radiation.surroundings_temperature
+    power = radiation.emissivity * STEFAN_BOLTZMANN * surface.integral(room**4 - wall**4)
+    mean = surface.mean(temperature)
+    coefficient = FilmCoefficient(
+        value=radiation.emissivity * STEFAN_BOLTZMANN * (mean**2 + room**2) * (mean + room),
+        formula="grey_radiation_to_surroundings",
+        inputs={
+            "emissivity": radiation.emissivity,
+            "mean_temperature": mean,
+            "surroundings_temperature": room,
+        },
+        valid_range="grey, diffuse surface that sees only its surroundings",
+        source="Stefan-Boltzmann law, written as a coefficient at the mean temperature",
+    )
+    return surface_row(surface, radiation.surface, radiation.kind, power, temperature, coefficient)
+
+
+def exchange_rows(elements: FiniteElements, exchange: Exchange, temperature: FloatArray) -> list[HeatFlow]:
+    """Both sides of an exchange between area means."""
+    a, b = elements.surfaces[exchange.surface_a], elements.surfaces[exchange.surface_b]
+    mean_a, mean_b = a.mean(temperature), b.mean(temperature)
+    coefficient = exchange.law(mean_a, mean_b)
+    power = coefficient.value * a.area * (mean_b - mean_a)
+    return [
+        surface_row(a, exchange.surface_a, exchange.kind, power, temperature, coefficient),
+        surface_row(b, exchange.surface_b, exchange.kind, -power, temperature, coefficient),
+    ]
 
 
 @dataclass(frozen=True)
 class HeatBalance:
     """All rows; in a steady state they sum to zero on every connected piece."""
 
-    rows: tuple[HeatRow, ...]
+    rows: tuple[HeatFlow, ...]
 
     @property
     def imbalance(self) -> float:
@@ -100,7 +176,7 @@ def heat_balance(
     elements = setup.elements
     held = held_by(elements, conditions)
     numbers = _volume_numbers(elements, conditions)
-    rows: list[HeatRow] = []
+    rows: list[HeatFlow] = []
     for condition in conditions:
         match condition:
             case Film():
@@ -126,7 +202,7 @@ def heat_balance(
                 )
             case BodySource():
                 rows.append(
-                    HeatRow(
+                    HeatFlow(
                         surface=condition.body,
                         kind=condition.kind,
                         power=condition.power,
@@ -142,12 +218,12 @@ def heat_balance(
     return HeatBalance(tuple(rows))
 
 
-def _stored_rows(setup: ConductionSetup, condition: StoredHeat, temperature: FloatArray) -> list[HeatRow]:
+def _stored_rows(setup: ConductionSetup, condition: StoredHeat, temperature: FloatArray) -> list[HeatFlow]:
     """What every body takes up per time, as heat that leaves it."""
     elements, capacity = setup.elements, setup.heat_capacity(condition.capacity)
     rise = temperature - condition.start
     return [
-        HeatRow(
+        HeatFlow(
             surface=body,
             kind=condition.kind,
             power=-capacity.stored(rise, body) / condition.time,

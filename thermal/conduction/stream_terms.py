@@ -5,14 +5,15 @@ feel them as one rank for every film. Names in formulas: films i = 1..s on surfa
 volumes v = 1..m with temperature V_v.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from thermal.conditions.boundary import ConditionError
 from thermal.conditions.streams import StreamNetwork, VolumeFilm, inlet_share, inlet_share_slope
-from thermal.conduction.law_values import checked_value
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of
 from thermal.fe.mesh import FloatArray
@@ -244,3 +245,15 @@ def eliminate(
 def _value(film: VolumeFilm, wall: float, fluid: float) -> float:
     law: FilmLaw = film.law
     return checked_value(law(float(wall), float(fluid)).value, film.surface, film.kind)
+
+
+# What a law of a film, an exchange or a contact must give.
+
+
+def checked_value(value: float, surface: str, kind: str) -> float:
+    """The coefficient [W/(m2 K)] if it is a number of at least zero, else ConditionError."""
+    if not (math.isfinite(value) and value >= 0.0):
+        raise ConditionError(
+            f"{surface}: coefficient of {kind!r} is {value} W/(m2 K); a film law must give a number >= 0"
+        )
+    return value

@@ -35,9 +35,8 @@ from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conditions.streams import StreamNetwork, volume_links
 from thermal.conduction.capacity import Storage, StoredHeat
 from thermal.conduction.condition_checks import Condition, ConditionError, check_heat_paths
-from thermal.conduction.law_values import checked_value
 from thermal.conduction.setup import ConductionSetup
-from thermal.conduction.stream_terms import Elimination, VolumeTerms, eliminate
+from thermal.conduction.stream_terms import Elimination, VolumeTerms, checked_value, eliminate
 from thermal.fe.direct_factor import MOST_NODES, DirectFactor
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of, stack

@@ -4,20 +4,22 @@ from itertools import combinations
 
 import numpy as np
 
-from thermal.expansion.alignment import ShaftAxis, misalignment, roundness, shaft_axis
-from thermal.expansion.clearances import (
+from thermal.expansion.alignment import (
     BearingExpansion,
     CentreDistance,
     GearExpansion,
     SealExpansion,
+    ShaftAxis,
     ShaftExpansion,
     concentric_gap_change,
     free_expansion,
     length_mean,
+    misalignment,
+    roundness,
+    shaft_axis,
 )
-from thermal.expansion.cylinders import CylinderMotion, axial_range
 from thermal.expansion.elastic import ElasticError, rigid_motion
-from thermal.expansion.setup import ROUND, ExpansionSetup
+from thermal.expansion.setup import ROUND, CylinderMotion, ExpansionSetup, axial_range
 from thermal.fe.mesh import FloatArray
 from thermal.housing.stations import BearingStation, GearStation, Point, SealStation, ShaftStation
 

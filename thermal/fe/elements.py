@@ -10,8 +10,7 @@ from thermal.fe import assembly
 from thermal.fe.arrays import FloatArray, IndexArray
 from thermal.fe.bases import LINEAR, SCALAR, Bases
 from thermal.fe.levels import Level, prolongation
-from thermal.fe.mesh import NamedMesh
-from thermal.fe.mesh_checks import check_topology, check_volumes
+from thermal.fe.mesh import NamedMesh, check_topology, check_volumes
 from thermal.fe.surfaces import SurfaceElements, gather
 
 __all__ = ["FiniteElements", "Level", "SurfaceElements"]
@@ -22,7 +21,7 @@ class FiniteElements:
 
     Geometry is isoparametric; reference_elements says which rule serves stiffness, loads and surfaces. The
     linear sub-space stands on the straight-sided cells between the corners.
-    Raises MeshError for a mesh that thermal.fe.mesh_checks refuses.
+    Raises MeshError for a mesh that thermal.fe.mesh refuses.
     """
 
     def __init__(self, mesh: NamedMesh) -> None:

@@ -10,8 +10,7 @@ from dataclasses import replace
 
 from thermal.films.convection import constant
 from thermal.films.flank import FilmOil, ToothRing, Wetting, fling_off
-from thermal.films.inputs import FilmError, not_negative, outside, positive
-from thermal.films.law import FilmCoefficient, FilmLaw
+from thermal.films.law import FilmCoefficient, FilmError, FilmLaw, not_negative, outside, positive
 
 WALL_RANGE = (100.0, 300.0)
 """Splashed inner walls [W/(m2 K)], Niemann/Winter II, from memory."""

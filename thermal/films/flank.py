@@ -34,8 +34,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermal.films.inputs import FilmError, not_negative, outside, positive
-from thermal.films.law import FilmCoefficient, FilmLaw
+from thermal.films.law import FilmCoefficient, FilmError, FilmLaw, not_negative, outside, positive
 
 GRAVITY = 9.81
 LIQUID = (233.15, 673.15)

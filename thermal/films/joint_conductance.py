@@ -5,8 +5,7 @@ Laws of the convection modules serve as well: `constant` for a measured joint, `
 
 from dataclasses import dataclass
 
-from thermal.films.inputs import not_negative, outside, positive
-from thermal.films.law import ExchangeLaw, FilmCoefficient
+from thermal.films.law import ExchangeLaw, FilmCoefficient, not_negative, outside, positive
 
 LEAST_RELATIVE_PRESSURE, GREATEST_RELATIVE_PRESSURE = 1e-5, 2e-2
 """Range of pressure over hardness of the correlation of the gap thickness."""

@@ -9,8 +9,15 @@ from dataclasses import replace
 from typing import Literal, Protocol
 
 from thermal.films.air import Air, air
-from thermal.films.inputs import FilmError, not_negative, outside, positive
-from thermal.films.law import Correlation, FilmCoefficient, FilmLaw
+from thermal.films.law import (
+    Correlation,
+    FilmCoefficient,
+    FilmError,
+    FilmLaw,
+    not_negative,
+    outside,
+    positive,
+)
 
 GRAVITY = 9.80665
 """[m/s2]"""
@@ -41,8 +48,8 @@ def niemann_winter(height: float, place_factor: float = 1.0) -> FilmLaw:
     place_factor : f_k [-], 1 for a housing standing free in still air, less when enclosed, more in a draught
 
     The coefficient is of the size of free convection plus radiation together (thermal sheet a), so a surface
-    with this film should not radiate as well; `thermal.conduction.audit.radiation_counted_twice` says so. The book's
-    own limits are not public: the range is that in which the formula agrees with other sources.
+    with this film should not radiate as well; `thermal.conduction.condition_checks.radiation_counted_twice` says
+    so. The book's own limits are not public: the range is that in which the formula agrees with other sources.
     """
     positive("housing height", height, "m")
     positive("place factor f_k", place_factor, "")

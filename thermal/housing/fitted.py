@@ -11,16 +11,16 @@ import numpy as np
 
 from thermal.fe.mesh import FloatArray, NamedMesh
 from thermal.housing.geometry import HousingGeometry
-from thermal.housing.housing_surfaces import FOOT
-from thermal.housing.parametric_stations import (
+from thermal.housing.housing_surfaces import FOOT, joined_surfaces
+from thermal.housing.stations import (
+    GearboxModel,
+    Point,
     bearing_stations,
     foot_joint,
     gear_stations,
     seal_stations,
     shaft_stations,
 )
-from thermal.housing.stations import GearboxModel, Point
-from thermal.housing.surfaces import joined_surfaces
 
 ROUND = 0.02
 """Largest distance of a corner from the fitted circle, relative to its radius, of what is taken for a cylinder."""

@@ -42,17 +42,17 @@ from thermal.fe.gmsh_session import gmsh_session
 from thermal.fe.kept_results import kept
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.geometry import ClampingField, HousingGeometry
-from thermal.housing.housing_surfaces import FOOT, field_faces, housing_faces
-from thermal.housing.measures import GeometryError
-from thermal.housing.meshing import Component, mesh_component
-from thermal.housing.parametric_stations import (
-    bearing_stations,
-    foot_joint,
-    gear_stations,
-    seal_stations,
-    shaft_stations,
+from thermal.housing.housing_surfaces import (
+    FOOT,
+    body_names,
+    exact_areas,
+    exact_volumes,
+    field_faces,
+    housing_faces,
+    surface_names,
 )
-from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
+from thermal.housing.meshing import Component, mesh_component
+from thermal.housing.shaft_geometry import EndBearing, GearDisc, GeometryError, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import (
     MeshSizes,
@@ -63,8 +63,14 @@ from thermal.housing.solids import (
     housing_size,
     shaft_size,
 )
-from thermal.housing.stations import GearboxModel
-from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, surface_names
+from thermal.housing.stations import (
+    GearboxModel,
+    bearing_stations,
+    foot_joint,
+    gear_stations,
+    seal_stations,
+    shaft_stations,
+)
 
 __all__ = [
     "ClampingField",

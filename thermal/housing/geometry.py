@@ -25,8 +25,15 @@ from dataclasses import dataclass, fields
 from itertools import combinations
 
 from thermal.errors import ThermalInputError
-from thermal.housing.measures import MINIMUM_LAND, SIDES, GeometryError, Side, require_positive
-from thermal.housing.shaft_geometry import EndBearing, ShaftGeometry
+from thermal.housing.shaft_geometry import (
+    MINIMUM_LAND,
+    SIDES,
+    EndBearing,
+    GeometryError,
+    ShaftGeometry,
+    Side,
+    require_positive,
+)
 
 PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
 """Measures that a housing has all of, or none of."""

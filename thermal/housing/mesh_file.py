@@ -4,7 +4,8 @@ Read by gmsh itself, so every version of the format and text and binary files se
 bodies, physical surfaces surfaces; everything that has no name or two is listed at once.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import count
 from pathlib import Path
 from types import ModuleType
 
@@ -12,8 +13,16 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe.gmsh_session import gmsh_session
-from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys, whole_surfaces
-from thermal.fe.numbering import along_curve, inverse
+from thermal.fe.mesh import (
+    FloatArray,
+    IndexArray,
+    MeshError,
+    NamedMesh,
+    along_curve,
+    facet_keys,
+    inverse,
+    whole_surfaces,
+)
 from thermal.fe.reference_elements import HEXAHEDRON_20, HEXAHEDRON_27, TETRAHEDRON_10, CellElement
 
 KINDS: dict[int, CellElement] = {11: TETRAHEDRON_10, 17: HEXAHEDRON_20, 12: HEXAHEDRON_27}
@@ -248,3 +257,43 @@ def _patches(points: FloatArray, facets: IndexArray) -> list[str]:
 def _listed(items: list[str]) -> str:
     more = len(items) - MOST_LISTED
     return ", ".join(items[:MOST_LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+# A named mesh as a gmsh file (format 2.2, text), which `thermal.housing.mesh_file.read_mesh` gives back as it was.
+#
+# Physical volumes are the bodies, physical surfaces the surfaces; coordinates have all digits. Format: gmsh reference
+# manual, "MSH file format version 2".
+
+CELLS = {10: 11, 20: 17, 27: 12}
+FACETS = {6: 9, 8: 16, 9: 10}
+"""gmsh's number of an element by its number of nodes."""
+
+
+def write_mesh(mesh: NamedMesh, path: Path) -> None:
+    """Write a mesh of ten-node tetrahedra, or of hexahedra of 20 or 27 nodes, in metres.
+
+    Raises OSError where the file cannot be written.
+    """
+    order = np.argsort(mesh.shape.gmsh_order)
+    groups = [(3, name, CELLS, mesh.cells[cells][:, order]) for name, cells in mesh.bodies.items()]
+    groups += [(2, name, FACETS, nodes) for name, nodes in mesh.surfaces.items()]
+    numbers = count(1)
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        names = [f'{dimension} {tag} "{name}"' for tag, (dimension, name, *_) in enumerate(groups, 1)]
+        file.writelines(_section("MeshFormat", ["2.2 0 8"]))
+        file.writelines(_section("PhysicalNames", [str(len(names)), *names]))
+        nodes = [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate(mesh.points.tolist(), 1)]
+        file.writelines(_section("Nodes", [str(len(nodes)), *nodes]))
+        elements = [
+            f"{next(numbers)} {kinds[rows.shape[1]]} 2 {tag} {tag} {' '.join(map(str, row))}"
+            for tag, (_, _, kinds, rows) in enumerate(groups, 1)
+            for row in (rows + 1).tolist()
+        ]
+        file.writelines(_section("Elements", [str(len(elements)), *elements]))
+
+
+def _section(name: str, lines: list[str]) -> Iterator[str]:
+    yield f"${name}\n"
+    for line in lines:
+        yield line + "\n"
+    yield f"$End{name}\n"

@@ -24,7 +24,7 @@ from thermal.fe.mesh import (
     named_mesh,
 )
 from thermal.housing.curving import BendAxis, bend_round_axes, straighten_inverted
-from thermal.housing.patches import NamedFace
+from thermal.housing.shaft_surfaces import NamedFace
 
 TETRAHEDRON_10, TRIANGLE_6 = 11, 9
 """gmsh's numbers of the two element types."""

@@ -6,9 +6,8 @@ from typing import Any, Literal
 
 from thermal.housing.curving import BendAxis
 from thermal.housing.geometry import ClampingField, HousingGeometry
-from thermal.housing.measures import SIDES, GeometryError
 from thermal.housing.meshing import SizeLaw
-from thermal.housing.shaft_geometry import ShaftGeometry
+from thermal.housing.shaft_geometry import SIDES, GeometryError, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_zones
 
 SAME = 1e-6

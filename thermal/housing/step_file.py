@@ -1,6 +1,6 @@
 """A housing drawn in CAD: one solid of a STEP file with named faces -> mesh with named surfaces.
 
-Faces have names in the file, or rules pick them (`thermal.housing.face_rules`); a face without a name is refused with
+Faces have names in the file, or rules pick them; a face without a name is refused with
 everything one needs to name it. gmsh's OpenCASCADE kernel reads the file in metres, whatever its unit.
 """
 

@@ -17,8 +17,7 @@ from rigdesign.case.defaults.parts import (
     shaft_of,
     shafts_of,
 )
-from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
+from rigdesign.case.defaults.rule import Filling, RawTree, RuleBook, around, assumed, follows, millimetres
 
 book = RuleBook()
 STEEL = 7850.0

@@ -12,8 +12,7 @@ from rigdesign.case.defaults.parts import (
     shafts_of,
     tabled,
 )
-from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres
+from rigdesign.case.defaults.rule import Filling, RawTree, RuleBook, around, assumed, follows, millimetres
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 
 book = RuleBook()

@@ -12,12 +12,20 @@ from rigdesign.case.defaults.parts import (
     shaft_diameter,
     shafts_of,
 )
-from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Filling, RuleBook, around, assumed, follows, millimetres, with_marks
+from rigdesign.case.defaults.rule import (
+    Filling,
+    RawTree,
+    RuleBook,
+    around,
+    assumed,
+    follows,
+    millimetres,
+    with_marks,
+)
+from rigdesign.case.films import matched
 from rigdesign.case.geometry import covering, housing_geometry
-from rigdesign.case.matching import matched
 from thermal.errors import ThermalInputError
-from thermal.housing.surfaces import surface_names
+from thermal.housing.housing_surfaces import surface_names
 
 if TYPE_CHECKING:
     from rigdesign.case.model import Case

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from rigdesign.case.defaults.raw_tree import RawTree
+from rigdesign.case.defaults.rule import RawTree
 
 if TYPE_CHECKING:
     from dynamics.bearing.rolling_catalogue import CatalogueBearing

@@ -8,24 +8,21 @@ from rigdesign.base.units import show
 from rigdesign.case.component_limits import PLACES, has_result
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import ROOM
+from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.housing import Housing
 from rigdesign.case.paths import known_paths, nearest_paths, slot_at
-from rigdesign.case.rules.bearings import bearing_faults, missing_ends
+from rigdesign.case.rotation import Rotation, mesh_shafts, shaft_senses
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.elastic_shafts import elastic_shaft_faults
-from rigdesign.case.rules.events import event_faults
-from rigdesign.case.rules.gears import gearbox_faults
-from rigdesign.case.rules.losses import loss_faults
-from rigdesign.case.rules.lubrication import lubrication_faults
-from rigdesign.case.rules.oil_circuits import oil_circuit_faults
-from rigdesign.case.rules.rig_heat import rig_heat_faults
-from rigdesign.case.rules.rotation import rotation_faults
-from rigdesign.case.rules.schedule import schedule_faults
+from rigdesign.case.rules.gears import bearing_faults, gearbox_faults, missing_ends
+from rigdesign.case.rules.oil_circuits import lubrication_faults, oil_circuit_faults
+from rigdesign.case.rules.rig_heat import loss_faults, rig_heat_faults
+from rigdesign.case.rules.schedule import event_faults, schedule_faults
 from rigdesign.case.rules.surfaces import housing_faults
-from rigdesign.case.rules.transient import transient_faults
 from rigdesign.properties.fluid import ATMOSPHERE, FluidError, volumetric_heat
 from rigdesign.properties.materials import MATERIALS
 from rigdesign.properties.oil import OILS, OilError
+from thermal.housing.housing_surfaces import body_names, exact_areas
 
 if TYPE_CHECKING:
     from rigdesign.case.drivetrain import ShaftInput
@@ -183,3 +180,62 @@ def _numerics(case: "Case") -> Iterator[Fault]:
             "is not within 0 and 0.1",
             "write e.g. 0.001",
         )
+
+
+# Rules of the senses of rotation: shafts that are coupled turn together.
+
+
+def rotation_faults(case: "Case") -> Iterator[Fault]:
+    """Gearboxes whose stated rotation does not fit that of the one they are coupled to."""
+    for name, partner, needed in contradicting_rotations(case):
+        yield Fault(
+            f"gearboxes.{name}.rotation", case.gearboxes[name].rotation,
+            f"its shafts are coupled to gearbox {partner}, whose rotation makes it {needed}",
+            f"write {needed} or leave it out; correct the ends of the couplings if they meet otherwise",
+        )  # fmt: skip
+
+
+def contradicting_rotations(case: "Case") -> Iterator[tuple[str, str, Rotation]]:
+    """(gearbox, gearbox that turns it, rotation it then has) where what the case states does not fit its couplings."""
+    train = case.drivetrain
+    if train is None:
+        return
+    meshes = [pair for box in case.gearboxes.values() for pair in mesh_shafts(box)]
+    couplings = [(one.shafts, one.ends) for one in train.couplings.values()]
+    firsts = {name: mesh_shafts(box)[0][0] for name, box in case.gearboxes.items()}
+    settled: dict[str, str] = {}
+    senses: dict[str, float] = {}
+    for name, box in case.gearboxes.items():
+        first = 1.0 if box.rotation == "clockwise" else -1.0
+        if firsts[name] not in senses:
+            found = shaft_senses({firsts[name]: first}, meshes, couplings)
+            settled |= dict.fromkeys(found, name)
+            senses |= found
+        elif senses[firsts[name]] != first:
+            yield name, settled[firsts[name]], "anticlockwise" if first > 0.0 else "clockwise"
+
+
+# Rules of the thermal history: events once each, probes at places that exist.
+
+
+def transient_faults(case: "Case") -> Iterator[Fault]:
+    """Everything wrong with the table ``transient``; housings must be sound."""
+    events = case.transient.events
+    for event in dict.fromkeys(events):
+        if events.count(event) > 1:
+            yield Fault("transient.events", written(event), "is listed twice", "name each event once")
+    for name, probe in case.transient.probes.items():
+        at = f"transient.probes.{name}"
+        box = case.gearboxes.get(probe.gearbox)
+        if box is None:
+            yield unknown(f"{at}.gearbox", probe.gearbox, case.gearboxes, "gearbox")
+        elif box.housing is None:
+            yield Fault(
+                f"{at}.gearbox", written(probe.gearbox), "has no housing and so no temperature field",
+                "name a gearbox with a housing",
+            )  # fmt: skip
+        else:
+            geometry = housing_geometry(box)
+            places = [*body_names(geometry), *exact_areas(geometry)]
+            if probe.place not in places:
+                yield unknown(f"{at}.place", probe.place, places, "surface or body")

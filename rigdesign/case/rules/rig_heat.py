@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import unknown, written
+from rigdesign.case.films import RotatingCylinder, RotatingDisc
 from rigdesign.case.rig_heat import OIL_COOLER, WATER
 from rigdesign.case.rig_heat_parts import heat_parts
 
 if TYPE_CHECKING:
+    from rigdesign.case.gearbox import Gearbox
     from rigdesign.case.model import Case
 
 
@@ -85,3 +87,109 @@ def _room(case: "Case") -> Iterator[Fault]:
             f"is not above the supplied air, {show(supply, 'temperature')}: no ventilation holds it, however strong",
             "raise it, or supply colder air",
         )  # fmt: skip
+
+
+# Rules of the losses: what a basis needs, and places that exist.
+
+
+def loss_faults(case: "Case") -> Iterator[Fault]:
+    """Everything wrong with how the losses are to be found."""
+    losses = case.losses
+    stages = [stage.name for stage in case.schedule.stages]
+    if losses.basis == "computed" and case.drivetrain is None:
+        yield Fault(
+            "losses.basis", '"computed"', "losses can only be computed with a drivetrain",
+            'add a [drivetrain] table, or write basis = "input" and give the losses',
+        )  # fmt: skip
+    if losses.basis == "computed" and losses.chamber_density is None:
+        yield Fault(
+            "losses.chamber_density", "", "windage needs the density round the gears",
+            'add it, e.g. { value = "5 kg/m3", assumed = "oil mist", range = ["1.2 kg/m3", "20 kg/m3"] }',
+        )  # fmt: skip
+    if losses.basis == "input" and not losses.given:
+        yield Fault(
+            "losses.given", "", "no loss is given", "add a table per place, e.g. [losses.given.test_mesh]"
+        )
+    if losses.friction.law == "constant" and losses.friction.coefficient is None:
+        yield Fault(
+            "losses.friction.coefficient",
+            "",
+            "a constant friction needs its coefficient",
+            "add it, e.g. 0.04",
+        )
+    if losses.friction.law == "doleschel" and losses.friction.doleschel is None:
+        yield Fault(
+            "losses.friction.doleschel", "", "Doleschel's law needs the constants of the oil",
+            "add [losses.friction.doleschel], or take the law schlenk or michaelis",
+        )  # fmt: skip
+    yield from _media(case)
+    for name, loss in losses.given.items():
+        at = f"losses.given.{name}"
+        if loss.gearbox not in case.gearboxes:
+            yield unknown(f"{at}.gearbox", loss.gearbox, list(case.gearboxes), "gearbox")
+            continue
+        parts = _parts_that_lose(case.gearboxes[loss.gearbox], loss.kind)
+        if loss.part not in parts:
+            yield unknown(
+                f"{at}.part", loss.part, parts, f"part with {loss.kind} loss in gearbox {loss.gearbox}"
+            )
+        if losses.bearing_drag == "constant" and case.drivetrain is not None and loss.kind != "mesh":
+            yield Fault(
+                f"{at}.kind", f'"{loss.kind}"', "would heat without braking: losses.bearing_drag is constant, so that "
+                "the torsional damping of the bearings is all that brakes besides the teeth",
+                'write bearing_drag = "film" or remove the given loss',
+            )  # fmt: skip
+        for stage in loss.stages:
+            if stage not in stages:
+                yield unknown(f"{at}.stages", stage, stages, "stage")
+    if losses.bearing_drag == "constant":
+        for box_name, box in case.gearboxes.items():
+            for name, bearing in box.bearings.items():
+                if bearing.torsional_damping is None:
+                    yield Fault(
+                        f"gearboxes.{box_name}.bearings.{name}.torsional_damping", "",
+                        "a constant bearing drag needs it", 'add it, e.g. "0.0007 N m s/rad"',
+                    )  # fmt: skip
+
+
+def _media(case: "Case") -> Iterator[Fault]:
+    """Films in the mist of the chamber need its density, those in a bath a sump; both the oil of the gears."""
+    for box_name, box in case.gearboxes.items():
+        films = {} if box.housing is None else box.housing.boundary
+        for name, film in films.items():
+            if not isinstance(film, RotatingCylinder | RotatingDisc) or film.medium == "air":
+                continue
+            entry = f"gearboxes.{box_name}.housing.boundary.{name}"
+            at, written = f"{entry}.medium", f'"{film.medium}"'
+            if film.medium == "mist" and case.losses.chamber_density is None:
+                yield Fault(
+                    at, written, "losses.chamber_density is not given", 'add it or write medium = "air"'
+                )
+            if film.medium == "bath" and box.sump is None:
+                yield Fault(
+                    at, written, "the gearbox has no sump", 'write oil.lubrication = "dip" or medium = "air"'
+                )
+            if not film.fluid.startswith("gear_oil"):
+                yield Fault(
+                    at, written, f"the {film.medium} is that of the chamber of the gears, the fluid is not its oil",
+                    'write fluid = "gear_oil_mean" or medium = "air"',
+                )  # fmt: skip
+            if film.correlation == "jungnickel" or (
+                film.medium == "bath" and "correlation" in film.model_fields_set
+            ):
+                yield Fault(
+                    f"{entry}.correlation", f'"{film.correlation}"', f"is not used: medium = {written}",
+                    'leave it out or write medium = "air"',
+                )  # fmt: skip
+
+
+def _parts_that_lose(box: "Gearbox", kind: str) -> list[str]:
+    return {
+        "mesh": list(box.meshes),
+        "squeeze": list(box.meshes),
+        "oil_acceleration": list(box.meshes),
+        "bearing": list(box.bearings),
+        "seal": list(box.seals),
+        "windage": list(box.gears),
+        "churning": [] if box.sump is None else list(box.gears),
+    }[kind]

@@ -1,23 +1,23 @@
 """Rules of a housing: its parts fit together and every surface has a boundary condition."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 
+import numpy as np
+
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.faults import written
+from rigdesign.case.faults import unknown, written
+from rigdesign.case.films import FLUIDS, SurfaceSite, matched
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.geometry import bearing_on, conditions_of, covering, housing_geometry
-from rigdesign.case.housing import Housing
-from rigdesign.case.matching import matched
+from rigdesign.case.geometry import bearing_on, conditions_of, covering, housing_geometry, wetted_surfaces
+from rigdesign.case.housing import LINKED, EnclosureInput, Housing
 from rigdesign.case.paths import nearest
-from rigdesign.case.rules.enclosures import enclosure_faults
-from rigdesign.case.rules.flanks import GEAR_RIMS, flank_faults
-from rigdesign.case.rules.housing_fluids import housing_fluid_faults
-from rigdesign.case.surface_place import SurfaceSite
+from rigdesign.case.surface_conditions import ConstantFilm, FlankFilm, Insulated, ThermalRadiation
+from thermal.conditions.view_factor_closure import EnclosureError, close_view_factors
 from thermal.errors import ThermalInputError
-from thermal.housing.surfaces import surface_names
+from thermal.housing.housing_surfaces import exact_areas, surface_names
 
 POSITION_TOLERANCE = 1e-4
 """Most difference [m] between the distance of two axes and the centre distance of their mesh."""
@@ -214,3 +214,248 @@ def _site(gearbox: Gearbox, housing: Housing, surface: str) -> SurfaceSite:
         seal="" if seals is None else seals.shaft,
         seal_gap=None if seals is None else seals.radial_gap,
     )
+
+
+# Rule of the oil films on the teeth: every gear has one if they decide the split.
+
+GEAR_RIMS = "gear_*_rim"
+"""Surfaces that stand for teeth."""
+
+
+def flank_faults(name: str, gearbox: Gearbox, housing: Housing, names: Sequence[str]) -> Iterator[Fault]:
+    """Rims without an oil film that the split of the friction heat needs.
+
+    name : of the gearbox; names : every surface of the housing
+    """
+    at = f"gearboxes.{name}.housing.boundary"
+    filmed = {
+        surface
+        for entry, surface, _ in conditions_of(housing, names)
+        if isinstance(housing.boundary[entry], FlankFilm)
+    }
+    bare = [gear for gear, part in gearbox.gears.items() if f"gear_{part.shaft}_rim" not in filmed]
+    if gearbox.heat_split.rule == "flank_film" and bare:
+        yield Fault(
+            f"gearboxes.{name}.heat_split.mesh", '"flank_film"',
+            f"the rim of {' and '.join(bare)} has no flank film that could decide",
+            f'write law = "flank_film" for gear_*_rim under {at}, or give mesh_into_gears',
+        )  # fmt: skip
+
+
+# Rules of the enclosures of a housing: which surfaces radiate at each other, and whether their view factors close.
+
+
+def enclosure_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> Iterator[Fault]:
+    """What is wrong with the enclosures of a housing whose surfaces have ``names``."""
+    housing = gearbox.housing
+    assert housing is not None
+    taken: dict[str, str] = {}
+    for entry, enclosure in housing.enclosures.items():
+        at = f"gearboxes.{name}.housing.enclosures.{entry}"
+        surfaces = enclosure.emissivities(names)
+        faults = [
+            *_parts(at, enclosure, names),
+            *_surfaces(at, entry, surfaces, taken),
+            *_conditions(at, housing, tuple(surfaces), names),
+        ]
+        taken |= {surface: taken.get(surface, entry) for surface in surfaces}
+        yield from faults
+        if not faults and enclosure.view_factors != "computed":
+            yield from _view_factors(at, enclosure, surfaces, gearbox)
+
+
+def _parts(at: str, enclosure: EnclosureInput, names: tuple[str, ...]) -> Iterator[Fault]:
+    """Patterns that name nothing, surfaces that two parts name."""
+    owner: dict[str, str] = {}
+    for part, entry in enclosure.parts.items():
+        path = f"{at}.parts.{part}.surfaces"
+        for pattern in entry.surfaces:
+            if not matched([pattern], names):
+                meant = nearest(pattern, names)
+                hint = "did you mean " + " or ".join(meant) + "? " if meant else ""
+                yield Fault(path, written(pattern), "no such surface", f"{hint}known: {', '.join(names)}")
+        for surface in matched(entry.surfaces, names):
+            if owner.setdefault(surface, part) != part:
+                yield Fault(
+                    path, written(surface), f"is in the part {owner[surface]} already", "name it once"
+                )
+
+
+def _surfaces(
+    at: str, entry: str, surfaces: Mapping[str, float], taken: Mapping[str, str]
+) -> Iterator[Fault]:
+    """Too few surfaces, surfaces of another enclosure, none that radiates."""
+    if len(surfaces) < 2:
+        found = ", ".join(surfaces) or "none"
+        yield Fault(
+            at, "", f"needs two surfaces that radiate at each other, has {found}",
+            'name a chamber of the box, or more surfaces in its parts; a lone surface takes law = "radiation"',
+        )  # fmt: skip
+    elif not any(surfaces.values()):
+        yield Fault(at, "", "every emissivity is 0, nothing radiates", "write one above 0")
+    for surface in surfaces:
+        if surface in taken:
+            yield Fault(
+                at, written(surface), f"is a surface of the enclosure {taken[surface]} already",
+                "name it in one of them",
+            )  # fmt: skip
+
+
+def _conditions(
+    at: str, housing: Housing, surfaces: tuple[str, ...], names: tuple[str, ...]
+) -> Iterator[Fault]:
+    """Surfaces whose condition leaves no radiation to an enclosure."""
+    for entry, surface, _ in conditions_of(housing, names):
+        condition = housing.boundary[entry]
+        if surface not in surfaces:
+            continue
+        if isinstance(condition, ThermalRadiation):
+            yield Fault(
+                at, written(surface), f"radiates to its surroundings by boundary.{entry} already",
+                f"take it out of one of them, or give the enclosure an opening_temperature in place of {entry}",
+            )  # fmt: skip
+        elif isinstance(condition, Insulated):
+            yield Fault(
+                at, written(surface), f"passes no heat by boundary.{entry}",
+                f"take it out of {entry}: the enclosure is a condition of its own; or write a film",
+            )  # fmt: skip
+
+
+def _view_factors(
+    at: str, enclosure: EnclosureInput, surfaces: Mapping[str, float], gearbox: Gearbox
+) -> Iterator[Fault]:
+    """Given view factors: of the surfaces that take part, complete and reciprocal."""
+    given = enclosure.view_factors
+    assert given != "computed"
+    path = f"{at}.view_factors"
+    strange = set(given).union(*given.values()) - set(surfaces)
+    if strange:
+        yield Fault(
+            path, written(", ".join(sorted(strange))), "is no surface of this enclosure",
+            f"its surfaces: {', '.join(surfaces)}",
+        )  # fmt: skip
+        return
+    housing = gearbox.housing
+    assert housing is not None
+    if housing.part_file is not None:
+        return
+    exact = exact_areas(housing_geometry(gearbox))
+    areas = {surface: exact[surface] for surface in surfaces}
+    rows = enclosure.rows(areas)
+    assert rows is not None
+    opening = enclosure.opening_temperature is not None
+    try:
+        close_view_factors(np.array(rows), np.array([*areas.values()]), list(surfaces), opening)
+    except EnclosureError as error:
+        problem, _, remedy = str(error).rpartition("; ")
+        yield Fault(path, "", problem, remedy)
+
+
+# Rules of volumes, streams and links of a housing: names, films that they need, what a link may lead to.
+
+
+def housing_fluid_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> Iterator[Fault]:
+    """What is wrong with the fluids of a housing whose surfaces have ``names``."""
+    housing = gearbox.housing
+    assert housing is not None
+    at = f"gearboxes.{name}.housing"
+    yield from _names(at, gearbox, housing, names)
+    yield from _films(at, housing)
+    wetted = {fluid: wetted_surfaces(housing, names, fluid) for fluid in (*housing.volumes, *housing.streams)}
+    linked = {end for link in housing.links.values() for end in link.between}
+    for volume in housing.volumes:
+        if not wetted[volume] and volume not in linked:
+            yield Fault(
+                f"{at}.volumes.{volume}", "", "no film and no link reaches it: nothing determines its temperature",
+                f'write fluid = "{volume}" in a film of boundary, or link it',
+            )  # fmt: skip
+    for stream, entry in housing.streams.items():
+        yield from _stream(f"{at}.streams.{stream}", stream, entry.surfaces, wetted[stream], names)
+    pairs: dict[frozenset[str], str] = {}
+    for link, joined in housing.links.items():
+        first = pairs.setdefault(frozenset(joined.between), link)
+        if first != link:
+            yield Fault(
+                f"{at}.links.{link}.between", written(", ".join(joined.between)), f"is linked by {first} already",
+                f"add the conductances in {first}",
+            )  # fmt: skip
+        yield from _link(f"{at}.links.{link}", joined.between, gearbox, housing)
+
+
+def _names(at: str, gearbox: Gearbox, housing: Housing, names: Collection[str]) -> Iterator[Fault]:
+    bodies = {"housing", "field"}
+    bodies |= {f"{kind}_{shaft}" for shaft in housing.shafts for kind in ("shaft", "gear")}
+    reserved = {*FLUIDS, *LINKED, "air", "bearing_film", *names, *bodies}
+    for kind, entries in (("volumes", housing.volumes), ("streams", housing.streams)):
+        for fluid in entries:
+            other = kind == "streams" and fluid in housing.volumes
+            if fluid in reserved or other:
+                yield Fault(
+                    f"{at}.{kind}.{fluid}", "", f"is the name of {'a volume' if other else 'a fluid, surface or body'}",
+                    "choose another name",
+                )  # fmt: skip
+
+
+def _films(at: str, housing: Housing) -> Iterator[Fault]:
+    """Fluids that films name."""
+    own = (*housing.volumes, *housing.streams)
+    for entry, condition in housing.boundary.items():
+        fluid = condition.wetted_by
+        if fluid is None or fluid in FLUIDS:
+            continue
+        if fluid not in own:
+            yield unknown(f"{at}.boundary.{entry}.fluid", fluid, (*FLUIDS, *own), "fluid")
+        elif isinstance(condition, ConstantFilm) and condition.fluid_temperature is not None:
+            yield Fault(
+                f"{at}.boundary.{entry}.fluid_temperature", show(condition.fluid_temperature, "temperature"),
+                f"the temperature of {fluid} is found with the field",
+                "remove it",
+            )  # fmt: skip
+
+
+def _stream(
+    at: str, stream: str, order: tuple[str, ...], wetted: tuple[str, ...], names: tuple[str, ...]
+) -> Iterator[Fault]:
+    """Surfaces of a stream: at least one, and those of its order are those of its films."""
+    if not wetted:
+        yield Fault(
+            at, "", "wets no surface", f'write fluid = "{stream}" in a film of boundary, e.g. law = "constant_film"'
+        )  # fmt: skip
+        return
+    for pattern in order:
+        if not matched([pattern], names):
+            yield unknown(f"{at}.surfaces", pattern, names, "surface")
+    if not order:
+        return
+    listed = tuple(matched(order, names))
+    for surface in listed:
+        if surface not in wetted:
+            yield Fault(
+                f"{at}.surfaces", written(surface), f"has no film to {stream}",
+                f'write fluid = "{stream}" in its film, or take it out',
+            )  # fmt: skip
+    if missing := [surface for surface in wetted if surface not in listed]:
+        yield Fault(
+            f"{at}.surfaces", written(", ".join(missing)), "has a film to the stream and no place in its order",
+            "add it where the stream passes it, or leave surfaces out",
+        )  # fmt: skip
+
+
+def _link(at: str, between: tuple[str, str], gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
+    path = f"{at}.between"
+    for end in between:
+        if end in housing.streams:
+            yield Fault(path, written(end), "is a stream; only volumes have links", "name a volume")
+        elif end not in housing.volumes and end not in LINKED:
+            yield unknown(path, end, (*housing.volumes, *LINKED), "volume")
+    if between[0] == between[1] or not set(between) & set(housing.volumes):
+        yield Fault(
+            path,
+            written(", ".join(between)),
+            "needs a volume and another place",
+            "name a volume of the housing",
+        )
+    if "bearing_oil" in between and gearbox.fed_bearings is None:
+        yield Fault(
+            path, '"bearing_oil"', "the bearings are not fed, they have no oil of their own", "write gear_oil"
+        )

@@ -39,10 +39,9 @@ def compare(
         Print compare.json on stdout; everything else goes to stderr.
     """
     loaded = loaded_case(case)
-    from rigdesign.cli.terminal.comparison import print_comparison
+    from rigdesign.cli.terminal.console import print_comparison
     from rigdesign.cli.terminal.progress import Progress
-    from rigdesign.measurement.comparison.compare import comparison_document
-    from rigdesign.measurement.comparison.comparing import compare_measurement
+    from rigdesign.measurement.comparison.compare import compare_measurement, comparison_document
     from rigdesign.report import prepare_output
     from rigdesign.report.pages.measurement import write_comparison
 

@@ -1,7 +1,8 @@
 """`rigdesign explain`: what a case, one of its keys or one of its checks is."""
 
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -45,8 +46,7 @@ def explain(
     from rigdesign.cli.terminal.explanation import print_check, print_overview, print_path
 
     if check is not None:
-        from rigdesign.explanation.check import explain_check
-        from rigdesign.explanation.finished import finished_check
+        from rigdesign.explanation.check import explain_check, finished_check
 
         finished = None if results is None else finished_check(results, check, loaded)
         found = explain_check(loaded, check, finished)
@@ -61,4 +61,59 @@ def explain(
 
         seen = overview(loaded)
         print_json(asdict(seen)) if json else print_overview(seen, case)
+    return 0
+
+
+# `rigdesign schema`: the JSON Schema of the case file, and the reference of its keys.
+
+
+@app.command
+def schema(*, reference: Annotated[bool, Parameter(negative=())] = False) -> int:
+    """Print the JSON Schema of the case file, for editors.
+
+    Parameters
+    ----------
+    reference
+        Print the key reference instead: every key with kind, units, default and what it is, as Markdown.
+    """
+    if reference:
+        from rigdesign.explanation.keys import key_reference
+
+        sys.stdout.write(key_reference())
+        return 0
+    from rigdesign.case import json_schema
+
+    print_json(json_schema())
+    return 0
+
+
+# `rigdesign list`: what the tool brings along.
+
+
+@app.command(name="list")
+def list_built_in(
+    kind: Literal["bearings", "oils", "materials", "fluids", "limits"],
+    words: tuple[str, ...] = (),
+    /,
+    *,
+    json: Annotated[bool, Parameter(negative=())] = False,
+) -> int:
+    """List the built-in bearings, oils, materials and fluids, or the limits with their defaults, units and sources.
+
+    Parameters
+    ----------
+    kind
+        What to list.
+    words
+        Only what holds all these words, e.g. `rigdesign list bearings tapered 40`.
+    json
+        Print the list as JSON on stdout.
+    """
+    from dataclasses import asdict
+
+    from rigdesign.cli.terminal.explanation import print_built_in
+    from rigdesign.explanation.built_in import built_in
+
+    found = built_in(kind, words)
+    print_json(asdict(found)) if json else print_built_in(found)
     return 0

@@ -22,7 +22,7 @@ def mesh(case: Path, /, *, out: OutFolder, fidelity: Fidelity = "standard") -> i
     """
     loaded = loaded_case(case)
     from rigdesign.cli.mesh_export import export_meshes
-    from rigdesign.cli.terminal.machine import print_meshes
+    from rigdesign.cli.terminal.console import print_meshes
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.report import prepare_output
 

@@ -77,8 +77,8 @@ def study(
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.cli.terminal.study import print_study
     from rigdesign.studies.design import StudyDesign
+    from rigdesign.studies.ledger import parse_shard
     from rigdesign.studies.run import Execution
-    from rigdesign.studies.shards import parse_shard
 
     design = StudyDesign(
         vary=tuple(vary),

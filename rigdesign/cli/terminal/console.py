@@ -4,15 +4,21 @@ import codecs
 import io
 import sys
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextvars import ContextVar
-from typing import Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
 
 from rigdesign.base.errors import without_layout
+
+if TYPE_CHECKING:
+    from rigdesign.base.system import MachineFinding
+    from rigdesign.cli.mesh_export import ExportedFile
+    from rigdesign.measurement.comparison.compare import Comparison
 
 Verbosity = Literal["quiet", "normal", "verbose"]
 """quiet: errors and the verdict line; normal; verbose: every step with its time, iterations, cache use."""
@@ -95,3 +101,37 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
     signs = error.object[error.start : error.end]
     exponent = signs[0] in EXPONENTS and error.object[error.start - 1 : error.start].isdigit()
     return ("^" if exponent else "") + "".join(PLAIN.get(sign, "?") for sign in signs), error.end
+
+
+# What a machine has, and the meshes that were written.
+
+
+def print_findings(findings: Sequence["MachineFinding"]) -> None:
+    """The lines of `rigdesign doctor`."""
+    console = new_console()
+    for finding in findings:
+        mark = Text("ok      ", "green") if finding.ok else Text("missing ", "bold red")
+        console.print(mark + Text(f"{finding.subject:12s} {finding.text}"))
+
+
+def print_meshes(written: Sequence["ExportedFile"]) -> None:
+    """Every file that was written, and what to do with it."""
+    console = new_console()
+    for done in written:
+        console.print(f"{done.file}: {done.remark}")
+
+
+# Measured data against the simulation.
+
+
+def print_comparison(comparison: "Comparison", out: Path | None) -> None:
+    """The verdict, what the data checks say, and where the pages are."""
+    from rigdesign.measurement.comparison.compare import headline
+
+    console = new_console()
+    verdict_console().print(Text(headline(comparison), "bold"))
+    for finding in comparison.findings:
+        style = {"dropped": "red", "suspect": "yellow"}.get(finding.weight, "dim")
+        console.print(Text(f"{finding.weight:8s}", style) + Text(finding.text))
+    if out is not None:
+        console.print(f"{out / 'compare.html'}")

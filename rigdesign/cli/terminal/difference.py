@@ -12,10 +12,8 @@ from rigdesign.cli.terminal.console import new_console, verbosity, verdict_conso
 from rigdesign.report.numbers import change_text, limit_change_text, number_text, quantity_text
 
 if TYPE_CHECKING:
-    from rigdesign.difference.document import ResultsDifference, TextChanges
-    from rigdesign.difference.inputs import InputChange
-    from rigdesign.difference.reading import CheckedResults
-    from rigdesign.difference.results import CheckChange, QuantityChange
+    from rigdesign.difference.document import CheckChange, QuantityChange, ResultsDifference, TextChanges
+    from rigdesign.difference.reading import CheckedResults, InputChange
 
 WIDTH = 80
 """Columns of a line at most."""

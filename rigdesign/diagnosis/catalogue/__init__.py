@@ -7,8 +7,7 @@ from collections.abc import Iterable
 
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import circuit, gauges, heat, lateral, local_heat  # noqa: F401 - register effects
-from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.catalogue.registry import registered_effects
+from rigdesign.diagnosis.catalogue.effects import Effect, registered_effects
 from rigdesign.prediction.model import LATERAL_QUANTITIES, Channel
 
 

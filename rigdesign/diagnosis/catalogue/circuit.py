@@ -14,10 +14,23 @@ from dynamics.standards.iso1328_1_2013 import tolerances
 from rigdesign.case.drivetrain import HarmonicTorqueInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Parameter
-from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, UncertainValue
-from rigdesign.diagnosis.catalogue.families import DAMPING, EXCITATION, INERTIA, STATE, STIFFNESS, TOOTH
-from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_rig
+from rigdesign.diagnosis.catalogue.effects import (
+    DAMPING,
+    EXCITATION,
+    INERTIA,
+    PRACTICE,
+    STATE,
+    STIFFNESS,
+    TOOTH,
+    Added,
+    Changes,
+    Effect,
+    GearboxPart,
+    Parameter,
+    UncertainValue,
+    of_gearbox,
+    of_rig,
+)
 
 MICROMETRE = 1e-6
 """In metres."""

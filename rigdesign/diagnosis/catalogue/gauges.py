@@ -13,10 +13,18 @@ from math import cos, pi, sqrt
 
 from dynamics.standards.iso1328_1_2013 import Tolerances, tolerances
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, UncertainValue
-from rigdesign.diagnosis.catalogue.families import CHAIN, FACE, GAUGE_PLACE
-from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox
+from rigdesign.diagnosis.catalogue.effects import (
+    CHAIN,
+    FACE,
+    GAUGE_PLACE,
+    PRACTICE,
+    Added,
+    Effect,
+    GearboxPart,
+    Parameter,
+    UncertainValue,
+    of_gearbox,
+)
 
 MICROMETRE = 1e-6
 """In metres."""

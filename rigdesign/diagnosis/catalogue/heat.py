@@ -12,10 +12,26 @@ from dataclasses import dataclass
 from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.model import Case
 from rigdesign.case.surface_conditions import ThermalRadiation
-from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Parameter
-from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor, share
-from rigdesign.diagnosis.catalogue.families import CONTACT, FILM, FLOW, LOSS, OIL, SPLIT, STATE
-from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_rig
+from rigdesign.diagnosis.catalogue.effects import (
+    CONTACT,
+    FILM,
+    FLOW,
+    LOSS,
+    OIL,
+    PRACTICE,
+    SPLIT,
+    STATE,
+    Added,
+    Changes,
+    Effect,
+    GearboxPart,
+    Parameter,
+    Scaled,
+    factor,
+    of_gearbox,
+    of_rig,
+    share,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -247,7 +263,7 @@ def split(part: GearboxPart) -> Iterator[Effect]:
 
 IN_MIST = 0.8
 """Healthy spread of the logarithm of a film on turning parts in a chamber: between dry air and mist, whose drops take
-the temperature of the wall, lies a factor of five (`thermal.films.rotating`)."""
+the temperature of the wall, lies a factor of five (`thermal.films.convection`)."""
 
 
 IN_BEARING = 0.5

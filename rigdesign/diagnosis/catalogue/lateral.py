@@ -10,15 +10,24 @@ as they are ground and turned in; clearances by the tolerance of their fit.
 from cmath import phase, rect
 from collections.abc import Callable, Iterator
 
-from dynamics.elastic_rig.balance import rotor_of
+from dynamics.elastic_rig.layout import rotor_of
 from rigdesign.case.drivetrain import BowInput, ShaftInput
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Parameter
-from rigdesign.diagnosis.catalogue.entries import PRACTICE, Scaled, factor
-from rigdesign.diagnosis.catalogue.families import BEARING, EXCITATION
-from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_rig
+from rigdesign.diagnosis.catalogue.effects import (
+    BEARING,
+    EXCITATION,
+    PRACTICE,
+    Changes,
+    Effect,
+    GearboxPart,
+    Parameter,
+    Scaled,
+    factor,
+    of_gearbox,
+    of_rig,
+)
+from rigdesign.rig.elastic_rig import MM_PER_S, grade_of, highest_speeds
 from rigdesign.rig.model import build_rig
-from rigdesign.rig.rotating_parts import MM_PER_S, grade_of, highest_speeds
 
 GENERAL_GRADE = 6.3
 """Balance quality grade of general machinery, by whose permissible unbalance the bound counts [mm/s]."""

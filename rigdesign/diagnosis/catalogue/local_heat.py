@@ -9,13 +9,23 @@ from collections.abc import Iterator, Mapping
 
 from rigdesign.case.geometry import conditions_of, housing_geometry
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Parameter
-from rigdesign.diagnosis.catalogue.entries import PRACTICE, share
-from rigdesign.diagnosis.catalogue.families import FILM, FLOW, LOSS, ONE_FEED, ONE_JOINT
+from rigdesign.diagnosis.catalogue.effects import (
+    FILM,
+    FLOW,
+    LOSS,
+    ONE_FEED,
+    ONE_JOINT,
+    PRACTICE,
+    Changes,
+    Effect,
+    GearboxPart,
+    Parameter,
+    of_gearbox,
+    share,
+)
 from rigdesign.diagnosis.catalogue.heat import FLOW_METER, LOOSE, PRESSED, Resistance
-from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox
-from thermal.housing.measures import SIDES
-from thermal.housing.surfaces import surface_names
+from thermal.housing.housing_surfaces import surface_names
+from thermal.housing.shaft_geometry import SIDES
 
 TIGHT = 4.0
 """Largest friction of a bearing beyond its own, over it: a shell that closes its clearance to a fifth."""

@@ -6,24 +6,235 @@ it, run in full, has to shrink the gap as well; where it does not run, names are
 reported with its reason.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import hypot
 
 import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.stats import chi2
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.agreement import Agreement
+from rigdesign.diagnosis.decision.defaults import Decision, Thresholds, Verdict, WhitenedSquare
 from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.decision.proof import Proof, Sizes
-from rigdesign.diagnosis.decision.traces import Traces
-from rigdesign.diagnosis.decision.verdict import Decision, Thresholds, Verdict, WhitenedSquare
-from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.columns import Array, numbered
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.evidence import Evidence, release_of
+from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN
+from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence, release_of
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
+from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.diagnosis.statistics.intervals import JointFit
+
+# What single effects and sensor errors leave in the numbers, and which of them leave the same.
+
+NAMED = frozenset({"physical", "sensor"})
+"""Families of what has a name."""
+
+SIZES = 13
+"""Sizes over the bounds of a curve at which its answer is held against a trace."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traces:
+    """What single effects and sensor errors leave in the numbers they were sought in.
+
+    space : of the first look; explanations : of that look; assembly : (n,) how the rig was put together at the point of
+        each number
+    contradicted : explanations that the other domain contradicts in that look; with a name in the model it may not
+    """
+
+    space: Whitened
+    explanations: Sequence[Evidence]
+    assembly: Sequence[object]
+    contradicted: Sequence[Evidence] = ()
+
+    def like(
+        self, explanation: str, size: Sequence[float], families: frozenset[str] = NAMED
+    ) -> list[tuple[str, float]]:
+        """Causes of some families whose trace correlates with that of a name above `ALIAS`, those most alike first.
+
+        The trace of a name is its whitened answer at its size. It is held against the answers of every other one over
+        its bounds, of two parameters against the plane they span, under the covariance of the data. Where the rig was
+        put together otherwise at some points, to tell such effects apart, they are alike only if they also are with the
+        trace counting as much in each assembly: one may be read far more exactly than the other. What within its bounds
+        leaves less than `REACHES` of the trace cannot stand for it; offset and scale of one sensor are one finding.
+        """
+        own = next(one for one in self._own if one.hypothesis.name == explanation)
+        name = own.hypothesis.parts[0]
+        trace = _answers(own.hypothesis, np.array([size]))[0]
+        found: dict[str, float] = {}
+        for one in self._single(families):
+            other = one.hypothesis.parts[0]
+            if other == name or _of_one_sensor(own, one):
+                continue
+            for plane in _planes(one.hypothesis, trace):
+                correlation = _cosine(plane, trace)
+                if correlation > ALIAS and _cosine(*self._by_assembly(plane, trace)) > ALIAS:
+                    found[other] = max(found.get(other, 0.0), correlation)
+        return sorted(found.items(), key=lambda pair: -pair[1])
+
+    def of(self, name: str) -> Evidence:
+        """The best explanation by a name alone."""
+        return next(one for one in self._own if one.hypothesis.parts == (name,))
+
+    @property
+    def _own(self) -> list[Evidence]:
+        return [*self._single(NAMED), *self.contradicted]
+
+    def _single(self, families: frozenset[str]) -> list[Evidence]:
+        return [one for one in self.explanations if one.hypothesis.family in families]
+
+    def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
+        """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""
+        states = list(dict.fromkeys(self.assembly))
+        if len(states) == 1:
+            return plane, trace
+        lower, matrix = self.space.covariance.lower, self.space.covariance.matrix
+        both = lower @ np.column_stack([plane, trace])
+        for state in states:
+            rows = np.array([row for row, one in enumerate(self.assembly) if one == state])
+            factor = np.linalg.cholesky(matrix[np.ix_(rows, rows)])
+            own = solve_triangular(factor, both[rows], lower=True, check_finite=False)
+            both[rows] = own / max(1.0, float(np.linalg.norm(own[:, -1])) / SEEN)
+        return both[:, :-1], both[:, -1]
+
+
+def _answers(hypothesis: Hypothesis, sizes: Array) -> Array:
+    """(m, n) whitened answers at sizes (m, k)."""
+    if hypothesis.curve is not None:
+        return hypothesis.curve.at(sizes[:, 0])
+    assert hypothesis.columns is not None
+    return np.asarray(sizes @ hypothesis.columns.T)
+
+
+def _planes(hypothesis: Hypothesis, trace: Array) -> list[Array]:
+    """Columns (n, k) of what may stand for a trace (n,): a curve at sizes over its bounds, a plane as it is."""
+    least = REACHES * float(trace @ trace)
+    if hypothesis.curve is None:
+        assert hypothesis.columns is not None
+        reach = hypothesis.half * float(np.linalg.norm(hypothesis.columns.T @ trace))
+        return [hypothesis.columns] if reach >= least else []
+    sizes = np.linspace(*hypothesis.curve.bounds, SIZES)[:, None]
+    return [answer[:, None] for answer in _answers(hypothesis, sizes) if answer @ trace >= least]
+
+
+def _of_one_sensor(first: Evidence, second: Evidence) -> bool:
+    """Whether two explanations are errors of the same sensor or setting."""
+    if {first.hypothesis.family, second.hypothesis.family} != {"sensor"}:
+        return False
+    kinds, places = zip(
+        *(one.hypothesis.parts[0].partition(":")[::2] for one in (first, second)), strict=True
+    )
+    return len({kind.rpartition("_")[0] for kind in kinds}) == len(set(places)) == 1
+
+
+def _cosine(plane: Array, trace: Array) -> float:
+    """Between a trace (n,) and what columns (n, k) span."""
+    return float(np.linalg.norm(np.linalg.qr(plane)[0].T @ trace) / np.linalg.norm(trace))
+
+
+# Whether all channels, and all operating points, ask for the same size of an effect.
+#
+# What is one-sided, local or grows otherwise over the speed is something else that the effect is fitted to: a leak on
+# one side is no leak on both. A cause that goes with the effect in the best explanation is in the model meanwhile.
+
+APART = 0.7
+"""Least part of what an effect explains alone that another cause in the model leaves to it, to be something else."""
+
+FAINT = 0.5
+"""Whitened length of the answer in a group below which the group says nothing of its size."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Agreement:
+    """Sizes of effects by channel and by operating point.
+
+    evidence : of the evaluation that found them, best first; channels, points : (n,) of each number, natural
+        frequencies as one channel, since those that lie close share a change; errors : kind of effect -> relative error
+        of the model's answer to it, "" for the others
+    """
+
+    space: Whitened = field(repr=False)
+    evidence: Sequence[Evidence] = field(repr=False)
+    channels: Sequence[str] = field(repr=False)
+    points: Sequence[str] = field(repr=False)
+    errors: Mapping[str, float]
+
+    def objection(
+        self, one: Evidence, beside: Sequence[Evidence], least: float, admitted: float = 0.0
+    ) -> str:
+        """What disagrees on the size of an effect, in words; empty where nothing does.
+
+        beside : causes that are in the model with sizes of their own; least : probability of sizes that differ as
+            much, below which they are of different things; admitted : least relative error of the answer in a group
+        """
+        kind = one.hypothesis.parts[0].split(":")[0].split("/")[0]
+        share = max(self.errors.get(kind, self.errors.get("", 0.0)), admitted)
+        for what, groups in (
+            ("channels", self.channels),
+            ("operating points", self.points),
+        ):
+            if agreement(self.space, one, groups, share, beside) < least:
+                return f"its size is not the same for all {what}"
+        return ""
+
+    def companion(self, one: Evidence) -> Evidence | None:
+        """The cause that goes with an effect in the best explanation that holds it.
+
+        None where that holds the effect alone, or where the cause takes too much of it away.
+        """
+        name = one.hypothesis.name
+        for best in self.evidence:
+            names = best.hypothesis.name.split(JOIN)
+            if name in names:
+                names.remove(name)
+                break
+        else:
+            return None
+        companion = next((other for other in self.evidence if [other.hypothesis.name] == names), None)
+        if companion is None or best.gain - companion.gain < APART * one.gain:
+            return None
+        return companion
+
+
+def agreement(
+    space: Whitened,
+    one: Evidence,
+    groups: Sequence[Hashable],
+    share: float,
+    beside: Sequence[Evidence] = (),
+) -> float:
+    """Probability that groups of numbers ask for sizes as different as they do, if all are of one effect.
+
+    Every group has its own factor on the answer at the best fit; all are fitted at once under the covariance of a
+    healthy rig, which is inflated where they leave more than such a rig does. Each factor may be off by a share.
+
+    groups : (n,) group of each number; share : relative error of the model's answer in a group
+    beside : causes that are in the model with sizes of their own
+    """
+    own = tuple(name for cause in (one, *beside) for name in cause.hypothesis.own)
+    release = release_of(space, own)
+    number = numbered(groups)
+    answer = space.covariance.lower @ one.answer
+    split = np.where(number[:, None] == np.arange(number.max() + 1), answer[:, None], 0.0)
+    columns = space.covariance.whiten(split)
+    columns = columns[:, np.linalg.norm(columns, axis=0) > FAINT]
+    count = columns.shape[1]
+    if count < 2:
+        return 1.0
+    columns = np.hstack([columns, *(cause.columns for cause in beside)])
+    residual = space.freed(own)
+    gram, load = release.product(columns, columns), release.product(columns, residual)
+    inverse = np.linalg.pinv(gram, hermitian=True)
+    fit = inverse @ load
+    left = float(release.product(residual, residual) - load @ fit) / max(len(residual) - len(fit), 1)
+    factors, spread = fit[:count], inverse[:count, :count] * max(left, 1.0) + share**2 * np.eye(count)
+    weights = np.linalg.inv(spread)
+    mean = float(weights.sum(axis=0) @ factors / weights.sum())
+    apart = factors - mean
+    return float(chi2.sf(apart @ weights @ apart, count - 1))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,15 +13,12 @@ import numpy as np
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.decision.claims import Claim, Refusal, refusals
-from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.decision.evaluate import Evaluation
-from rigdesign.diagnosis.decision.kept_numbers import SURE, WORDS, Numbers
-from rigdesign.diagnosis.decision.posterior import mass_of_any, posterior
+from rigdesign.diagnosis.decision.decision import mass_of_any, posterior
+from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration, Decision
+from rigdesign.diagnosis.decision.kept_numbers import SURE, WORDS, Numbers, Suspicion, suspected
 from rigdesign.diagnosis.decision.problem import Problem, Tier
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
-from rigdesign.diagnosis.decision.search import Look, explanations_of, signature_of
-from rigdesign.diagnosis.decision.suspicion import Suspicion, suspected
-from rigdesign.diagnosis.decision.verdict import Decision
+from rigdesign.diagnosis.decision.search import Evaluation, Look, explanations_of, signature_of
 from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of
 from rigdesign.diagnosis.residual.signature import Contest

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import exp
 
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.competing_causes import credible_places
 from rigdesign.diagnosis.decision.naming import formatted
+from rigdesign.diagnosis.decision.proposals import credible_places
 from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, gap_in_words

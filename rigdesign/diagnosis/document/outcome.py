@@ -22,9 +22,8 @@ from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence
 from rigdesign.diagnosis.statistics.heldout import Gap, gap_in_words
 from rigdesign.measurement import MeasuredChannel, MeasurementSet
-from rigdesign.measurement.comparison.bands import Bands
-from rigdesign.measurement.comparison.locate import Located, locate
-from rigdesign.measurement.reading.directions import direction_text
+from rigdesign.measurement.comparison.locate import Bands, Located, locate
+from rigdesign.measurement.reading.columns import direction_text
 
 # What a diagnosis corrects in the measurement: exchanged channels, units, and sensors that read off.
 #

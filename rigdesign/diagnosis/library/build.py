@@ -22,7 +22,7 @@ from rigdesign.prediction.model import (
     PredictionModel,
     measured_against,
 )
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor
 
 Progress = Callable[[str], None]
 

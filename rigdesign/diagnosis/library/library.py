@@ -1,6 +1,6 @@
 """How the numbers of one rig, its sensors and points answer to everything that may be off: computed once, then kept.
 
-A library holds runs of the real model (`rigdesign.prediction.predictor.Predictor`) and derivatives of it, no formula
+A library holds runs of the real model (`rigdesign.prediction.predict.Predictor`) and derivatives of it, no formula
 of its own. It belongs to a case, a set of channels and a plan of operating points; a later set of the same rig whose
 points lie near the plan is served by the derivatives by its settings.
 """
@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.met_again import apart, nearest_of
-from rigdesign.prediction.model import Channel, Feature, OperatingCondition, features_of
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition, apart, features_of, nearest_of
 
 
 @dataclass(frozen=True, kw_only=True)

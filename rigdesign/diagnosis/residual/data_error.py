@@ -9,13 +9,12 @@ from itertools import combinations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.diagnosis.residual.hypotheses import whitened
 from rigdesign.diagnosis.residual.sensors import LARGEST_ANGLE_ERROR, mark_elsewhere
-from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.columns import Array, Turning
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
-from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Channel, Feature
 
 

@@ -1,18 +1,147 @@
 """All explanations of one residual, in the space where a healthy rig is white noise."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.library.library import Response
+from rigdesign.diagnosis.library.library import NEAR_SENSOR, Library, Response
+from rigdesign.diagnosis.residual.healthy import relative_speed, relative_torque
 from rigdesign.diagnosis.residual.sensors import SensorError
-from rigdesign.diagnosis.residual.unmodelled_cause import UNKNOWN, UnmodelledCause
-from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.columns import Array, Turning, excess
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
-from rigdesign.diagnosis.statistics.phase_shift import Turning
-from rigdesign.prediction.model import Feature
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature
+
+# Unmodelled causes: what a named effect has to beat.
+#
+# Heat at any place of the rig with the laws a loss may follow, paid by the motor or not; heat in the oil on its way in
+# or out, where no thermometer but one feels it; a conductance between any neighbours; an order of torque or angle on
+# any channel with the laws an excitation may follow. What they explain better than the catalogue is reported as located
+# but unknown.
+
+UNKNOWN = "unknown: "
+"""How the name of an explanation begins that is in no catalogue."""
+
+ORDER_CAUSE = f"{UNKNOWN}order "
+"""How the name of an unmodelled cause of an order begins."""
+
+UnmodelledCause = tuple[Literal["unmodelled", "local"], str, Array]
+"""Family, name, (n, k) columns: k = 2 for an order with free phase. Local is what one thermometer alone may feel."""
+
+
+def unmodelled_causes(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
+    """All of them, in a fixed order."""
+    for heat in heats(library):
+        yield "unmodelled", heat.name, heat.values[:, None]
+    yield from _in_the_pipes(library, channels)
+    yield from _at_sensors(library, channels)
+    for name, values in library.links.items():
+        yield "unmodelled", f"conductance {name}", values[:, None]
+    yield from _orders(library, channels)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heat:
+    """Heat at a place of the rig, by a law of speed n and torque T.
+
+    values : (n,) change of the numbers per watt at the mean operating point
+    """
+
+    family: str
+    """``heat`` as the motor pays for it, ``heat unpaid`` where it does not."""
+    place: str
+    law: str
+    values: Array
+
+    @property
+    def name(self) -> str:
+        """As an explanation."""
+        return f"{self.family} at {self.place} {self.law}"
+
+    @property
+    def likeness(self) -> str:
+        """What it shares with heat at other places of this kind."""
+        return f"{self.family} at {self.place.split(':')[0]} {self.law}"
+
+
+def heats(library: Library) -> Iterator[Heat]:
+    """Heat at every place by itself, those at sensors left out."""
+    laws = _laws(library)
+    for family, sources in (("heat", library.sources), ("heat unpaid", library.dry_sources)):
+        for place, values in sources.items():
+            if not place.startswith(NEAR_SENSOR):
+                for law in HEAT_LAWS:
+                    yield Heat(family=family, place=place, law=law, values=values * laws[law])
+
+
+HEAT_LAWS = ("constant", "~n", "~n2", "~T n")
+ORDER_LAWS = ("constant", "~T", "~n2")
+
+
+def _laws(library: Library) -> dict[str, Array]:
+    """(n,) speed n and torque T of every number over their means, in the powers that losses and excitations follow."""
+    speed = np.exp(relative_speed(library.features, library.settings))
+    torque = np.exp(relative_torque(library.features, library.settings))
+    return {
+        "constant": np.ones_like(speed), "~n": speed, "~n2": speed**2, "~T": torque, "~T n": torque * speed,
+    }  # fmt: skip
+
+
+def _in_the_pipes(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
+    """A heater or a pump between the thermometer of a stream and the gearbox: warmer by less the more oil flows."""
+    streams = dict.fromkeys(place for kind, place, _ in library.inputs if kind == "inlet_temperature")
+    flows = {stream: {one.name: one.flow.get(stream, 1.0) for one in library.settings} for stream in streams}
+    for stream in streams:
+        answers = [
+            library.inputs["inlet_temperature", stream, point] / flow
+            for point, flow in flows[stream].items()
+            if ("inlet_temperature", stream, point) in library.inputs
+        ]
+        yield "local", f"heat in the supply of {stream} constant", np.sum(answers, axis=0)[:, None]
+    for name, channel in channels.items():
+        if channel.quantity != "oil_outlet_temperature":
+            continue
+        flow = flows.get(channel.place, {})
+        share = [(f.channel == name) / flow.get(f.setting, 1.0) for f in library.features]
+        yield "local", f"heat in the drain of {channel.place} constant", np.array(share)[:, None]
+
+
+def _at_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
+    """Heat from outside at one thermocouple: a neighbour, a lamp; or a draught, as the wall is above ambient."""
+    warm = excess(library.features, library.base, channels, library.settings)
+    for place, values in library.dry_sources.items():
+        if not place.startswith(NEAR_SENSOR):
+            continue
+        name = place.removeprefix(NEAR_SENSOR)
+        above = {f.setting: warm[row] for row, f in enumerate(library.features) if f.channel == name}
+        share = np.array([above.get(feature.setting, 0.0) for feature in library.features])
+        yield "local", f"heat near {name} constant", values[:, None]
+        yield "local", f"heat near {name} ~T above ambient", (values * share)[:, None]
+
+
+def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
+    """An order of one channel, or of all channels of its kind, free in phase but the same at all points."""
+    laws = _laws(library)
+    found = dict.fromkeys(
+        (feature.channel, feature.order)
+        for feature in library.features
+        if channels[feature.channel].quantity in ORDER_QUANTITIES and feature.order
+    )
+    for name, order in found:
+        parts = [
+            np.array(
+                [(f.channel, f.order, f.part) == (name, order, part) for f in library.features],
+                dtype=np.float64,
+            )
+            for part in ("real", "imaginary")
+        ]
+        for law in ORDER_LAWS:
+            columns = np.stack([part * laws[law] for part in parts], axis=1)
+            yield "unmodelled", f"order {order:g} of {name} {law}", columns
+
 
 SIGMAS = 12.0
 """Half width of the prior of an unmodelled cause in its own standard deviations: as far as that of an effect that is

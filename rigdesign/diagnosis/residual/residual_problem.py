@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 
-from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.catalogue.families import FILM, LOSS
+from rigdesign.diagnosis.catalogue.effects import FILM, LOSS, Effect
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual.healthy import answer_error, healthy_columns, own_spread
+from rigdesign.diagnosis.residual.hypotheses import heats
 from rigdesign.diagnosis.residual.sensors import (
     SensorError,
     Stated,
@@ -23,14 +23,10 @@ from rigdesign.diagnosis.residual.sensors import (
     sensor_errors,
     setting_scatter,
 )
-from rigdesign.diagnosis.residual.unmodelled_cause import heats
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
-from rigdesign.diagnosis.statistics.columns import Array, Column, amplitudes_of
-from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.columns import Array, Column, Turning, amplitudes_of, reference_scale
+from rigdesign.diagnosis.statistics.covariance import Covariance, Outlier, Whitened, reject
 from rigdesign.diagnosis.statistics.hypothesis import Curve
-from rigdesign.diagnosis.statistics.outliers import Outlier, reject
-from rigdesign.diagnosis.statistics.phase_shift import Turning
-from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.diagnosis.statistics.resonance import Resonances
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel, Feature
@@ -109,7 +105,7 @@ class ResidualProblem:
     teeth_a_turn: int
     """Of the reference gear."""
     level: Array
-    """(n,) over which errors of the model are relative (`rigdesign.diagnosis.statistics.reference_scale`)."""
+    """(n,) over which errors of the model are relative (`rigdesign.diagnosis.statistics.columns`)."""
 
     @cached_property
     def of_mesh(self) -> NDArray[np.bool_]:

@@ -10,9 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigdesign.diagnosis.library.library import Library, value_of
-from rigdesign.diagnosis.statistics.columns import Array, Column
-from rigdesign.diagnosis.statistics.phase_shift import Turning
-from rigdesign.diagnosis.statistics.reference_scale import excess
+from rigdesign.diagnosis.statistics.columns import Array, Column, Turning, excess
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition
 from rigdesign.strain_gauge.gauge import REFERENCE_TEMPERATURE
 

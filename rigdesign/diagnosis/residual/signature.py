@@ -3,8 +3,8 @@
 A cause in the model never leaves exactly the trace it leaves on the rig. An explanation with the answer a is
 therefore evaluated under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
 answer, the same over all points and along the speed, and orders by themselves
-(`rigdesign.diagnosis.statistics.model_error`). Natural frequencies that lie close together may divide a change
-between them in another way (`rigdesign.diagnosis.statistics.close_modes`). With no cause there is no answer and no
+(`rigdesign.diagnosis.statistics.columns`). Natural frequencies that lie close together may divide a change
+between them in another way (`rigdesign.diagnosis.statistics.resonance`). With no cause there is no answer and no
 such error, so that a small effect is not hidden by it; rivals that differ by less than the model error are separated
 by their priors alone.
 
@@ -21,8 +21,7 @@ from scipy.sparse import csr_array
 from scipy.special import logsumexp
 
 from rigdesign.diagnosis.residual.healthy import TREND
-from rigdesign.diagnosis.statistics.close_modes import CloseModes
-from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
+from rigdesign.diagnosis.statistics.columns import Array, Column, ModelError, series_numbers
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.evidence import (
     Evidence,
@@ -33,7 +32,7 @@ from rigdesign.diagnosis.statistics.evidence import (
     release_of,
 )
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
-from rigdesign.diagnosis.statistics.model_error import ModelError
+from rigdesign.diagnosis.statistics.resonance import CloseModes
 from rigdesign.prediction.model import Feature
 
 EXACT = ("sensor", "input")

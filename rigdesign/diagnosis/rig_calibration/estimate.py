@@ -20,12 +20,10 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import brentq
 
 from rigdesign.diagnosis.decision.defaults import Calibration
-from rigdesign.diagnosis.residual.baseline import CHANNEL, Change, Drift
-from rigdesign.diagnosis.residual.calibration import fit_amplitudes, fit_drift, group_of
+from rigdesign.diagnosis.residual.baseline import CHANNEL, Change, Drift, fit_amplitudes, fit_drift, group_of
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of, plain
-from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.amplitudes import PRIOR, Amplitudes, Fit, Group
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Fit, Group
 
 FEWEST = 2
 """Healthy sets that a calibration needs: one pair."""

@@ -5,12 +5,13 @@ of a whole kind of columns; they are dimensionless, so that what one rig taught 
 """
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.prediction.model import Feature
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, OperatingCondition
 
 Array = NDArray[np.float64]
 
@@ -63,3 +64,183 @@ def amplitudes_of(features: Sequence[Feature], values: Array) -> Array:
 def together(values: Array, groups: NDArray[np.intp]) -> Array:
     """(n,) root of the sum of squares over the group of each number."""
     return np.asarray(np.sqrt(np.bincount(groups, weights=values**2))[groups])
+
+
+# The same answer some teeth later: complex orders turned by the angle that has passed.
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Where the complex orders stand among features.
+
+    real, imaginary : (p,) places of their parts; orders : (p,)
+    """
+
+    real: NDArray[np.intp]
+    imaginary: NDArray[np.intp]
+    orders: Array
+
+    @classmethod
+    def of(cls, features: Sequence[Feature]) -> "Turning":
+        """Of features; means, quantities without orders and parts that stand alone do not turn."""
+        place = {feature: row for row, feature in enumerate(features) if feature.part == "imaginary"}
+        found = [
+            (row, place.get(replace(feature, part="imaginary")), feature.order)
+            for row, feature in enumerate(features)
+            if feature.part == "real"
+        ]
+        pairs = [(real, imaginary, order) for real, imaginary, order in found if imaginary is not None]
+        return cls(
+            real=np.array([pair[0] for pair in pairs], dtype=np.intp),
+            imaginary=np.array([pair[1] for pair in pairs], dtype=np.intp),
+            orders=np.array([pair[2] for pair in pairs], dtype=np.float64),
+        )
+
+    def turned(self, answers: Array, teeth: int, teeth_a_turn: int) -> Array:
+        """(m, n) answers of a cause that sits ``teeth`` teeth further on its gear.
+
+        teeth_a_turn : of the reference gear; each tooth that passes turns order k by 2 pi k over them
+        """
+        angle = -2.0 * pi * self.orders * teeth / teeth_a_turn
+        found = answers.copy()
+        real, imaginary = answers[:, self.real], answers[:, self.imaginary]
+        found[:, self.real] = np.cos(angle) * real - np.sin(angle) * imaginary
+        found[:, self.imaginary] = np.sin(angle) * real + np.cos(angle) * imaginary
+        return np.asarray(found)
+
+    def ahead(self, values: Array) -> Array:
+        """(n,) every complex order of values (n,) turned by a right angle, times i; zero for what does not turn."""
+        found = np.zeros(len(values))
+        found[self.real], found[self.imaginary] = -values[self.imaginary], values[self.real]
+        return found
+
+    def order_of(self, count: int) -> Array:
+        """(count,) order of every number that turns, zero for the others."""
+        found = np.zeros(count)
+        found[self.real] = found[self.imaginary] = self.orders
+        return found
+
+
+# How far each number of an order may be from the answer of a right cause, by itself.
+#
+# A model has natural frequencies a little off, and mesh orders worse than that. And a cause that changes the circuit
+# (stiffness, inertia, damping) changes how all passes through it that the teeth excite: where it alters the mesh orders
+# of a channel by some share, the orders that pitch errors and run-out of the healthy teeth leave there follow by as
+# much, and no model knows those errors.
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelError:
+    """Error by itself of every number.
+
+    share : (n,) of its answer, zero for what is of no order; mesh : (n,) whether it is of a mesh order
+    values : (n,) as measured; orders, places : (n,) number of its order, and of its channel and point
+    """
+
+    share: Array
+    mesh: NDArray[np.bool_]
+    values: Array
+    orders: NDArray[np.intp]
+    places: NDArray[np.intp]
+
+    @classmethod
+    def of(
+        cls, features: Sequence[Feature], share: Array, mesh: NDArray[np.bool_], values: Array
+    ) -> "ModelError":
+        """Of the numbers of a comparison."""
+        return cls(
+            share=share,
+            mesh=mesh,
+            values=np.where([one.order != 0.0 for one in features], values, 0.0),
+            orders=order_numbers(features),
+            places=numbered([(one.channel, one.setting) for one in features]),
+        )
+
+    def at(self, answer: Array, circuit: bool) -> Array:
+        """(n,) standard deviations of an answer (n,); ``circuit``: whether its cause changes the circuit."""
+        own = self.share * together(answer, self.orders)
+        if not circuit:
+            return np.asarray(own)
+        changed, before = (together(self.mesh * one, self.places) for one in (answer, self.values))
+        passed_on = np.minimum(changed / np.maximum(before, 1e-150), 1.0)
+        excited = np.where(self.mesh, 0.0, together(self.values, self.orders))
+        return np.asarray(np.hypot(own, passed_on * excited))
+
+
+# Levels: how large each number is against which an error of the model is relative.
+#
+# A temperature counts from the ambient, an oil outlet from its inlet, an order from the strongest mesh order of its
+# channel or, for a mesh order, from its own mean over the points.
+
+AMBIENT = 293.15
+"""Ambient [K] where neither point nor case says more."""
+
+
+def setting_of(
+    features: Sequence[Feature], settings: Sequence[OperatingCondition]
+) -> dict[str, OperatingCondition]:
+    """Settings by name; features name them."""
+    return {setting.name: setting for setting in settings}
+
+
+def excess(
+    features: Sequence[Feature],
+    base: Array,
+    channels: Mapping[str, Channel],
+    settings: Sequence[OperatingCondition],
+) -> Array:
+    """(n,) prediction less what it counts from."""
+    by_name = setting_of(features, settings)
+    zero = [_zero(feature, channels[feature.channel], by_name.get(feature.setting)) for feature in features]
+    return np.asarray(base - np.array(zero))
+
+
+def _zero(feature: Feature, channel: Channel, setting: OperatingCondition | None) -> float:
+    if setting is None or channel.quantity not in ("temperature", "oil_outlet_temperature"):
+        return 0.0
+    ambient = AMBIENT if setting.ambient_temperature is None else setting.ambient_temperature
+    if channel.quantity == "temperature":
+        return ambient
+    return setting.inlet_temperature.get(channel.place, ambient)
+
+
+def reference_scale(
+    features: Sequence[Feature],
+    base: Array,
+    channels: Mapping[str, Channel],
+    settings: Sequence[OperatingCondition],
+    mesh_orders: frozenset[float],
+) -> Array:
+    """(n,) level of every number, positive."""
+    above = np.abs(excess(features, base, channels, settings))
+    found = above.copy()
+    for name in dict.fromkeys(feature.channel for feature in features):
+        rows = [i for i, feature in enumerate(features) if feature.channel == name]
+        if channels[name].quantity in ORDER_QUANTITIES:
+            _order_levels(features, rows, above, found, mesh_orders)
+        else:
+            found[rows] = np.maximum(above[rows], float(above[rows].mean()))
+    return np.maximum(found, 1e-12)
+
+
+def _order_levels(
+    features: Sequence[Feature],
+    rows: Sequence[int],
+    above: Array,
+    found: Array,
+    mesh_orders: frozenset[float],
+) -> None:
+    """Mesh orders over their own root mean square, the others over the strongest of those, else of all."""
+    by_order: dict[float, list[int]] = {}
+    for row in rows:
+        by_order.setdefault(features[row].order, []).append(row)
+    sizes = {
+        order: float(np.sqrt(2.0 * np.mean(above[own] ** 2))) for order, own in by_order.items() if order
+    }
+    mesh = {order: size for order, size in sizes.items() if order in mesh_orders}
+    strongest = max((mesh or sizes).values(), default=0.0)
+    for order, own in by_order.items():
+        if order == 0.0:
+            found[own] = np.maximum(above[own], float(above[own].mean()))
+        else:
+            found[own] = mesh.get(order, strongest)

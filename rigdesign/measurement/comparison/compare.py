@@ -1,25 +1,36 @@
 """Where simulation and data disagree: residuals, their groups, and a sentence for each."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base import units
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.json_text import to_plain
-from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import KINDS
 from rigdesign.base.version import __version__
-from rigdesign.measurement.comparison.bands import Bands
-from rigdesign.measurement.comparison.locate import VARIABLES, Located, locate
+from rigdesign.case import Case
+from rigdesign.measurement.comparison.locate import VARIABLES, Bands, Located, locate
 from rigdesign.measurement.data import Data
-from rigdesign.measurement.processing.baseline import Foretold, HealthySet, foretold
-from rigdesign.measurement.processing.propagation import setting_spread
+from rigdesign.measurement.loader import load_measurement
+from rigdesign.measurement.processing.baseline import (
+    Foretold,
+    HealthySet,
+    at_all,
+    foretold,
+    setting_spread,
+    shared_channels,
+)
+from rigdesign.measurement.processing.features import features
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
-from rigdesign.prediction.model import Feature, OperatingCondition, Prediction
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition, Prediction, measured_against
+from rigdesign.prediction.predict import Thermal, predict
 
 # Input errors that only the simulation shows: channels exchanged, readings in another unit.
 
@@ -433,3 +444,44 @@ def series_of(features: Sequence[Feature]) -> dict[str, list[int]]:
         label = feature.channel if feature.order == 0.0 else f"{feature.channel}, order {feature.order:g}"
         rows.setdefault(label, []).append(i)
     return rows
+
+
+# A comparison from files: measurement set, healthy set if it names one, simulation of both.
+
+Progress = Callable[[str], None]
+
+
+def compare_measurement(
+    case: Case,
+    folder: Path,
+    *,
+    model: Thermal = "full",
+    fidelity: Fidelity = "quick",
+    say: Progress = lambda message: None,
+) -> Comparison:
+    """Hold a measurement set, and the healthy set it declares, against the simulation.
+
+    Raises
+    ------
+    MeasurementError
+        Data of which nothing can be used, in either set.
+    CaseError, NotConvergedError, MissingLibraryError
+        As ``run_case``.
+    """
+    measurement = load_measurement(folder, case)
+    baseline = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
+    data = features(measurement)
+    healthy = None if baseline is None else features(baseline)
+
+    def simulated(of: Data, channels: Sequence[Channel], what: str) -> Prediction:
+        say(f"predicting {len(of.settings)} operating points of {what}")
+        return predict(
+            case, of.settings, channels, model=model, fidelity=fidelity, circuit=measured_against(channels)
+        )
+
+    prediction = simulated(data, [entry.channel for entry in data.channels.values()], "the set")
+    if baseline is None or healthy is None:
+        return compare(measurement, data, prediction)
+    shared = simulated(healthy, shared_channels(data, healthy), "the healthy set")
+    known = HealthySet(measurement=baseline, data=healthy, prediction=at_all(healthy, shared))
+    return compare(measurement, data, prediction, known)

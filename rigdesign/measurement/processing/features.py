@@ -4,13 +4,14 @@ import cmath
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.measurement.data import Data
-from rigdesign.measurement.quality.checks import data_findings
+from rigdesign.measurement.quality.checks import LEAST, data_findings, rates
 from rigdesign.measurement.quality.consistency import consistency_findings
 from rigdesign.measurement.reading.document import Transfer
 from rigdesign.measurement.reading.measurement_set import (
@@ -306,3 +307,39 @@ def _pooled(declared: float, squares: float, freedom: float) -> float:
     weight = DECLARED_WEIGHT if declared > 0.0 else 0.0
     whole = weight + freedom
     return float(np.sqrt((weight * declared**2 + squares) / whole)) if whole else 0.0
+
+
+# Rates of change of temperatures, from the times of the repeats, as channels of their own.
+#
+# A rig that was not steady shows twice: its temperatures are off, and they still change. The rate tells it from a film
+# or a loss, which leave steady temperatures.
+
+NAME = "rate of {}"
+"""Of the channel, by the name of the thermocouple."""
+
+
+def with_rates(measurement: MeasurementSet) -> MeasurementSet:
+    """The set with a channel for the rate of every thermocouple whose repeats have different times [K/s].
+
+    The rate of a point is the slope of its repeats; its uncertainty is that of the least certain point, and what a
+    steady rig drifts by.
+    """
+    found: dict[str, dict[str, float]] = {}
+    spreads: dict[str, float] = {}
+    for point in measurement.points:
+        for rate in rates(measurement, point):
+            found.setdefault(rate.channel, {})[point.name] = rate.value
+            spreads[rate.channel] = max(spreads.get(rate.channel, 0.0), hypot(rate.sd, LEAST))
+    if not found:
+        return measurement
+    channels = dict(measurement.channels)
+    readings = dict(measurement.readings)
+    for name, slopes in found.items():
+        channel = MeasuredChannel(
+            channel=replace(channels[name].channel, name=NAME.format(name), quantity="warming_rate"),
+            unit="K/h",
+            noise=spreads[name],
+        )
+        channels[channel.name] = channel
+        readings |= {Feature(channel.name, point): np.array([slope]) for point, slope in slopes.items()}
+    return replace(measurement, channels=channels, readings=readings)

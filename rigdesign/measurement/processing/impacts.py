@@ -16,7 +16,7 @@ from rigdesign.base.errors import MeasurementError
 from rigdesign.case.faults import unknown
 from rigdesign.measurement.processing.recorded import SetPlan
 from rigdesign.measurement.processing.resonance_peak import resonance_peak
-from rigdesign.measurement.quality.signal_checks import signal_findings, usable_signal
+from rigdesign.measurement.quality.checks import signal_findings, usable_signal
 from rigdesign.measurement.reading.document import Impact
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, Weight
 from rigdesign.measurement.reading.signals import Signal, read_signals

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from rigdesign.base.errors import Fault, MeasurementError
-from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import KINDS
 from rigdesign.case.model import Case
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.quality.signal_checks import signal_findings
+from rigdesign.measurement.quality.checks import signal_findings
 from rigdesign.measurement.quantities import accepted_unit, same_worth, to_si, unit_problem
 from rigdesign.measurement.reading.document import DataSection, Recording, Tach
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
@@ -21,15 +21,17 @@ from rigdesign.prediction.model import Feature
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.bridge import Bridge
-from rigdesign.strain_gauge.curve_windows import curve_windows
 from rigdesign.strain_gauge.measuring_point import StrainRecord
-from rigdesign.strain_gauge.rolling_angle import (
+from rigdesign.strain_gauge.turn_average import (
+    AngleGrid,
     RollingAngle,
+    TurnCurve,
     at_constant_speed,
+    curve_windows,
     from_speed,
+    turn_average,
     turns_until_same_teeth,
 )
-from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve, turn_average
 
 MOST_POINTS = 1440
 """Points of the mean curve over a turn at most; the samples of a turn where they are fewer."""

@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 from rigdesign.base import units
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import written
-from rigdesign.measurement.processing.averaging import FRACTION, SAMPLES_PER_PERIOD
-from rigdesign.measurement.processing.recorded import SetPlan, unit_faults
+from rigdesign.measurement.processing.recorded import FRACTION, SAMPLES_PER_PERIOD, SetPlan, unit_faults
 from rigdesign.measurement.processing.resonance_peak import Peak, resonance_peak
-from rigdesign.measurement.quality.signal_checks import signal_findings, usable_signal
+from rigdesign.measurement.quality.checks import signal_findings, usable_signal
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, to_si
 from rigdesign.measurement.reading.document import Sweep
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight

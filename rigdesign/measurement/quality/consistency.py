@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigdesign.base import units
-from rigdesign.base.quantity_kinds import KINDS, ZERO_CELSIUS
+from rigdesign.base.units import KINDS, ZERO_CELSIUS
 from rigdesign.case import Case
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement.quantities import CHANNELS, SETTINGS, to_si
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.prediction.model import OperatingCondition
 from rigdesign.properties.oil import MIL_PRF_23699, OILS
-from thermal.housing.surfaces import exact_areas
+from thermal.housing.housing_surfaces import exact_areas
 
 if TYPE_CHECKING:
     from rigdesign.measurement.data import Data

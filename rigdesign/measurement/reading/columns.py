@@ -1,10 +1,11 @@
 """What measurement.toml says of columns and points, held against the rig: places, units, uncertainties."""
 
+import math
 from collections.abc import Iterator, Mapping
 
 from rigdesign.base import units
 from rigdesign.base.errors import Fault
-from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import KINDS
 from rigdesign.case.faults import unknown, written
 from rigdesign.measurement.places import MOTOR, Places
 from rigdesign.measurement.quantities import (
@@ -15,7 +16,6 @@ from rigdesign.measurement.quantities import (
     accepted_unit,
     unit_problem,
 )
-from rigdesign.measurement.reading.directions import REMEDY, direction_of
 from rigdesign.measurement.reading.document import ChannelTable, MeasurementFile, SettingColumn
 from rigdesign.measurement.reading.measurement_set import MeasuredChannel, SettingSensor
 from rigdesign.prediction.model import (
@@ -324,3 +324,36 @@ def modal_faults(at: str, entry: ChannelTable) -> Iterator[Fault]:
             f"{at}.search_range", written(", ".join(entry.search_range)), "does not ascend",
             "write the least reading, then the greatest",
         )  # fmt: skip
+
+
+# Directions of accelerometers and proximity probes: an axis of the case, or an angle across the shafts.
+
+Direction = tuple[float, float, float]
+"""Unit vector (x, y, z): x along the shafts, y across, z up."""
+
+AXES: dict[str, Direction] = {
+    "x": (1.0, 0.0, 0.0),
+    "y": (0.0, 1.0, 0.0),
+    "z": (0.0, 0.0, 1.0),
+    "-x": (-1.0, 0.0, 0.0),
+    "-y": (0.0, -1.0, 0.0),
+    "-z": (0.0, 0.0, -1.0),
+}
+REMEDY = 'write "y", "z", "x", one of them with a minus, or an angle from y towards z such as "45 deg"'
+
+
+def direction_of(text: str) -> Direction:
+    """The direction that a text spells; `rigdesign.base.units.QuantityError` where it spells none."""
+    known = AXES.get(text.strip())
+    if known is not None:
+        return known
+    angle = units.parse(text, "angle")
+    return 0.0, math.cos(angle), math.sin(angle)
+
+
+def direction_text(direction: Direction) -> str:
+    """The text that spells a direction."""
+    for name, axis in AXES.items():
+        if axis == direction:
+            return name
+    return f"{math.degrees(math.atan2(direction[2], direction[1])):.10g} deg"

@@ -15,7 +15,6 @@ from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import written
 from rigdesign.measurement.quantities import accepted_unit, same_worth, unit_problem
 from rigdesign.measurement.reading.document import DataSection
-from rigdesign.measurement.reading.files import refused, set_file
 from rigdesign.measurement.reading.hdf5_samples import (
     AGAIN,
     TIME_NAMES,
@@ -23,7 +22,14 @@ from rigdesign.measurement.reading.hdf5_samples import (
     is_meant,
     read_datasets,
 )
-from rigdesign.measurement.reading.table import numbers, read_table, time_stamp, time_stamps
+from rigdesign.measurement.reading.table import (
+    numbers,
+    read_table,
+    refused,
+    set_file,
+    time_stamp,
+    time_stamps,
+)
 
 Array = NDArray[np.float64]
 AXIS = "recording_time"
@@ -109,7 +115,7 @@ def read_signals(
     Raises
     ------
     MeasurementError
-        No file of the set (`rigdesign.measurement.reading.files.set_file`), an unknown kind of file, content that
+        No file of the set (`rigdesign.measurement.reading.table.set_file`), an unknown kind of file, content that
         cannot be read, fewer samples than its header states, more than ``data.size_limit``. Of a wanted signal: two of
         its name, no numbers, no time, time in no unit of time or in another one than ``data.time_unit``, a start
         relative to the others that is not known.

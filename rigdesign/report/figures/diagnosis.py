@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base import units
-from rigdesign.diagnosis.document.gap import kept_features
+from rigdesign.diagnosis.document.document import kept_features
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.measurement.comparison.compare import series_of
 from rigdesign.measurement.quantities import CHANNELS

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import new_figure, plain
-from rigdesign.report.figures.margin_axes import margin_axis
+from rigdesign.report.figures.drawing import margin_axis, new_figure, plain
 from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rigdesign.difference.results import CheckChange
+    from rigdesign.difference.document import CheckChange
 
 MOST_ROWS = 24
 """Checks drawn, those that moved most."""

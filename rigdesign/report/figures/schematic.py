@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.figures.drawing import new_figure, plain
+from rigdesign.report.input_sheets import CaseSheet
 from rigdesign.report.palette import INK, MUTED, gearbox_colours
 
 if TYPE_CHECKING:

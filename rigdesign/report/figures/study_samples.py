@@ -7,22 +7,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import finish, new_figure, plain
-from rigdesign.report.figures.margin_axes import (
+from rigdesign.report.figures.drawing import (
     MARGIN_LABEL,
     SHORT_LABEL,
+    finish,
     input_axis,
     margin_axis,
     mark_failed,
+    new_figure,
+    plain,
 )
-from rigdesign.report.margins.axis import input_name, value_shown
+from rigdesign.report.margins.table import input_name, value_shown
 from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rigdesign.report.margins.axis import StudyAxis
-    from rigdesign.report.margins.table import MarginTable
+    from rigdesign.report.margins.table import MarginTable, StudyAxis
     from rigdesign.studies.result import SobolIndex, Swing
 
 PANEL_WIDTH = 5.2

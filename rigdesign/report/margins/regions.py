@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.report.margins.axis import StudyAxis
-from rigdesign.report.margins.table import MarginTable
+from rigdesign.report.margins.table import MarginTable, StudyAxis
 from rigdesign.studies.result import StudyPoint
 
 FINE = 320

@@ -1,11 +1,14 @@
 """diagnosis.html: a diagnosis as a story, one self-contained page."""
 
+import re
 from typing import TYPE_CHECKING, Any
 
+from rigdesign.diagnosis.constants_page import meanings
 from rigdesign.diagnosis.decision.naming import display_scale
 from rigdesign.diagnosis.document.advice import VERDICTS
 from rigdesign.diagnosis.document.document import leading_sentences, sentences
 from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.diagnosis.rig_calibration.healthy_sets import RigCalibration
 from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.report.numbers import number_text, unit_text
 
@@ -71,3 +74,22 @@ def shown_size(value: float | None, unit: str | None, factor: bool) -> str:
     scale, name = display_scale(unit, factor)
     text = number_text(scale * value, 3)
     return f"× {text}" if factor else f"{text} {unit_text(name)}".rstrip()
+
+
+# calibration.html: what healthy sets of a rig changed of the shipped values, and what they say of each other.
+
+
+def rig_calibration_page(calibrated: RigCalibration, document: dict[str, Any]) -> str:
+    """The page as one HTML document; two calls give the same text."""
+    from rigdesign.report.pages.report import environment
+
+    context = {"document": document, "case": calibrated.case, "verdicts": VERDICTS, "meaning": meaning}
+    return environment().get_template("rig_calibration.html.j2").render(context)
+
+
+def meaning(name: str) -> str:
+    """What a value of a calibration is, in words."""
+    group, _, key = name.partition(".")
+    if group == "channels":
+        return f"Shift of all numbers of {key} together from set to set, over their level."
+    return re.sub(r" \(`[^`]*`\)", "", meanings()[name])

@@ -12,7 +12,7 @@ from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.base.version import __version__
 from rigdesign.report import numbers, palette, views
 from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
-from rigdesign.report.issue import Issue, signatures
+from rigdesign.report.input_sheets import Issue, signatures
 from rigdesign.report.sections import SECTIONS
 from rigdesign.report.sections.section import ReportSection
 from rigdesign.results.result import RunResult

@@ -30,8 +30,7 @@ def write_study(study: StudyResult, out: Path) -> None:
     OutputError
         If ``out`` cannot be written.
     """
-    from rigdesign.report.pages.study_page import study_page
-    from rigdesign.report.pages.study_pictures import study_pictures
+    from rigdesign.report.pages.study_page import study_page, study_pictures
 
     table = study_csv(study.variations, study.points)
     try:

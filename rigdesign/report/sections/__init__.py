@@ -21,10 +21,10 @@ from rigdesign.report.sections.temperatures import (
     CLEARANCES,
     TEMPERATURE_DETAILS,
     TEMPERATURES,
+    VIEWER,
 )
 from rigdesign.report.sections.transient import EVENTS, TRANSIENT
 from rigdesign.report.sections.vibration import VIBRATION, VIBRATION_DETAILS
-from rigdesign.report.sections.viewer import VIEWER
 
 SECTIONS: tuple[ReportSection, ...] = (
     DECISION,

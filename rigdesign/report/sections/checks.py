@@ -20,8 +20,8 @@ LEAST_MOVE = 0.01
 
 
 def _decision(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.case_sheet import CaseSheet
     from rigdesign.report.figures.schematic import phone_schematic_figure, schematic_figure
+    from rigdesign.report.input_sheets import CaseSheet
 
     real = views.predicted(result.checks) or views.applicable(result.checks)
     nearest = views.sorted_checks(real)[:NEAREST]

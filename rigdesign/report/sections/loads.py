@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
-    from rigdesign.report.figures.ramp import ramp_figure
+    from rigdesign.report.figures.dynamics import ramp_figure
     from rigdesign.report.figures.teeth import label, tooth_history_figure
 
     shown: Values = {

@@ -74,8 +74,8 @@ def _span(values: list[float | None]) -> tuple[float, float]:
 
 def _in_motion(result: RunResult, draw: Draw) -> Values:
     """Figures of spectra and contact."""
-    from rigdesign.report.figures.spectra import spectrum_figure, waterfall_figure
     from rigdesign.report.figures.teeth import pair_share_figure
+    from rigdesign.report.figures.vibration import spectrum_figure, waterfall_figure
 
     dynamics = result.dynamics
     assert dynamics is not None

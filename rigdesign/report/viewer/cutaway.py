@@ -4,10 +4,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.report.figures.drawing import new_figure
-from rigdesign.report.figures.field import Picture
-from rigdesign.report.figures.mesh_views import Indices, camera, cut_mesh, shaft_axis_height, standing_bodies
+from rigdesign.report.figures.field import (
+    Indices,
+    Picture,
+    camera,
+    cut_mesh,
+    shaft_axis_height,
+    standing_bodies,
+)
 from rigdesign.report.palette import INK, TEMPERATURE_COLOURS
 from rigdesign.report.viewer.solid import SolidPicture, triangle_normals
 from rigdesign.results.thermal import TemperatureField

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.quantity_kinds import ZERO_CELSIUS
-from rigdesign.report.figures.field import MeshViews, magnification
-from rigdesign.report.figures.mesh_views import standing_bodies
+from rigdesign.base.units import ZERO_CELSIUS
+from rigdesign.report.figures.field import MeshViews, magnification, standing_bodies
 from rigdesign.report.palette import DISPLACEMENT_COLOURS, TEMPERATURE_COLOURS
 from rigdesign.report.viewer.solid import (
     MOST_TETRAHEDRA,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.report.figures.mesh_views import HEX_TETRAHEDRA, SUB_TETRAHEDRA, SUB_TRIANGLES
+from rigdesign.report.figures.field import HEX_TETRAHEDRA, SUB_TETRAHEDRA, SUB_TRIANGLES
 from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh, facet_keys
 
 Indices = NDArray[np.int64]

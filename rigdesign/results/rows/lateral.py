@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from dynamics.elastic_rig.lateral import RigMode
+from dynamics.elastic_rig.damped_modes import RigMode
 from rigdesign.results.lateral import BearingWhirl, LateralVibration, Separation, StageLateral
 from rigdesign.results.units import RPM, UM
 

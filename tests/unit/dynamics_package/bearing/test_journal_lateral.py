@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 
 from dynamics.bearing.journal import JournalBearing, JournalState
 from dynamics.bearing.journal_lateral import RunningFilm, coefficient_table, journal_lateral
-from dynamics.bearing.lateral import LateralCoefficients, constant_coefficients, load_axes
 from dynamics.bearing.protocol import (
     BearingError,
     BearingOperation,
     BearingState,
+    LateralCoefficients,
     LateralOperation,
     OilSupply,
+    constant_coefficients,
+    load_axes,
 )
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY

@@ -16,17 +16,15 @@ from dynamics.bearing.protocol import (
     BearingState,
     OilSupply,
 )
-from dynamics.bearing.rolling import RollingBearing
+from dynamics.bearing.rolling import RollingBearing, SeatConductances, shaft_path
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
-from dynamics.bearing.rolling_friction import LAWS, FrictionLaw
-from dynamics.bearing.rolling_heat import SeatConductances, shaft_path
 from dynamics.bearing.rolling_life import (
     equivalent_load,
     induced_axial_load,
     minimum_load,
     static_equivalent_load,
 )
-from dynamics.bearing.rolling_state import RollingState
+from dynamics.bearing.rolling_state import LAWS, FrictionLaw, RollingState
 
 RPM = math.pi / 30.0
 DENSITY, HEAT_CAPACITY, INLET = 860.0, 2000.0, 343.15

@@ -15,9 +15,9 @@ from dynamics.bearing.rolling_catalogue import (
     catalogue_bearing,
     tabled_designations,
 )
-from dynamics.bearing.rolling_elements import RollingElements
+from dynamics.bearing.rolling_row import RollingElements
 from dynamics.standards import iso76_2006, skf_friction_2006
-from dynamics.standards import iso_tr_14179_2_2001_bearings as palmgren
+from dynamics.standards import iso_tr_14179_2_2001 as palmgren
 
 
 @pytest.mark.parametrize("spelling", ["NU 208 ECP", "NU 208", "nu208", "NU-208", " nu 208 ecp "])

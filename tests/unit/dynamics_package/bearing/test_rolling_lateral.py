@@ -7,12 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.bearing.lateral import LateralCoefficients
-from dynamics.bearing.protocol import Bearing, BearingError, BearingOperation, LateralOperation, OilSupply
+from dynamics.bearing.protocol import (
+    Bearing,
+    BearingError,
+    BearingOperation,
+    LateralCoefficients,
+    LateralOperation,
+    OilSupply,
+)
 from dynamics.bearing.rolling import RollingBearing
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
-from dynamics.bearing.rolling_contact import contact_law
-from dynamics.bearing.rolling_row import RowOfElements, ring_load
+from dynamics.bearing.rolling_row import RowOfElements, contact_law, ring_load
 from dynamics.bearing.rolling_state import rolling_lateral
 from dynamics.bearing.rolling_stiffness import bearing_stiffness
 

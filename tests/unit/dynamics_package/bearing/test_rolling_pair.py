@@ -8,11 +8,9 @@ import pytest
 from scipy.optimize import brentq
 
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
-from dynamics.bearing.rolling_contact import contact_law
 from dynamics.bearing.rolling_life import equivalent_load, induced_axial_load
-from dynamics.bearing.rolling_pair import force_on_first, pair_axial_loads
-from dynamics.bearing.rolling_row import RowOfElements
-from dynamics.bearing.rolling_stiffness import bearing_stiffness
+from dynamics.bearing.rolling_row import RowOfElements, contact_law
+from dynamics.bearing.rolling_stiffness import bearing_stiffness, force_on_first, pair_axial_loads
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,13 @@ from scipy.optimize import brentq, minimize
 
 from dynamics.bearing.protocol import BearingError
 from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
-from dynamics.bearing.rolling_contact import BallGroove, contact_law, ellipse_ratio
-from dynamics.bearing.rolling_elements import RollingElements
-from dynamics.bearing.rolling_row import RowOfElements
+from dynamics.bearing.rolling_row import (
+    BallGroove,
+    RollingElements,
+    RowOfElements,
+    contact_law,
+    ellipse_ratio,
+)
 from dynamics.bearing.rolling_stiffness import (
     bearing_stiffness,
 )

@@ -8,8 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
-from dynamics.bearing.rolling_contact import contact_law
-from dynamics.bearing.rolling_row import LAMINAE, RowOfElements, ring_load
+from dynamics.bearing.rolling_row import LAMINAE, RowOfElements, contact_law, ring_load
 from dynamics.bearing.rolling_stiffness import bearing_stiffness, stiffness_at
 
 LOADS = [

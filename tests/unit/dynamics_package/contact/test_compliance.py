@@ -6,7 +6,7 @@ from math import cos
 import numpy as np
 import pytest
 
-from dynamics.contact.face import FaceGrid
+from dynamics.contact.points import FaceGrid
 from dynamics.contact.slice_compliance import SliceCompliance
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.stiffness import tooth_compliance

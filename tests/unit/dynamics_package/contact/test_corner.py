@@ -7,7 +7,7 @@ import pytest
 
 from dynamics.contact.corner import TipEnd, contact_places, tip_ends
 from dynamics.gear.tooth_form import TipEdge, ToothForm
-from dynamics.mesh.tip_contact import tip_separation
+from dynamics.mesh.pair_gap import tip_separation
 from tests.builders.loaded_mesh import equal_gears, fzg_c
 from tests.builders.p2_gears import helical_pair, spur_pair
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.contact.face import FaceGrid, default_positions
+from dynamics.contact.points import FaceGrid, default_positions
 from dynamics.errors import DynamicsInputError
 from dynamics.flank.microgeometry import Microgeometry
 from tests.builders.loaded_mesh import equal_gears, gap_of, sliced_mesh

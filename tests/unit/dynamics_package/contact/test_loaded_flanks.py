@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact.flank_gap import face_sense, modified_gap
+from dynamics.contact.loaded_mesh import transverse_load_factor
 from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.pitch_deviation import transverse_load_factor
-from dynamics.flank.axes import PARALLEL, AxisMisalignment
-from dynamics.flank.field import Flank
-from dynamics.flank.microgeometry import Microgeometry
-from dynamics.flank.topography import Topography
+from dynamics.contact.points import face_sense, modified_gap
+from dynamics.flank.field import PARALLEL, AxisMisalignment, Flank
+from dynamics.flank.microgeometry import Microgeometry, Topography
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.pair_gap import PairGap
 from tests.builders.elastic_pairs import equal_helical_pair

@@ -6,10 +6,10 @@ from math import cos, hypot
 import numpy as np
 import pytest
 
-from dynamics.contact.contact_ratio import unloaded_contact_ratio
-from dynamics.contact.face import FaceGrid
+from dynamics.contact.compliance import EdgeModel
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.local_approach import EdgeModel
+from dynamics.contact.mesh_cycle import unloaded_contact_ratio
+from dynamics.contact.points import FaceGrid
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.flank.microgeometry import Microgeometry
 from tests.builders.loaded_mesh import equal_gears, exchanged_fzg_c, fzg_c, gap_of, influence_of, sliced_mesh

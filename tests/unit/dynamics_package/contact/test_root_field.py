@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.root_course import root_course
-from dynamics.contact.root_field import PairForces, root_field
+from dynamics.contact.points import FaceGrid
+from dynamics.contact.root_field import PairForces, root_course, root_field
 from dynamics.gear.pair import GearPair
 from dynamics.influence.gear_body import SectionDivision
 from dynamics.influence.numbers import InfluenceNumbers

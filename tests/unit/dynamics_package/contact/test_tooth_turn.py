@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.contact.tooth_turn import ToothPass, pitches_apart, tooth_turn
+from dynamics.contact.root_field import ToothPass, pitches_apart, tooth_turn
 
 RADIUS, PITCH = 0.1, 2.0 * np.pi / 45
 

@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from dynamics.contact.corner import contact_places, tip_ends
-from dynamics.contact.face import FaceGrid
-from dynamics.contact.flank_gap import flank_gap
-from dynamics.contact.points import contact_points, no_gap
-from dynamics.contact.touching import Profiles, settled
+from dynamics.contact.corner import Profiles, contact_places, settled, tip_ends
+from dynamics.contact.points import FaceGrid, contact_points, flank_gap, no_gap
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.mesh.pair_gap import PairGap
 from tests.builders.loaded_mesh import fzg_c

@@ -5,8 +5,7 @@ import pytest
 from dynamics.drivetrain import bracing
 from dynamics.drivetrain.bracing import LoopBracing, ShiftedGear, brace, drift
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import PortModel
+from dynamics.drivetrain.static_loop import LoopLoad, PortModel
 from dynamics.errors import DynamicsNotConverged
 from tests.builders.rig import TRANSVERSE_ANGLE, prototype, prototype_laws
 

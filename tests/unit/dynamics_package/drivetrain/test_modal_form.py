@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.modal_form import known_modal_form, modal_form
+from dynamics.drivetrain.linear_system import LinearSystem, known_modal_form, modal_form
 from dynamics.drivetrain.modes import closed_matrices
 from tests.builders.rig import prototype, prototype_laws
 

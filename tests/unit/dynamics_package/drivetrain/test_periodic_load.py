@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.periodic_load import LoadOrder, PeriodicLoad, harmonic_loads, left_out, waves_within
+from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad, harmonic_loads, left_out, waves_within
 
 TURNS = 4.0
 RATIOS = np.array([1.0, 0.75, 0.5])

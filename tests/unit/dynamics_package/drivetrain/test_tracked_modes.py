@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.drivetrain.modes import LoopMode
-from dynamics.drivetrain.tracked_modes import ShapedModes, tracked
+from dynamics.drivetrain.modes import LoopMode, ShapedModes, tracked
 
 
 def mode(frequency: float, gain: float = 1.0) -> LoopMode:

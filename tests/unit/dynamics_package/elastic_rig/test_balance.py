@@ -7,8 +7,7 @@ import pytest
 
 from dynamics.drivetrain.parts import BearingPlace
 from dynamics.drivetrain.shaft import STEEL_DENSITY, Disc, DrivetrainError, Section
-from dynamics.elastic_rig.balance import BalanceGrade, residual_unbalances, rotor_of
-from dynamics.elastic_rig.rotating_parts import ShaftBow, ShaftUnbalance
+from dynamics.elastic_rig.layout import BalanceGrade, ShaftBow, ShaftUnbalance, residual_unbalances, rotor_of
 from tests.builders.elastic_rig import single_shaft
 
 TUBE = (Section(length=0.4, outer_diameter=0.05),)

@@ -4,17 +4,14 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvals
 
-from dynamics.drivetrain.modes import ModeShape
+from dynamics.drivetrain.modes import ModeShape, shaped_modes, tracked
 from dynamics.drivetrain.shaft import DrivetrainError, Section
-from dynamics.drivetrain.tracked_modes import shaped_modes, tracked
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.damped_modes import damped_modes, mode_character
-from dynamics.elastic_rig.lateral import orbit
+from dynamics.elastic_rig.damped_modes import damped_modes, mode_character, orbit
 from dynamics.elastic_rig.location import unresisted
-from dynamics.elastic_rig.mesh_rows import approach_row
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import RowSpring, RunningState
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import SeenRig, approach_row
 from tests.builders.elastic_rig import bearings, prototype_rig, running, single_shaft
 from tests.builders.full_matrices import full_matrices
 from tests.builders.harmonic_response import Unbalance, receptance, unbalance_load

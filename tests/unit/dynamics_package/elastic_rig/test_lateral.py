@@ -6,18 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.bearing.lateral import LateralCoefficients
+from dynamics.bearing.protocol import LateralCoefficients
 from dynamics.drivetrain.shaft import Disc, Section
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.lateral import (
+from dynamics.elastic_rig.damped_modes import (
     bearing_forces,
     line_whirls,
     reduced_line_loads,
     rig_modes,
     whirl_at,
 )
+from dynamics.elastic_rig.layout import ShaftUnbalance
 from dynamics.elastic_rig.reduction import ReducedElasticRig, reduce_rig
-from dynamics.elastic_rig.rotating_parts import ShaftUnbalance
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
 from tests.builders.elastic_rig import bearings, single_shaft
 from tests.builders.rotor_stability import rotor_stability

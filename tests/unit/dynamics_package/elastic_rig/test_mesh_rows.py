@@ -10,7 +10,7 @@ import pytest
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.assembly import assemble_rig
 from dynamics.elastic_rig.layout import ElasticRig
-from dynamics.elastic_rig.mesh_rows import approach_row, mesh_directions, mesh_ports
+from dynamics.elastic_rig.seen_system import approach_row, mesh_directions, mesh_ports
 from tests.builders.elastic_rig import motion_of_all, prototype_rig
 
 Face = Literal["front", "back"]

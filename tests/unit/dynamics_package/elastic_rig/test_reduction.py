@@ -6,7 +6,6 @@ import pytest
 from dynamics.drivetrain.shaft import DrivetrainError
 from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
 from dynamics.elastic_rig.layout import AxialLocation, HousingSupport, isotropic_support
-from dynamics.elastic_rig.mesh_rows import approach_row, mesh_ports
 from dynamics.elastic_rig.reduction import ReducedElasticRig, port_rows_of, reduce_rig
 from dynamics.elastic_rig.running_state import (
     BearingCoefficients,
@@ -14,6 +13,7 @@ from dynamics.elastic_rig.running_state import (
     RunningState,
     isotropic_bearing,
 )
+from dynamics.elastic_rig.seen_system import approach_row, mesh_ports
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.reduction_error import reduction_error
 from tests.builders.static_deflection import static_deflection

@@ -7,17 +7,14 @@ import pytest
 
 from dynamics.drivetrain.bracing import LoopBracing, brace
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.static_loop import line_ratios
+from dynamics.drivetrain.static_loop import LoopLoad, line_ratios
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import Face, approach_row, mesh_ports
-from dynamics.elastic_rig.mode_shapes import elastic_loop_modes
+from dynamics.elastic_rig.mode_names import elastic_loop_modes
 from dynamics.elastic_rig.reduction import reduce_rig
 from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
-from dynamics.elastic_rig.seen_system import SeenRig
+from dynamics.elastic_rig.seen_system import Face, SeenRig, approach_row, mesh_ports
 from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import MarchSettings
-from dynamics.response.march_loads import march_model
+from dynamics.response.march_inputs import MarchSettings, march_model
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from dynamics.response.time_march import TimeMarch
 from tests.builders.elastic_rig import bearings, prototype_rig

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import approach_row, mesh_directions
-from dynamics.elastic_rig.seen_system import ROWS, wrench_rows
+from dynamics.elastic_rig.seen_system import ROWS, approach_row, mesh_directions, wrench_rows
 from tests.builders.elastic_rig import motion_of_all
 from tests.unit.dynamics_package.elastic_rig.test_mesh_rows import CASES, turned_rig
 

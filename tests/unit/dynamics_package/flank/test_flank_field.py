@@ -8,8 +8,7 @@ import pytest
 
 from dynamics.errors import DynamicsInputError
 from dynamics.flank.field import AT_PITCH_POINT, FlankField, TeethInMesh, back_phase
-from dynamics.flank.microgeometry import Microgeometry
-from dynamics.flank.topography import Topography
+from dynamics.flank.microgeometry import Microgeometry, Topography
 from tests.builders.p2_gears import helical_pair, spur_pair
 
 SPUR, HELICAL = spur_pair(), helical_pair()

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.gear.normal_arc import normal_arc
-from dynamics.gear.root_arc import root_arc
+from dynamics.gear.root_arc import normal_arc, root_arc
 from dynamics.gear.tooth_form import ToothForm
 from tests.builders.influence import drawn_gear
 

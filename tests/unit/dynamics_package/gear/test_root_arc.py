@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.gear.root_arc import POINTS, TANGENT_30, root_arc
-from dynamics.gear.tooth_outline import tooth_outline
+from dynamics.gear.root_arc import POINTS, TANGENT_30, root_arc, tooth_outline
 from tests.builders.loaded_mesh import fzg_c
 
 HELICAL = GearPair.from_centre_distance(

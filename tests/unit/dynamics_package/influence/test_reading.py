@@ -9,10 +9,8 @@ from scipy import sparse
 
 from dynamics.influence.elastic_segment import solve_segment
 from dynamics.influence.gear_body import TEETH
-from dynamics.influence.reading import SegmentReading
-from dynamics.influence.section import gear_section
-from dynamics.influence.segment import GearSegment, turned
-from dynamics.influence.strips import rows
+from dynamics.influence.reading import SegmentReading, rows
+from dynamics.influence.segment import GearSegment, gear_section, turned
 from tests.builders.influence import STEEL, small_model
 
 NU = STEEL.poisson

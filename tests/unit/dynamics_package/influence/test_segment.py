@@ -5,8 +5,7 @@ import pytest
 
 from dynamics.errors import DynamicsInputError
 from dynamics.influence.gear_body import GearBody
-from dynamics.influence.section import gear_section
-from dynamics.influence.segment import GearSegment
+from dynamics.influence.segment import GearSegment, gear_section
 from tests.builders.influence import COARSE, small_model
 from tests.unit.dynamics_package.influence.test_section import area
 from thermal.fe.reference_elements import HEXAHEDRON_20

@@ -13,10 +13,10 @@ from dynamics.losses.churning import (
     churning_loss,
     coefficient_2007,
     coefficient_2011,
+    compare_churning,
     side_friction,
     stage_churning,
 )
-from dynamics.losses.churning_comparison import compare_churning
 from dynamics.losses.mesh_loss import LossError
 from tests.builders.fzg_bath import LOW_VOLUME, bath, stage
 

@@ -6,9 +6,8 @@ import pytest
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels.contact_table import ContactTables
 from dynamics.mesh.contact_table import MarchStep, TableGrid, contact_tables
-from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.force import evaluate_mesh, evaluate_table
 from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.table_force import evaluate_table
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, spur_law, wavy_law
 from tests.performance.test_dynamics_speed import TORQUE, shipped_laws
 

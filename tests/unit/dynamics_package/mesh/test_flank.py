@@ -4,8 +4,7 @@ from math import cos, pi, tan
 import numpy as np
 import pytest
 
-from dynamics.flank.axes import AxisMisalignment
-from dynamics.flank.field import FlankField
+from dynamics.flank.field import AxisMisalignment, FlankField
 from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.mesh.flank import (
     ContactDiscretisation,

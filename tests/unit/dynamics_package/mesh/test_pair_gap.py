@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 from dynamics.errors import DynamicsInputError
-from dynamics.flank.axes import AxisMisalignment
-from dynamics.flank.field import FlankField, TeethInMesh
+from dynamics.flank.field import AxisMisalignment, FlankField, TeethInMesh
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.flank import MeshPosition, mesh_law
-from dynamics.mesh.pair_gap import PairGap
+from dynamics.mesh.pair_gap import PairGap, tip_separation
 from dynamics.mesh.stiffness import pair_stiffness
-from dynamics.mesh.tip_contact import tip_separation
 from tests.builders.p1_gears import PINION, TWIST, WHEEL, p1_pair
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 

@@ -6,7 +6,7 @@ import pytest
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.force import evaluate_mesh, pack_meshes, tooth_forces
 from dynamics.mesh.law import MeshLaw, check_mesh_law
-from dynamics.orders.tooth_excitation import Motion, pair_sensitivity
+from dynamics.orders.hill_system import Motion, pair_sensitivity
 from tests.builders.mesh import BASE_PITCH, BASE_RADIUS_1, BASE_RADIUS_2, spur_law
 
 BODY = 5e-9

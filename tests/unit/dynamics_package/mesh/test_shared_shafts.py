@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
 from dynamics.kernels.contact_table import ContactTables
-from dynamics.mesh.table_force import evaluate_table
+from dynamics.mesh.force import evaluate_table
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, ramped_law

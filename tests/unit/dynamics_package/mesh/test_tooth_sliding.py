@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from dynamics.losses.mesh_loss import LossError, mesh_loss, squeeze_loss
-from dynamics.mesh.friction import GivenFriction, Schlenk, friction_coefficient
-from dynamics.mesh.sliding import (
+from dynamics.mesh.friction import (
+    GivenFriction,
+    Schlenk,
     ToothPath,
     ToothPathError,
+    friction_coefficient,
     ohlendorf_factor,
     tooth_loss_factor,
 )

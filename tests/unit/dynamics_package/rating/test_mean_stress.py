@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics.errors import DynamicsInputError
-from dynamics.rating.mean_stress import (
+from dynamics.rating.root_stress import (
     GearDisc,
     PressFit,
     Solid,

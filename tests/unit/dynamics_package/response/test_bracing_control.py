@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, MarchSettings, TorqueControl
 from dynamics.response.time_march import TimeMarch

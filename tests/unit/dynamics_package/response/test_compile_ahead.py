@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.kernels.march import _march, compiled
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import MarchSettings

@@ -5,20 +5,16 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.linear_system import LinearSystem, modal_form
 from dynamics.drivetrain.parts import Motor
-from dynamics.drivetrain.static_loop import port_model
+from dynamics.drivetrain.static_loop import LoopLoad, port_model
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_balance import solve_periodic
-from dynamics.response.harmonic_newton import HarmonicNewton
+from dynamics.response.harmonic_balance import HarmonicNewton, solve_periodic
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, resample
 from dynamics.response.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
-from dynamics.response.response_curve import ResponseCurve
+from dynamics.response.response_curve import ResponseCurve, waveform
 from dynamics.response.speed_sweep import DragTorques, SweepSettings, periodic_response
-from dynamics.response.waveform import waveform
 from tests.builders.rig import prototype, prototype_laws
 
 RPM = math.pi / 30.0

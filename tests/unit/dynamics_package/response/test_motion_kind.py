@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.response.motion_kind import growth_per_period, kind_of, repeats_after, swings
+from dynamics.response.periodic_response import growth_per_period, kind_of, repeats_after, swings
 
 STEPS = 32
 

@@ -28,8 +28,7 @@ from dynamics.kernels.mesh_workspace import (
     SHARE,
     TEETH,
 )
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
-from dynamics.response.march_loads import drag_loads, slow_loads
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, drag_loads, slow_loads
 from dynamics.response.modal_model import modal_model
 from dynamics.response.propagator import discretise
 from dynamics.response.time_march import MarchDiverged, TimeMarch

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.response.motion_kind import PERIODIC
+from dynamics.response.periodic_response import PERIODIC
 from dynamics.response.response_curve import ResponseCurve, point_in_time
 from dynamics.response.speed_sweep import refined_response
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
-from dynamics.response.command import Command, DragCurve, MotorDrive, Sampling, default_speed_control
+from dynamics.response.command import Command, DragCurve, LowPass, MotorDrive, Sampling, default_speed_control
 from dynamics.response.envelopes import WindowStatistics, split_lift_off
-from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import SpeedControl
 from dynamics.response.time_response import TimeResponse, run_schedule
 from tests.builders.mesh import spur_law

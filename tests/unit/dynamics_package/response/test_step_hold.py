@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad_vec
 
-from dynamics.response.step_hold import FASTEST, numerov, phi, straight_line
+from dynamics.response.propagator import FASTEST, numerov, phi, straight_line
 
 POLES = np.array([1e-9j, 1e-4j, 0.01j, 0.3j, 1.4j, -0.2 + 0.9j, -1.2, -1e-6])
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from dynamics.standards import iso1328_1_2013 as flank
+from dynamics.standards import iso6336_1_2006 as clause_9
 from dynamics.standards import iso6336_1_2006 as iso
-from dynamics.standards import iso6336_1_2006_stiffness as clause_9
 from dynamics.standards import iso6336_3_2006 as root
 
 DATA = clause_9.MeshData(

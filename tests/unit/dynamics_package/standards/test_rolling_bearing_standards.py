@@ -7,7 +7,7 @@ import pytest
 
 from dynamics.errors import DynamicsInputError
 from dynamics.standards import iso76_2006, iso281_2007, iso5753_1_2009
-from dynamics.standards import iso_tr_14179_2_2001_bearings as palmgren
+from dynamics.standards import iso_tr_14179_2_2001 as palmgren
 from dynamics.standards import skf_friction_2006 as skf
 
 

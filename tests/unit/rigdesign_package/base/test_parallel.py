@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base import parallel
-from rigdesign.base.file_lock import FileLock
+from rigdesign.base.output_folder import FileLock
 from rigdesign.base.parallel import BackgroundTasks
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rigdesign.base import units
-from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.base.units import KINDS
 
 HAND = [
     ("7 mm", "length", 0.007),

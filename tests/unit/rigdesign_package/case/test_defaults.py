@@ -13,8 +13,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.base.units import parse
 from rigdesign.case import Case, load_case
 from rigdesign.case.defaults.fill import rules, with_defaults
-from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import BY_THE_TOOL, Given
+from rigdesign.case.defaults.rule import BY_THE_TOOL, Given, RawTree
 from rigdesign.case.defaults.runs import _response_period
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.loader import changed_together

@@ -6,7 +6,7 @@ import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
-from rigdesign.case.defaults.consequences import NOT_WORKED_OUT
+from rigdesign.case.defaults.fill import NOT_WORKED_OUT
 from rigdesign.new_case.outline import outline_from
 from rigdesign.new_case.write import plain_text
 

@@ -6,7 +6,7 @@ import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.case.loader import load_case
-from rigdesign.case.rules.rotating_parts import rotating_part_faults
+from rigdesign.case.rules.elastic_shafts import rotating_part_faults
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"

@@ -7,17 +7,27 @@ from typing import Any, get_args
 import pytest
 
 from rigdesign import load_case
-from rigdesign.case.bath_film import BathFilm
 from rigdesign.case.films import (
+    BathFilm,
     NiemannWinter,
+    RotatingCylinder,
+    ShaftPlace,
     SurfaceFilm,
+    SurfacePlace,
+    SurfaceSite,
     VerticalPlate,
 )
-from rigdesign.case.given_film import PRINTED_LAWS, ConstantFilm, TakenFrom
 from rigdesign.case.rules.surfaces import _on_their_surfaces
-from rigdesign.case.shaft_films import RotatingCylinder
-from rigdesign.case.surface_conditions import BearingFilm, Condition, FlankFilm, GapExchange, SurfaceExchange
-from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
+from rigdesign.case.surface_conditions import (
+    PRINTED_LAWS,
+    BearingFilm,
+    Condition,
+    ConstantFilm,
+    FlankFilm,
+    GapExchange,
+    SurfaceExchange,
+    TakenFrom,
+)
 from tests.builders.fzg_case import fzg_case
 from thermal.films import convection
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.twist_rows import TorqueSection
+from dynamics.drivetrain.graph import TorqueSection
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case

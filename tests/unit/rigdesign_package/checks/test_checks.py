@@ -16,9 +16,8 @@ from rigdesign.checks.rules import with_omissions
 from rigdesign.records.near_dwell import NearDwell, mesh_resonances
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.housing import CoolingBalance, HeatSource, RigHeat
 from rigdesign.results.loads import ContactLoss, MeshResonance, StageLoad, UnsolvedSpeed
-from rigdesign.results.rig_heat import HeatSource, RigHeat
 from rigdesign.results.vibration import AvoidedResonance, nearer
 from rigdesign.results.warm_gearbox import SealClearance, WarmGearbox
 from rigdesign.rig.model import Rig

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact.face import FaceGrid
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.flank.axes import PARALLEL
+from dynamics.contact.points import FaceGrid
+from dynamics.flank.field import PARALLEL
 from rigdesign.case import Case, load_case
 from rigdesign.checks import contact
 from rigdesign.checks.registry import RuleFamily

@@ -6,9 +6,8 @@ import pytest
 
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
 from rigdesign.case import load_case
-from rigdesign.case.defaults.limit_set import standard_limits
-from rigdesign.case.defaults.raw_tree import RawTree
-from rigdesign.case.defaults.rule import Given
+from rigdesign.case.defaults.rule import Given, RawTree
+from rigdesign.case.defaults.runs import standard_limits
 from rigdesign.explanation.built_in import KINDS, built_in
 from rigdesign.explanation.keys import entry_at
 from rigdesign.properties.materials import MATERIALS

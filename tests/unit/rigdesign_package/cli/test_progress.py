@@ -13,8 +13,15 @@ import pytest
 
 from rigdesign.cli.terminal import progress as module
 from rigdesign.cli.terminal.console import Verbosity, verbosity
-from rigdesign.cli.terminal.estimate import MOST_RUNS, StepTimes, duration_text, remaining_points, step_times
-from rigdesign.cli.terminal.progress import FIRST_RUN, Progress
+from rigdesign.cli.terminal.progress import (
+    FIRST_RUN,
+    MOST_RUNS,
+    Progress,
+    StepTimes,
+    duration_text,
+    remaining_points,
+    step_times,
+)
 
 
 @pytest.fixture(autouse=True)

@@ -8,12 +8,22 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.coupling import acceleration, fixed_point
-from rigdesign.coupling.acceleration import Acceleration, Anderson, PlainRelaxation
-from rigdesign.coupling.convergence import Residual, ScaledTolerance
+from rigdesign.coupling import fixed_point
+from rigdesign.coupling import fixed_point as acceleration
+from rigdesign.coupling.fixed_point import (
+    Acceleration,
+    Anderson,
+    PlainRelaxation,
+    Residual,
+    ScaledTolerance,
+    numbering,
+    ordered,
+    scaled,
+    scaled_change,
+    unscaled,
+)
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.coupling.state_vector import numbering, ordered, scaled, scaled_change, unscaled
 
 MATRIX = np.array([[0.9, 0.3, 0.0], [0.0, -0.7, 0.2], [0.1, 0.0, 0.5]])
 OFFSET = np.array([30.0, 60.0, 20.0])

@@ -14,8 +14,8 @@ from dynamics.bearing.journal_feed import FEEDS
 from dynamics.bearing.journal_lateral import journal_lateral
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, LateralOperation, OilSupply
 from rigdesign.case import load_case
-from rigdesign.case.bearing_place import BearingPlace
 from rigdesign.case.bearings import JournalBearingInput
+from rigdesign.case.rolling_bearing import BearingPlace
 from rigdesign.checks import films, ramp
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import IterationParts, PointProblem, run_iteration

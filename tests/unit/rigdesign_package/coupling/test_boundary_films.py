@@ -9,18 +9,17 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
 from thermal.conditions.boundary import Exchange, Film, SurfaceSource
 from thermal.films.law import FilmCoefficient
-from thermal.housing.parametric_stations import seal_stations
+from thermal.housing.stations import seal_stations
 
 PROTOTYPE = CASES / "uhcf_prototype"
 BOUNDARY = "gearboxes.test.housing.boundary"

@@ -7,8 +7,9 @@ from typing import Any
 import pytest
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.coupling import acceleration, fixed_point, iteration, loop
-from rigdesign.coupling.relaxation import next_state
+from rigdesign.coupling import fixed_point, iteration, loop
+from rigdesign.coupling import fixed_point as acceleration
+from rigdesign.coupling.fixed_point import next_state
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.oil_supply import gear_oil
 from tests.builders.warm_prototype import base

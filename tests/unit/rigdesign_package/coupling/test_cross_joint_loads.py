@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_loads import bearing_loads
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.misalignment import coupling_forces, coupling_torques
 from rigdesign.coupling.time_run import held_points

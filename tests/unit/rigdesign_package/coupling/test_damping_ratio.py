@@ -7,7 +7,7 @@ import pytest
 
 from dynamics.drivetrain.modes import damping_audit
 from rigdesign.case import Case, load_case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.prediction.memoisation import Memoisation

@@ -11,7 +11,7 @@ from dynamics.losses.mesh_loss import RIVAL_POWER
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.checks import mesh_checks, of_other_law
-from rigdesign.coupling.dip import churning
+from rigdesign.coupling.flank_heat import churning
 from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points

@@ -12,16 +12,16 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.properties.materials import MATERIALS
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
 from thermal.conditions.boundary import Exchange, Film
 from thermal.films import convection
+from thermal.films.convection import RibArray
 from thermal.films.law import FilmCoefficient, FilmLaw
-from thermal.films.ribs import RibArray
 
 PROTOTYPE = CASES / "uhcf_prototype" / "case.toml"
 BOUNDARY = "gearboxes.test.housing.boundary"

@@ -10,14 +10,13 @@ from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
-from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
+from rigdesign.coupling.iteration import IterationResult, PointProblem, initial_state, run_iteration
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import mesh_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
-from rigdesign.records.heat_split import friction_heat, heat_splits
+from rigdesign.records.housing import friction_heat, heat_splits
 from rigdesign.results.rows.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.oil_supply import ChamberOil

@@ -9,12 +9,10 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, respond
-from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.point_losses import given_power
+from rigdesign.coupling.placed_loss import PlacedLoss, drag_shafts, drag_torques, given_power
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

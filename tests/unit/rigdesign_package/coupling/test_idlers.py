@@ -12,15 +12,14 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.braced_loop import shifted_gear
-from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.iteration import PointProblem, run_iteration
+from rigdesign.coupling.fixed_point import next_state
+from rigdesign.coupling.iteration import PointProblem, initial_state, run_iteration
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.point_losses import PointLosses
-from rigdesign.coupling.relaxation import next_state
+from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
-from rigdesign.rig.loop_forces import loop_forces
+from rigdesign.rig.drivetrain import loop_forces
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.idler_case import idler_case
 from tests.builders.shaft_weight import GRAVITY, shaft_weight

@@ -7,10 +7,9 @@ import pytest
 
 from dynamics.errors import DynamicsNotConverged
 from rigdesign.checks.law_ranges import loss_findings
-from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import oil_jets
-from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.placed_loss import PlacedLoss, drag_torques
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.housing import cooling_balance

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.losses import chamber_mist, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.placed_loss import PlacedLoss

@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.flank.axes import PARALLEL
+from dynamics.flank.field import PARALLEL
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.pair_gap import PairGap
 from rigdesign.case.loader import load_case
-from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.mesh_axes import axes_in_mesh
+from rigdesign.coupling.alignment import axes_in_mesh
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig

@@ -11,7 +11,7 @@ import pytest
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.alignment import coupled_ends, coupling_places
 from rigdesign.coupling.bearing_loads import bearing_loads
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.misalignment import reactions, standing_load, warm_misalignment
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points

@@ -10,9 +10,8 @@ from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.flank_heat import gear_flanks
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import OilStream, heater_and_cooler, oil_streams
-from rigdesign.coupling.point_losses import PointLosses
-from rigdesign.properties.oil import FVA_3, MIL_PRF_23699
-from rigdesign.properties.oil_mixing import Portion, mixed
+from rigdesign.coupling.placed_loss import PointLosses
+from rigdesign.properties.oil import FVA_3, MIL_PRF_23699, Portion, mixed
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, gear_oil
 from rigdesign.transient.oil import BEARING_OIL, GEAR_OIL, oil_conditions

@@ -4,7 +4,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.coupling.expansion import uniform_expansion
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import warm_pair
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig

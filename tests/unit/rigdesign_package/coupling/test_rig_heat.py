@@ -10,14 +10,14 @@ from rigdesign.case import load_case
 from rigdesign.checks.oil import checks as oil_checks
 from rigdesign.checks.rig_heat import checks as room_checks
 from rigdesign.coupling.loop import PointResult, solve_point
-from rigdesign.coupling.rig_heat import demand_loss_maps, drive_heat
+from rigdesign.coupling.oil_circuits import demand_loss_maps, drive_heat
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.rows.rig import circuit_rows, rig_heat_row
+from rigdesign.results.rows.housing import circuit_rows, rig_heat_row
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig_heat.coupling_windage import CouplingRotor, coupling_windage
+from rigdesign.rig_heat.component import CouplingRotor, coupling_windage
 from rigdesign.rig_heat.room import room_balance
 from tests.builders.oil_circuit import PLANT, ZERO
 from tests.builders.rig_heat import ROOM, TRANSMISSION, loss_map

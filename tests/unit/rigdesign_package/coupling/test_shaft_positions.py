@@ -6,9 +6,8 @@ import pytest
 from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
 from rigdesign import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loop_system import bearing_coefficients
-from rigdesign.coupling.shaft_positions import mesh_placements
+from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.loop_system import bearing_coefficients, mesh_placements
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.static_cycle import static_cycle
+from dynamics.mesh.force import static_cycle
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.coupling.point_losses import STORED
+from rigdesign.coupling.placed_loss import STORED
 from rigdesign.prediction.places import place_weights
 from rigdesign.records.housing import cooling_balance
 from rigdesign.run.warnings import _warming
 from rigdesign.transient.heating import Heating
-from rigdesign.transient.housing_history import BranchPlan, Marching, march
 from rigdesign.transient.phases import Knot, Phase
+from rigdesign.transient.thermal_history import BranchPlan, Marching, march
 from tests.builders.two_blocks import CONDUCTIVITY, conditions, two_blocks
 from tests.builders.warm_prototype import Settled, base, case_with, heat_by_kind, open_share, outlet, settled
 from thermal.conditions.boundary import ConditionError, Film

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from rigdesign.diagnosis.statistics.close_modes import CloseModes
+from rigdesign.diagnosis.statistics.resonance import CloseModes
 
 
 def changes(stiffness: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

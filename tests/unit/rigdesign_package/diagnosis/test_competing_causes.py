@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.competing_causes import RIVALS, compared, credible_places, leading, mass_at
-from rigdesign.diagnosis.decision.unmodelled_words import place_of
+from rigdesign.diagnosis.decision.naming import place_of
+from rigdesign.diagnosis.decision.proposals import RIVALS, compared, credible_places, leading, mass_at
 from rigdesign.diagnosis.decision.workflow import Diagnosis
 from rigdesign.diagnosis.document.advice import headline, steps
 from rigdesign.diagnosis.document.outcome import outcome

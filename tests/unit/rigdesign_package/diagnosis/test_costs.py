@@ -4,8 +4,7 @@ from typing import get_args
 
 import pytest
 
-from rigdesign.diagnosis.library.candidates import NOISE
-from rigdesign.diagnosis.library.costs import USUAL_COST, Costs
+from rigdesign.diagnosis.library.candidates import NOISE, USUAL_COST, Costs
 from rigdesign.measurement.reading.document import ExtraPoint
 from rigdesign.prediction.model import Quantity
 

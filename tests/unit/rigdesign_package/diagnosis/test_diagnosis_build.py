@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.catalogue.families import DAMPING, TOOTH
+from rigdesign.diagnosis.catalogue.effects import DAMPING, TOOTH, Effect, Parameter
 from rigdesign.diagnosis.library.build import _responses, _together, run_places
 from rigdesign.diagnosis.library.cache import Parts
 

@@ -13,8 +13,8 @@ from rigdesign.diagnosis.library import cache
 from rigdesign.diagnosis.library.cache import Parts, library_of
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.prediction import OWN_MODEL, TORSIONAL
-from rigdesign.rig import influence_store
-from rigdesign.rig.influence_store import InfluenceStore
+from rigdesign.rig import tooth_influence as influence_store
+from rigdesign.rig.tooth_influence import InfluenceStore
 from tests.builders.corruption import damages
 from tests.builders.diagnosis import story, the_case
 from tests.builders.influence import invented_numbers, small_model

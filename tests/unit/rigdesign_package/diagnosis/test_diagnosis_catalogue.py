@@ -7,9 +7,10 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue import effects_of, families, registry
-from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.catalogue.entries import UncertainValue
+from rigdesign.diagnosis.catalogue import effects as families
+from rigdesign.diagnosis.catalogue import effects as registry
+from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.catalogue.effects import Effect, UncertainValue
 from rigdesign.diagnosis.catalogue.waiting import WAITING
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from tests.builders.effects_page import effects_page

@@ -10,10 +10,9 @@ from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import load_case
 from rigdesign.cli.terminal.diagnosis import print_diagnosis
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.decision.claims import _group
+from rigdesign.diagnosis.decision.claims import Traces, _group
 from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.proof import FullRun, Proof
-from rigdesign.diagnosis.decision.traces import Traces
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome
@@ -23,7 +22,7 @@ from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.prediction import MEASURED_AGAINST, Channel, OperatingCondition
-from rigdesign.prediction.changes import changed_case
+from rigdesign.prediction.model import changed_case
 from rigdesign.prediction.predict import predict
 from rigdesign.report.pages.diagnosis import diagnosis_page
 from tests.builders.diagnosis import DESIGN, Rig, rerun, result_of, story, the_case, write_set

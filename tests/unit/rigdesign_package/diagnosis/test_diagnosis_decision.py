@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.decision import changes_of_the_circuit, decide
-from rigdesign.diagnosis.decision.evaluate import _added
-from rigdesign.diagnosis.decision.posterior import posterior
-from rigdesign.diagnosis.decision.unmodelled_words import in_words
-from rigdesign.diagnosis.decision.verdict import Candidates, Thresholds, WhitenedSquare
+from rigdesign.diagnosis.decision.decision import changes_of_the_circuit, decide, posterior
+from rigdesign.diagnosis.decision.defaults import Candidates, Thresholds, WhitenedSquare
+from rigdesign.diagnosis.decision.naming import in_words
+from rigdesign.diagnosis.decision.search import _added
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 

@@ -23,8 +23,7 @@ from rigdesign.diagnosis.decision.proposals import (
 from rigdesign.diagnosis.document.advice import LARGEST_ODDS, certainty, headline, steps
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.document.outcome import check_pick, of_data, outcome
-from rigdesign.diagnosis.library.candidates import SPARE
-from rigdesign.diagnosis.library.costs import Costs
+from rigdesign.diagnosis.library.candidates import SPARE, Costs
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement.reading.measurement_set import DataFinding

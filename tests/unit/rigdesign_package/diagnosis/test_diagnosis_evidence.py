@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Explanations, evaluate
-from rigdesign.diagnosis.decision.verdict import Thresholds
+from rigdesign.diagnosis.decision.defaults import Thresholds
+from rigdesign.diagnosis.decision.search import Criteria, Earlier, Explanations, evaluate
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Release, Whitened
 from rigdesign.diagnosis.statistics.evidence import (

@@ -5,16 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.catalogue.families import FILM
+from rigdesign.diagnosis.catalogue.effects import FILM, Effect, Parameter
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual import residual_problem as problems
 from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis, support
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
-from rigdesign.diagnosis.statistics.support import support
 from rigdesign.prediction.model import Channel, OperatingCondition, features_of
 from tests.blind.covariance_inflation import INFLATE_ABOVE, LARGEST, inflate
 from tests.builders.diagnosis import DESIGN, story

@@ -9,8 +9,7 @@ from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.library.build import run_places
 from rigdesign.diagnosis.residual.sensors import LAG, LARGEST_LAG, Stated, sensor_errors
-from rigdesign.prediction.changes import changed_case
-from rigdesign.prediction.model import Channel
+from rigdesign.prediction.model import Channel, changed_case
 from tests.builders import diagnosis as builder
 from tests.builders.paths import CASES
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.statistics.model_error import ModelError
+from rigdesign.diagnosis.statistics.columns import ModelError
 from rigdesign.prediction.model import Feature
 
 PARTS = [(order, part) for order in (27.0, 28.0) for part in ("real", "imaginary")]

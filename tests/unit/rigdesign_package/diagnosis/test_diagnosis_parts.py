@@ -5,23 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.catalogue.families import LOSS
-from rigdesign.diagnosis.decision.constants import constants
+from rigdesign.diagnosis.catalogue.effects import LOSS, Effect, Parameter
+from rigdesign.diagnosis.decision.patch import constants
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.diagnosis.residual.calibration import fit_amplitudes
-from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
-from rigdesign.diagnosis.statistics.columns import Column
-from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.residual.baseline import fit_amplitudes
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes, Group, group_misfit
+from rigdesign.diagnosis.statistics.columns import Column, Turning
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened, reject
 from rigdesign.diagnosis.statistics.detectability import aliases, detectabilities
 from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
 from rigdesign.diagnosis.statistics.intervals import fit_together
-from rigdesign.diagnosis.statistics.marginal_likelihood import Group, group_misfit
 from rigdesign.diagnosis.statistics.next_measurement import Foreseen, Proposal, Rival, ranked, smallest_set
-from rigdesign.diagnosis.statistics.outliers import reject
-from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition, features_of
 
 

@@ -16,7 +16,7 @@ from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.decision.patch import Fitted, case_patch, patched_title, patched_values, variant_text
 from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome
-from rigdesign.prediction.changes import changed_case
+from rigdesign.prediction.model import changed_case
 from rigdesign.report.diagnosis_files import write_diagnosis
 from tests.builders.diagnosis import CASE, story, the_case
 

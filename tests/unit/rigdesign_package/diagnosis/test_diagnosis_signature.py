@@ -5,12 +5,11 @@ import pytest
 from scipy.special import logsumexp
 
 from rigdesign.diagnosis.residual.signature import SHARES, Contest, Signature
-from rigdesign.diagnosis.statistics.close_modes import CloseModes
-from rigdesign.diagnosis.statistics.columns import Column
+from rigdesign.diagnosis.statistics.columns import Column, ModelError
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis, evaluate_pair
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
-from rigdesign.diagnosis.statistics.model_error import ModelError
+from rigdesign.diagnosis.statistics.resonance import CloseModes
 from rigdesign.prediction.model import Feature
 
 POINTS = 8

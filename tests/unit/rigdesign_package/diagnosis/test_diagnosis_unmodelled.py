@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.residual.unmodelled_cause import heats, unmodelled_causes
+from rigdesign.diagnosis.residual.hypotheses import heats, unmodelled_causes
 from tests.builders.diagnosis import story
 
 STREAM = "test.gear_oil"

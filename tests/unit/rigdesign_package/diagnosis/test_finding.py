@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.posterior import posterior
-from rigdesign.diagnosis.decision.verdict import Thresholds
+from rigdesign.diagnosis.decision.decision import posterior
+from rigdesign.diagnosis.decision.defaults import Thresholds
 from rigdesign.diagnosis.decision.workflow import _overruled
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis

@@ -6,9 +6,8 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.library.build import _reaches
-from rigdesign.diagnosis.residual.gauge_modes import gauge_rows, mode_columns, shapes_over
-from rigdesign.prediction.changes import changed_case
-from rigdesign.prediction.model import Channel, OperatingCondition, features_of
+from rigdesign.diagnosis.residual.healthy import gauge_rows, mode_columns, shapes_over
+from rigdesign.prediction.model import Channel, OperatingCondition, changed_case, features_of
 from tests.builders.paths import CASES
 
 FACE = {"i": -8e-3, "ii": -4e-3, "iv": 4e-3, "v": 8e-3}

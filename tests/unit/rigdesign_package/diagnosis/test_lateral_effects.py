@@ -9,16 +9,15 @@ import pytest
 from rigdesign.case import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.prediction.changes import changed_case
 from rigdesign.prediction.model import (
     MEASURED_AGAINST,
     OWN_MODEL,
     Channel,
     OperatingCondition,
+    changed_case,
     measured_against,
 )
-from rigdesign.prediction.predict import predict
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor, predict
 from tests.builders.order import shipped
 
 TORQUE = Channel(name="M", quantity="torque", place="wheel_side", orders=(0.0, 1.0))

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.evaluate import Explanations
-from rigdesign.diagnosis.decision.other_domain import WIDE, OtherDomain
+from rigdesign.diagnosis.decision.search import WIDE, Explanations, OtherDomain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis, evaluate_pair
 from rigdesign.diagnosis.statistics.hypothesis import Hypothesis

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.statistics.required_size import ResidualMetric, straight
+from rigdesign.diagnosis.statistics.detectability import ResidualMetric, straight
 
 NOISE = np.diag([0.1, 0.1]) ** 2
 GAP = np.array([0.0, -2.0])

@@ -13,8 +13,7 @@ from rigdesign.base.errors import MeasurementError, UsageError
 from rigdesign.diagnosis.decision.defaults import DEFAULT
 from rigdesign.diagnosis.decision.problem import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
-from rigdesign.diagnosis.residual.baseline import Change, Drift
-from rigdesign.diagnosis.residual.calibration import fit_drift
+from rigdesign.diagnosis.residual.baseline import Change, Drift, fit_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.rig_calibration import healthy_sets
 from rigdesign.diagnosis.rig_calibration.estimate import (
@@ -24,10 +23,14 @@ from rigdesign.diagnosis.rig_calibration.estimate import (
     spread_of_sets,
     with_values,
 )
-from rigdesign.diagnosis.rig_calibration.healthy_sets import calibrate_rig
-from rigdesign.diagnosis.rig_calibration.leave_one_out import QUIET, HealthySet, leave_one_out, odd_sets
-from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
-from rigdesign.diagnosis.statistics.marginal_likelihood import PRIOR, Group, fit
+from rigdesign.diagnosis.rig_calibration.healthy_sets import (
+    QUIET,
+    HealthySet,
+    calibrate_rig,
+    leave_one_out,
+    odd_sets,
+)
+from rigdesign.diagnosis.statistics.amplitudes import PRIOR, Amplitudes, Group, fit
 from tests.builders.diagnosis import Rig, result_of, story, the_case, write_set
 
 STILL = Drift(shared=0.0, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0, sensors=0.0, constants=0.0)

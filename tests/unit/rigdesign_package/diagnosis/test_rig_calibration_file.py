@@ -22,11 +22,10 @@ from rigdesign.diagnosis.document.advice import steps
 from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome
 from rigdesign.diagnosis.rig_calibration import healthy_sets
-from rigdesign.diagnosis.rig_calibration.document import calibration_document
+from rigdesign.diagnosis.rig_calibration.document import calibration_document, load_rig_calibration
 from rigdesign.diagnosis.rig_calibration.healthy_sets import RigCalibration, calibrate_rig
-from rigdesign.diagnosis.rig_calibration.reading import load_rig_calibration
+from rigdesign.report.diagnosis_files import write_rig_calibration
 from rigdesign.report.pages.diagnosis import diagnosis_page
-from rigdesign.report.rig_calibration_files import write_rig_calibration
 from tests.builders.diagnosis import CASE, Rig, result_of, story, the_case, write_set
 from tests.builders.paths import CASES
 

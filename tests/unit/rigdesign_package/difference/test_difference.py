@@ -8,13 +8,12 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
-from rigdesign.case.inputs import InputRow
+from rigdesign.case.provenance import InputRow
 from rigdesign.cli.ending import exit_status
 from rigdesign.cli.main import app
 from rigdesign.cli.terminal.difference import print_difference
 from rigdesign.difference.document import difference_document, headline, results_difference
-from rigdesign.difference.inputs import InputValue, changed_inputs, same_value
-from rigdesign.difference.reading import read_results
+from rigdesign.difference.reading import InputValue, changed_inputs, read_results, same_value
 from rigdesign.report import results_document
 from rigdesign.report.numbers import change_text, quantity_texts
 from rigdesign.report.pages.difference import write_difference

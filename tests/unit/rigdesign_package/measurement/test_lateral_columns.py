@@ -9,7 +9,7 @@ from rigdesign.base.errors import MeasurementError
 from rigdesign.case import Case
 from rigdesign.diagnosis.document.outcome import of_data
 from rigdesign.measurement import features, load_measurement
-from rigdesign.measurement.reading.directions import AXES, direction_of, direction_text
+from rigdesign.measurement.reading.columns import AXES, direction_of, direction_text
 from rigdesign.prediction.model import Feature
 from tests.builders.measurement import replaced
 from tests.builders.order import shipped

@@ -10,9 +10,14 @@ import pytest
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
 from rigdesign.measurement import features, load_measurement
-from rigdesign.measurement.comparison import comparing
-from rigdesign.measurement.comparison.compare import Comparison, compare, comparison_document, headline
-from rigdesign.measurement.comparison.comparing import compare_measurement
+from rigdesign.measurement.comparison import compare as comparing
+from rigdesign.measurement.comparison.compare import (
+    Comparison,
+    compare,
+    compare_measurement,
+    comparison_document,
+    headline,
+)
 from rigdesign.measurement.processing.baseline import HealthySet, foretold
 from rigdesign.measurement.quantities import CHANNELS, to_si
 from rigdesign.prediction import Feature, Prediction, features_of

@@ -9,7 +9,7 @@ from rigdesign.measurement import features, load_measurement
 from rigdesign.prediction.model import Feature
 from rigdesign.prediction.readings import StrainCurve
 from rigdesign.rig.model import build_rig
-from rigdesign.strain_gauge.curve_windows import curve_windows
+from rigdesign.strain_gauge.turn_average import curve_windows
 from tests.builders.root_gauges import CASE, GAUGES, Chain, conditions, write_recordings
 
 PITCH = 2.0 * np.pi / 18

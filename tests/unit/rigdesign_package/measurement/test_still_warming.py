@@ -8,7 +8,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.measurement import load_measurement
 from rigdesign.measurement.processing.features import features
-from rigdesign.measurement.quality.still_warming import LEAST, rates
+from rigdesign.measurement.quality.checks import LEAST, rates
 from rigdesign.prediction.model import Feature
 from tests.builders.measurement import write_set
 from tests.builders.paths import CASES

@@ -9,9 +9,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rigdesign.base.errors import CaseError
-from rigdesign.oil_circuit.cooler import TankCooler
-from rigdesign.oil_circuit.heat_content import HeatContent, enthalpy, temperature_at
-from rigdesign.oil_circuit.parts import Consumer, Heater, Pipe, Pump, Tank
+from rigdesign.oil_circuit.parts import (
+    Consumer,
+    HeatContent,
+    Heater,
+    Pipe,
+    Pump,
+    Tank,
+    TankCooler,
+    enthalpy,
+    temperature_at,
+)
 from rigdesign.properties.oil import FVA_3, OILS, oil_outlet
 from tests.builders.oil_circuit import LITRE_A_MINUTE, TANK, ZERO, circuit, cooler, line
 

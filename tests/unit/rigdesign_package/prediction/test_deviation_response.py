@@ -5,11 +5,10 @@ import pytest
 
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.orders.deviation_response import DeviationResponse, OrderTorque, _Mixing
-from dynamics.orders.tooth_excitation import Motion, excitation, pair_sensitivity, tooth_pattern
+from dynamics.orders.hill_system import Motion, excitation, pair_sensitivity, tooth_pattern
 from rigdesign.base.errors import UsageError
-from rigdesign.prediction.exact_orders import ExactMotion
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.order_motion import ideal_response
+from rigdesign.prediction.order_motion import ExactMotion, ideal_response
 from rigdesign.prediction.orders import PointOrders, shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.builders.order import changed, channels, settled

@@ -8,12 +8,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.lateral import Orbit, line_whirls, orbit, reduced_line_loads, whirl_at
+from dynamics.elastic_rig.damped_modes import Orbit, line_whirls, orbit, reduced_line_loads, whirl_at
 from dynamics.elastic_rig.running_state import RowSpring, RunningState, isotropic_bearing
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.braced_loop import LoadedCircuit
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.state import OperatingPoint
+from rigdesign.prediction.full import modelled_rig
 from rigdesign.prediction.model import (
     OWN_MODEL,
     TORSIONAL,
@@ -22,7 +23,6 @@ from rigdesign.prediction.model import (
     Quantity,
     measured_against,
 )
-from rigdesign.prediction.operating import modelled_rig
 from rigdesign.prediction.orders import Orders, shaft_orders
 from rigdesign.prediction.predict import predict
 from rigdesign.records.lateral import lateral_vibration

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigdesign.case.loader import load_case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.memoisation import Memoisation, shape_key
 from rigdesign.rig.model import Rig, build_rig

@@ -9,8 +9,7 @@ import pytest
 from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import changed_together, load_case
 from rigdesign.prediction import OWN_MODEL, TORSIONAL, Channel, OperatingCondition
-from rigdesign.prediction.predict import predict
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor, predict
 from tests.builders.fzg_case import HELD, fzg_case
 from tests.builders.paths import CASES
 from tests.builders.warm_chambers import warm_chambers_case
@@ -84,7 +83,7 @@ BEYOND = {
 )
 def test_the_reduced_model_keeps_its_stated_error(request, circuit, changes):
     """Full solves with the coupling settled to 5 mK, under changes as large as a diagnosis seeks."""
-    from rigdesign.prediction.changes import changed_case
+    from rigdesign.prediction.model import changed_case
 
     predictor = request.getfixturevalue("twisting" if circuit is TORSIONAL else "predictor")
     tight = changed_together(changed_case(CASE, changes), TIGHT)

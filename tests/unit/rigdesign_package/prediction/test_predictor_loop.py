@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from rigdesign.case.loader import load_case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.prediction import OWN_MODEL, TORSIONAL, Channel, OperatingCondition
-from rigdesign.prediction.changes import changed_case
+from rigdesign.prediction.full import like, operating_point, rig_at
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.prediction.operating import like, operating_point, rig_at
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.model import changed_case
+from rigdesign.prediction.predict import Predictor
 from tests.builders.paths import CASES
 
 CASE = load_case(CASES / "loop_1to1")

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain import linear_system
-from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.linear_system import modal_form
 from rigdesign.case.loader import load_case
 from rigdesign.coupling import braced_loop
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.prediction import OWN_MODEL, Channel, OperatingCondition, memoisation
 from rigdesign.prediction.order_motion import ideal_response, is_ideal
-from rigdesign.prediction.oscillation import OscillatingPart
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import OscillatingPart, Predictor
 from tests.builders.paths import CASES
 
 CLOSE = 1e-4

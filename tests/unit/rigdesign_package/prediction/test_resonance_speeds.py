@@ -8,11 +8,10 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.state import OperatingPoint
+from rigdesign.prediction.full import modelled_rig
 from rigdesign.prediction.model import OWN_MODEL, TORSIONAL, Channel, OperatingCondition
-from rigdesign.prediction.operating import modelled_rig
-from rigdesign.prediction.predictor import Predictor
-from rigdesign.prediction.resonance_speeds import resonance_speed
-from rigdesign.prediction.static_tests import mode_frequency, standing_modes
+from rigdesign.prediction.predict import Predictor
+from rigdesign.prediction.static_tests import mode_frequency, resonance_speed, standing_modes
 from rigdesign.rig.model import Rig
 from tests.builders.order import shipped
 

@@ -5,8 +5,8 @@ import pytest
 from rigdesign.base.errors import UsageError
 from rigdesign.case import load_case
 from rigdesign.prediction import OperatingCondition
-from rigdesign.prediction.condition_steps import moved_conditions
-from rigdesign.prediction.operating import case_at
+from rigdesign.prediction.full import case_at
+from rigdesign.prediction.reduced_rig import moved_conditions
 from tests.builders.paths import CASES
 
 CASE = load_case(CASES / "fzg")

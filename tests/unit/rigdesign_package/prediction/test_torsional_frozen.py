@@ -5,8 +5,7 @@ import pytest
 
 from rigdesign.case.loader import load_case
 from rigdesign.prediction import TORSIONAL, Channel, OperatingCondition
-from rigdesign.prediction.predict import predict
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.predict import Predictor, predict
 from tests.builders.paths import CASES
 from tests.builders.undamped_shafts import undamped_shafts
 

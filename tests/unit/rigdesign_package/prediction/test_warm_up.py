@@ -6,8 +6,8 @@ import pytest
 from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import load_case
 from rigdesign.prediction import Channel, OperatingCondition
-from rigdesign.prediction.changes import changed_case
-from rigdesign.prediction.predictor import Predictor
+from rigdesign.prediction.model import changed_case
+from rigdesign.prediction.predict import Predictor
 from rigdesign.prediction.readings import rate_rows
 from tests.builders.paths import CASES
 

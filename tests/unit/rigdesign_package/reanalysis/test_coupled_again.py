@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case.loader import changed_together
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.time_run import held_points
 from rigdesign.reanalysis import modified_rig
 from rigdesign.rig.model import Rig, build_rig

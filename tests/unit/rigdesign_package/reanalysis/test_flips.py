@@ -11,8 +11,7 @@ from rigdesign.reanalysis.flips import Search, with_flips
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.report.flips import searched
 from rigdesign.results.check import Check, Checks
-from rigdesign.results.flips import FlipSearch
-from rigdesign.results.result import RunResult
+from rigdesign.results.result import FlipSearch, RunResult
 from tests.builders.checks import check
 from tests.builders.report import make_result
 

@@ -8,15 +8,14 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
-from dynamics.flank.axes import PARALLEL
+from dynamics.flank.field import PARALLEL
 from rigdesign.case import load_case
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.rotation import helix_hands, last_end, pinion_sense
-from rigdesign.coupling.alignment import AxisAngles, axis_deviation
+from rigdesign.coupling.alignment import AxisAngles, axis_deviation, misalignment
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.mesh_axes import misalignment
 from rigdesign.records import loaded_contact
-from rigdesign.records.contact_gap import held_flanks, warm_axes
+from rigdesign.records.loaded_contact import held_flanks, warm_axes
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base
 

@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.bearing.lateral import constant_coefficients
+from dynamics.bearing.protocol import constant_coefficients
 from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.mesh_rows import mesh_ports
 from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig
-from dynamics.response.event_channels import Channel, Watched
+from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
+from dynamics.response.event_march import Channel, Watched
 from dynamics.response.march_inputs import DriveState
 from rigdesign.case import load_case
 from rigdesign.records.events import journal_channels, largest_travels, travel_warnings

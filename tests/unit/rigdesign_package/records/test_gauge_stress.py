@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.root_course import root_course
+from dynamics.contact.root_field import root_course
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
-from rigdesign.coupling.microgeometry import mesh_microgeometry
-from rigdesign.records.gauge_stress import ElasticGear, gauge_stresses
+from rigdesign.coupling.mesh_models import mesh_microgeometry
+from rigdesign.records.loaded_contact import ElasticGear, gauge_stresses
 from rigdesign.rig.model import Rig, build_rig
 from tests.published.p1_contact import coarse, cycle_at, elastic_contact, elastic_gears
 

@@ -2,8 +2,7 @@
 
 import pytest
 
-from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.rig_heat import HeatSource, RigHeat
+from rigdesign.results.housing import CoolingBalance, HeatSource, RigHeat
 from rigdesign.results.rows.housing import cooling_row
 
 

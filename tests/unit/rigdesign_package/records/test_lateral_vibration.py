@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.lateral import rig_modes
+from dynamics.elastic_rig.damped_modes import rig_modes
 from dynamics.elastic_rig.layout import HousingSupport, isotropic_support
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points

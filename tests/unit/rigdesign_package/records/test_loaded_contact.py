@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.flank.axes import AxisMisalignment
+from dynamics.flank.field import AxisMisalignment
+from dynamics.influence.elastic_segment import GearModel
 from dynamics.influence.gear_body import SectionDivision
-from dynamics.influence.gear_model import GearModel
 from rigdesign.records import root
 from rigdesign.records.gear_loads import COMPUTED, STATED, rated_loads
 from rigdesign.records.loaded_contact import held_contact, loaded_contact
@@ -20,8 +20,8 @@ from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.rows.teeth import loaded_contact_row
 from rigdesign.results.teeth import LoadedContact
 from rigdesign.rig import tooth_influence
-from rigdesign.rig.influence_store import InfluenceStore
 from rigdesign.rig.model import Rig
+from rigdesign.rig.tooth_influence import InfluenceStore
 from tests.builders.warm_prototype import base
 
 pytestmark = pytest.mark.whole_run

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from dynamics.rating.mean_stress import GearDisc, PressFit, Solid, seat_pressure
+from dynamics.rating.root_stress import GearDisc, PressFit, Solid, seat_pressure
 from rigdesign.records.press_fits import slip_torque
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)

@@ -13,7 +13,7 @@ from rigdesign.case import load_case
 from rigdesign.records import start_torque as module
 from rigdesign.records.dwell_speeds import RampLimits, SpeedLimit, ramp_steps, speed_limit
 from rigdesign.records.near_dwell import NearDwell
-from rigdesign.records.resonance_bands import bands, safe_windows
+from rigdesign.records.resonances import bands, safe_windows
 from rigdesign.records.start_torque import StagePeak, StartResponse, first_speed, start_torque, worst_start
 from rigdesign.results.vibration import AvoidedResonance, RampStep
 from rigdesign.rig.model import Rig, build_rig

@@ -11,10 +11,10 @@ import pytest
 
 from rigdesign.checks import dynamics
 from rigdesign.checks.dwell_speeds import checks
-from rigdesign.records.contact_in_motion import pair_shares
 from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.dynamics import SolvedLoads, _SolvedMesh
+from rigdesign.records.dynamics_section import pair_shares
 from rigdesign.records.near_dwell import near_dwells
 from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig

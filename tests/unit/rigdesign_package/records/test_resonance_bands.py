@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.records.resonance_bands import DynamicShare, bands, nearest_safe, resonances, safe_windows
+from rigdesign.records.resonances import DynamicShare, bands, nearest_safe, resonances, safe_windows
 from rigdesign.results.vibration import AvoidedResonance
 
 LIMIT, MARGIN = 0.2, 0.1

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact.tooth_turn import ToothTurn
+from dynamics.contact.root_field import ToothTurn
 from dynamics.rating.iso_rating import permissible_factors, transverse_load_factor
-from dynamics.rating.mean_stress import MeanRootStress
+from dynamics.rating.root_stress import MeanRootStress
 from dynamics.standards import iso6336_3_2006 as iso
 from rigdesign.case import load_case
 from rigdesign.checks import strength

@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from dynamics.drivetrain.graph import TorqueSection
 from dynamics.drivetrain.shaft import Section
-from dynamics.drivetrain.twist_rows import TorqueSection
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.run_torques import run_torques

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign.coupling.twist_rows import twist_rows_of
+from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.records.curves import Curves, curve_at
 from rigdesign.records.loop_states import chosen
 from rigdesign.records.section_torques import section_torque_record

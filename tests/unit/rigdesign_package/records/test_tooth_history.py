@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact.root_course import RootCourse
-from dynamics.contact.tooth_turn import ToothTurn, pitches_apart
-from dynamics.rating.mean_stress import mean_stress_factor
+from dynamics.contact.root_field import RootCourse, ToothTurn, pitches_apart
+from dynamics.rating.root_stress import mean_stress_factor
 from rigdesign.case import load_case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, mesh_model
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records import reversed_bending, root, tooth_history
+from rigdesign.records import root, tooth_history
+from rigdesign.records import tooth_history as reversed_bending
 from rigdesign.records.tooth_history import GearInMesh, gear_meshes, tooth_histories
 from rigdesign.report.figures.teeth import tooth_history_figure
 from rigdesign.results.rows.teeth import tooth_history_row

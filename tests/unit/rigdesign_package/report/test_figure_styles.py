@@ -11,10 +11,10 @@ from matplotlib.text import Text
 from rigdesign.report.figures import dynamics as dynamics_figures
 from rigdesign.report.figures import heat
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, stated_quantity, words
-from rigdesign.report.figures.ramp import ramp_figure
+from rigdesign.report.figures.dynamics import ramp_figure
 from rigdesign.report.figures.seals import seal_gap_figure
-from rigdesign.report.figures.spectra import waterfall_figure
 from rigdesign.report.figures.teeth import pair_share_figure
+from rigdesign.report.figures.vibration import waterfall_figure
 from rigdesign.report.numbers import NARROW_SPACE, unit_text
 from rigdesign.report.palette import curve_style, gearbox_colours
 from rigdesign.report.sections.section import gearbox_styles

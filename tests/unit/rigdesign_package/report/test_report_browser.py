@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.report.pages.report import report_html
-from rigdesign.results.flips import Flip
+from rigdesign.results.result import Flip
 from tests.builders.browser import Browser, browser
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs

@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rigdesign.case import load_case
 from rigdesign.case.assumptions import AssumptionRecord
-from rigdesign.case.inputs import InputRow
+from rigdesign.case.provenance import InputRow
 from rigdesign.report import flips, reasons
 from rigdesign.report.assumption_groups import (
     assumption_groups,
@@ -16,15 +16,22 @@ from rigdesign.report.assumption_groups import (
     in_braces,
     most_influential,
 )
-from rigdesign.report.case_sheet import CaseSheet
-from rigdesign.report.drivetrain_sheets import bearing_sheet, joint_sheet, shaft_sheet
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.figures.schematic import phone_schematic_figure, rig_plan, schematic_figure
-from rigdesign.report.input_sheets import gear_sheets, material_sheet, oil_sheet
-from rigdesign.report.issue import Issue, signatures
+from rigdesign.report.input_sheets import (
+    CaseSheet,
+    Issue,
+    bearing_sheet,
+    gear_sheets,
+    joint_sheet,
+    material_sheet,
+    oil_sheet,
+    shaft_sheet,
+    signatures,
+)
 from rigdesign.report.pages.report import css_string, report_html
 from rigdesign.results.check import Checks
-from rigdesign.results.flips import Flip
+from rigdesign.results.result import Flip
 from tests.builders.paths import CASES
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs
@@ -202,7 +209,7 @@ def test_coupled_shafts_lie_on_one_level_and_mates_next_to_each_other():
 def test_idler_between_two_wheels_is_in_the_middle():
     gears = {name: {"shaft": name, "teeth": 20} for name in ("pinion", "a", "b")}
     meshes = {"a": {"pinion": "pinion", "wheel": "a"}, "b": {"pinion": "pinion", "wheel": "b"}}
-    from rigdesign.case.inputs import input_rows
+    from rigdesign.case.provenance import input_rows
 
     plan = rig_plan(
         CaseSheet.of(list(input_rows({"gearboxes": {"one": {"gears": gears, "meshes": meshes}}})))
@@ -330,7 +337,7 @@ def test_the_gear_sheet_has_the_computed_sizes_drawn_and_warm():
 
 
 def test_equal_gear_pairs_share_a_sheet():
-    from rigdesign.case.inputs import input_rows
+    from rigdesign.case.provenance import input_rows
 
     gears = {name: {"shaft": name, "teeth": 45} for name in ("pinion", "a", "b")}
     meshes = {key: {"pinion": "pinion", "wheel": key, "normal_module": "5 mm"} for key in ("a", "b")}

@@ -11,8 +11,7 @@ import pytest
 
 from rigdesign.report import numbers, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
-from rigdesign.report.figures.dynamics import dynamic_factor_figure
-from rigdesign.report.figures.ramp import stage_spans
+from rigdesign.report.figures.dynamics import dynamic_factor_figure, stage_spans
 from rigdesign.report.pages.report import report_html, signs, symbol
 from rigdesign.results.result import Finding, MeshShift
 from tests.builders.report import checks, gearbox_field, make_check, make_result

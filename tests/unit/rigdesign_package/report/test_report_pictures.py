@@ -7,20 +7,22 @@ import numpy as np
 import pytest
 
 from rigdesign.report.fields import write_field
-from rigdesign.report.figures import mesh_views
+from rigdesign.report.figures import field as mesh_views
 from rigdesign.report.figures.drawing import drawing_style
-from rigdesign.report.figures.field import DRAWN, MeshViews, field_pictures, magnification
-from rigdesign.report.figures.mesh_views import (
+from rigdesign.report.figures.field import (
+    DRAWN,
     SUB_TETRAHEDRA,
+    MeshViews,
     cut_mesh,
+    field_pictures,
+    magnification,
     shaft_axis_height,
     surface_triangles,
     view_outside,
 )
 from rigdesign.results.thermal import TemperatureField
 from tests.builders.report import gearbox_field, voxel_mesh
-from thermal.fe.mesh import NamedMesh, box_mesh
-from thermal.fe.numbering import Numbering, inverse
+from thermal.fe.mesh import NamedMesh, Numbering, box_mesh, inverse
 
 
 @pytest.fixture(scope="module")

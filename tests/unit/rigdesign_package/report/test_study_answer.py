@@ -8,8 +8,8 @@ from rigdesign.base.errors import UsageError
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.figures.study_samples import tornado_figure
 from rigdesign.report.margins.answer import slices, study_answer
-from rigdesign.report.margins.axis import input_name, study_axis, value_shown
 from rigdesign.report.margins.regions import region_map
+from rigdesign.report.margins.table import input_name, study_axis, value_shown
 from rigdesign.studies.result import Swing
 from rigdesign.studies.selection import CheckSelection
 from tests.builders.study_points import OIL, TORQUE, check_record, map_points, oil_points, point, study_of

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import UsageError
-from rigdesign.report.figures.drawing import drawing_style, new_figure
-from rigdesign.report.figures.margin_axes import margin_axis
+from rigdesign.report.figures.drawing import drawing_style, margin_axis, new_figure
 from rigdesign.results.result import Finding
 from rigdesign.studies.result import Crossing, PassProbability, SobolIndex, Swing
 from tests.builders.browser import browser  # noqa: F401 - a fixture

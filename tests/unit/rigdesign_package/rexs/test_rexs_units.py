@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from rigdesign.rexs.units import UNITS, RexsUnitError, rexs_unit, to_si
+from rigdesign.rexs.attribute_log import UNITS, RexsUnitError, rexs_unit, to_si
 
 
 @pytest.mark.parametrize(

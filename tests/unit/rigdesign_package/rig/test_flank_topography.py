@@ -11,7 +11,7 @@ from dynamics.flank.microgeometry import Microgeometry
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig

@@ -8,10 +8,9 @@ import pytest
 
 from dynamics.influence.gear_body import GearBody
 from rigdesign.base import parallel
-from rigdesign.base.file_lock import FileLock
-from rigdesign.rig import influence_store
-from rigdesign.rig.influence_store import InfluenceStore, identity
-from rigdesign.rig.tooth_influence import ToothInfluence, gear_model
+from rigdesign.base.output_folder import FileLock
+from rigdesign.rig import tooth_influence as influence_store
+from rigdesign.rig.tooth_influence import InfluenceStore, ToothInfluence, gear_model, identity
 from tests.builders.influence import invented_numbers, small_model
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 

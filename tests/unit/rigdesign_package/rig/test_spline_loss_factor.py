@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.drivetrain.speed_bands import SpeedBands
+from dynamics.drivetrain.linear_system import SpeedBands
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.loop_system import loop_system

@@ -7,10 +7,18 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.rig_heat.component import ROOM, ComponentHeat, HeatSplit, heat_by_sink
-from rigdesign.rig_heat.coupling_windage import CouplingRotor, coupling_windage
-from rigdesign.rig_heat.drive_train import Machine, drive_train_heat
-from rigdesign.rig_heat.machine_loss import EfficiencyLoss, LossMap
+from rigdesign.rig_heat.component import (
+    ROOM,
+    ComponentHeat,
+    CouplingRotor,
+    EfficiencyLoss,
+    HeatSplit,
+    LossMap,
+    Machine,
+    coupling_windage,
+    drive_train_heat,
+    heat_by_sink,
+)
 from rigdesign.rig_heat.room import Room, room_balance
 
 ZERO = 273.15

@@ -5,7 +5,7 @@ from typing import Any
 
 from rigdesign import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points

@@ -8,7 +8,7 @@ import pytest
 from rigdesign.base.errors import CaseError, MeasurementError
 from rigdesign.strain_gauge.bridge import ARMS, WIRES, Bridge
 from rigdesign.strain_gauge.gauge import StrainGauge, ThermalOutput
-from rigdesign.strain_gauge.surface_stress import SurfaceStress
+from rigdesign.strain_gauge.measuring_point import SurfaceStress
 from tests.builders.strain_gauge import STEEL, bridge, gauge, measuring_point
 
 STRAINS = np.linspace(-3000e-6, 3000e-6, 61)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.strain_gauge.curve_windows import curve_windows
+from rigdesign.strain_gauge.turn_average import curve_windows
 
 PITCH = 2.0 * np.pi / 18
 

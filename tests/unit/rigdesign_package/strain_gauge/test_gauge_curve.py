@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from dynamics.contact.root_course import RootCourse
+from dynamics.contact.root_field import RootCourse
 from rigdesign.base.errors import CaseError
 from rigdesign.report.figures.teeth import strain_gauge_figure
 from rigdesign.results.rows.teeth import gauge_stress_row
 from rigdesign.results.teeth import GaugeStress
-from rigdesign.strain_gauge.gauge_curve import gauge_curve
-from rigdesign.strain_gauge.placement import GaugePlacement, grid_average
+from rigdesign.strain_gauge.measuring_point import GaugePlacement, gauge_curve, grid_average
 from tests.builders.strain_gauge import measuring_point
 
 PLACES = np.linspace(-2.6e-3, 2.9e-3, 24)

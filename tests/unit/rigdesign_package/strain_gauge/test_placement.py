@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.strain_gauge.placement import GaugePlacement, StressField, grid_average, grid_weights
+from rigdesign.strain_gauge.measuring_point import GaugePlacement, StressField, grid_average, grid_weights
 from tests.builders.strain_gauge import gauge, measuring_point
 
 PLACED = GaugePlacement(face_position=3e-3, fillet_position=0.2e-3, misalignment=math.radians(15.0))

@@ -9,8 +9,13 @@ from rigdesign.base.errors import CaseError, MeasurementError
 from rigdesign.strain_gauge.gauge import ThermalOutput
 from rigdesign.strain_gauge.low_pass import LowPass
 from rigdesign.strain_gauge.measuring_point import StrainRecord
-from rigdesign.strain_gauge.rolling_angle import at_constant_speed, from_speed, turns_until_same_teeth
-from rigdesign.strain_gauge.turn_average import AngleGrid, turn_average
+from rigdesign.strain_gauge.turn_average import (
+    AngleGrid,
+    at_constant_speed,
+    from_speed,
+    turn_average,
+    turns_until_same_teeth,
+)
 from tests.builders.strain_evaluation import Evaluation, lost_in_low_pass, stress_over_angle
 from tests.builders.strain_gauge import (
     SPEED,

@@ -10,11 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.base.file_lock import FileLock
+from rigdesign.base.output_folder import FileLock
 from rigdesign.base.parallel import STOPS
 from rigdesign.cli import ending
-from rigdesign.studies.ledger import read_points
-from rigdesign.studies.shards import LEDGER_NAME, LOCK_NAME
+from rigdesign.studies.ledger import LEDGER_NAME, LOCK_NAME, read_points
 from tests.builders.paths import ROOT
 
 DRIVER = """
@@ -40,7 +39,7 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from rigdesign.base import parallel
-from rigdesign.base.file_lock import FileLock
+from rigdesign.base.output_folder import FileLock
 from rigdesign.base.parallel import STOPS
 from rigdesign.base.worker_pool import ProcessWorkers
 from rigdesign.cli import main as command

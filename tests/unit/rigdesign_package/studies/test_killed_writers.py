@@ -10,7 +10,7 @@ import pytest
 
 from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
-from rigdesign.studies.shards import LEDGER_NAME
+from rigdesign.studies.ledger import LEDGER_NAME
 from tests.builders.killed_writer import REFUSED, WRITTEN
 from tests.builders.output import attempts, held_against, published
 from tests.builders.report import small_result

@@ -9,10 +9,17 @@ from pathlib import Path
 import pytest
 
 from rigdesign.base.errors import OutputError, UsageError
-from rigdesign.base.file_lock import FileLock
+from rigdesign.base.output_folder import FileLock
 from rigdesign.studies.design import StudyDesign
-from rigdesign.studies.ledger import Ledger, read_points
-from rigdesign.studies.shards import FILES_LOCK, LOCK_NAME, START_LOCK, Shard, parse_shard
+from rigdesign.studies.ledger import (
+    FILES_LOCK,
+    LOCK_NAME,
+    START_LOCK,
+    Ledger,
+    Shard,
+    parse_shard,
+    read_points,
+)
 from tests.builders.paths import ROOT
 from tests.builders.study import InProcess, run_study
 from tests.builders.study_functions import CURVES, curves
@@ -73,7 +80,7 @@ DRIVER = """
 import sys
 sys.path.insert(0, {root!r})
 from pathlib import Path
-from rigdesign.studies.shards import parse_shard
+from rigdesign.studies.ledger import parse_shard
 from tests.builders.study import run_study
 from tests.builders.study_functions import CURVES, curves
 if __name__ == "__main__":

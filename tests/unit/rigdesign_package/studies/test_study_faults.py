@@ -12,9 +12,8 @@ import pytest
 
 from rigdesign.base import worker_pool
 from rigdesign.base.errors import OutputError
-from rigdesign.base.file_lock import FileLock, HeldError
-from rigdesign.base.output_folder import staged
-from rigdesign.studies.shards import LEDGER_NAME, LOCK_NAME
+from rigdesign.base.output_folder import FileLock, HeldError, staged
+from rigdesign.studies.ledger import LEDGER_NAME, LOCK_NAME
 from tests.builders.ledger_damage import (
     DAMAGE,
     POINTS,
@@ -104,7 +103,7 @@ HOLDER = """
 import sys, time
 sys.path.insert(0, {root!r})
 from pathlib import Path
-from rigdesign.base.file_lock import FileLock
+from rigdesign.base.output_folder import FileLock
 lock = FileLock(Path(sys.argv[1]))
 print("held", flush=True)
 time.sleep(60)

@@ -18,10 +18,9 @@ from rigdesign.results.check import Check
 from rigdesign.results.transient import Extreme, HistoryExtremes
 from rigdesign.rig.model import build_rig
 from rigdesign.transient.heating import blended
+from rigdesign.transient.oil import at_least
 from rigdesign.transient.phases import Phase, event_phases, running_phases, schedule_phases
-from rigdesign.transient.soak import first_broken, shortest, soak_of
-from rigdesign.transient.still_air import at_least
-from rigdesign.transient.warm_up import Soak
+from rigdesign.transient.soak import Soak, first_broken, shortest, soak_of
 from tests.builders.paths import CASES
 from tests.builders.two_blocks import law
 from thermal.conditions.boundary import BodySource, Film, SurfaceSource

@@ -9,9 +9,8 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.rig.model import build_rig
-from rigdesign.transient.housing_history import BranchPlan
 from rigdesign.transient.phases import schedule_phases
-from rigdesign.transient.thermal_history import _read
+from rigdesign.transient.thermal_history import BranchPlan, _read
 from tests.builders.paths import CASES
 
 BASE = (CASES / "uhcf_prototype" / "given_losses.toml").as_posix()

@@ -10,12 +10,11 @@ import pytest
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.reanalysis import modified_rig
-from rigdesign.reanalysis.affected_parts import PARTS, Part, parts_of
+from rigdesign.reanalysis.modified_rig import PARTS, Part, parts_of
 from rigdesign.reanalysis.reference import Reference
 from rigdesign.results.check import Check
 from rigdesign.run.main import run_case
-from rigdesign.uncertainty.plan import RangeEnd, plan
-from rigdesign.uncertainty.point import EndResult, solve_end, solve_stated
+from rigdesign.uncertainty.plan import EndResult, RangeEnd, plan, solve_end, solve_stated
 from rigdesign.uncertainty.run import with_ranges
 from tests.builders.paths import CASES
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rigdesign.records.dynamic_root import dynamic_root
-from rigdesign.strain_gauge.gauge_curve import GaugeCurve
+from rigdesign.strain_gauge.measuring_point import GaugeCurve
 from tests.builders.solved_loop import solved
 from tests.published import p1_speed
 from tests.published.p1_speed import _ratio, speed_effect, with_feather_keys

@@ -23,8 +23,7 @@ from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.conduction.terms import ConductionProblem
 from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import NamedMesh
-from thermal.films.inputs import FilmError
-from thermal.films.law import FilmCoefficient
+from thermal.films.law import FilmCoefficient, FilmError
 
 
 @pytest.fixture(scope="module")

@@ -21,10 +21,9 @@ from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.balance import heat_balance
+from thermal.conduction.capacity import Conductivity
 from thermal.conduction.condition_checks import Condition, ConditionError
-from thermal.conduction.conductivity import Conductivity
-from thermal.conduction.newton import newton
-from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
+from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, newton, solve_steady
 from thermal.conduction.stream_terms import VolumeTerms
 from thermal.conduction.terms import ConductionProblem, ContactTerms
 from thermal.errors import ThermalNotConverged

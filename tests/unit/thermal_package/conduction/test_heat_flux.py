@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermal.conduction.flux import heat_flux
+from thermal.conduction.setup import heat_flux
 from thermal.conduction.steady import ConductionSetup
 from thermal.fe.mesh import CellName, box_mesh
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, BoundaryCondition, Film, Radiation
-from thermal.conduction import newton
+from thermal.conduction import steady as newton
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import TemperatureSolution, solve_steady
 from thermal.conduction.terms import ConductionProblem

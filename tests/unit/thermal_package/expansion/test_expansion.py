@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.builders.expansion import COLD, GAP, IRON, STEEL, geometry
-from thermal.expansion.clearances import concentric_gap_change, free_expansion, length_mean
-from thermal.expansion.cylinders import Cylinder, CylinderSection
+from thermal.expansion.alignment import concentric_gap_change, free_expansion, length_mean
 from thermal.expansion.elastic import ElasticError
 from thermal.expansion.expansion import Expansion, ExpansionSetup, expand
+from thermal.expansion.setup import Cylinder, CylinderSection
 from thermal.housing.gearbox import build_gearbox
 from thermal.housing.stations import GearboxModel
 

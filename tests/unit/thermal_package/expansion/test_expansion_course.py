@@ -5,8 +5,7 @@ import pytest
 
 from tests.builders.housing import PROTOTYPE
 from thermal.expansion.elastic import ElasticError
-from thermal.expansion.expansion import expand
-from thermal.expansion.many_fields import ExpansionBasis
+from thermal.expansion.expansion import ExpansionBasis, expand
 from thermal.expansion.setup import ExpansionSetup
 from thermal.housing.gearbox import build_gearbox
 

@@ -13,7 +13,7 @@ from thermal.films.bath import (
 )
 from thermal.films.convection import constant
 from thermal.films.flank import FilmOil, ToothRing, Wetting, fling_off
-from thermal.films.inputs import FilmError
+from thermal.films.law import FilmError
 
 OIL = FilmOil(
     conductivity=lambda _: 0.13,

@@ -19,7 +19,7 @@ from thermal.films.flank import (
     on_rim,
     tooth_excess,
 )
-from thermal.films.inputs import FilmError
+from thermal.films.law import FilmError
 
 OIL = FilmOil(
     conductivity=lambda _: 0.14,

@@ -8,8 +8,8 @@ from scipy.linalg import solve_banded
 
 from thermal.films import convection
 from thermal.films.air import air
-from thermal.films.inputs import FilmError
-from thermal.films.ribs import RibArray
+from thermal.films.convection import RibArray
+from thermal.films.law import FilmError
 
 WALL, ROOM = 353.15, 293.15
 CAST_IRON = 50.0

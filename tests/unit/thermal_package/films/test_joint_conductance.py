@@ -2,9 +2,8 @@
 
 import pytest
 
-from thermal.films.inputs import FilmError
 from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
-from thermal.films.law import ExchangeLaw
+from thermal.films.law import ExchangeLaw, FilmError
 
 
 def foot(pressure: float = 5e6, **changes: float) -> ExchangeLaw:

@@ -27,7 +27,7 @@ from thermal.housing.gearbox import (
     mesh_sizes,
     surface_names,
 )
-from thermal.housing.measures import SIDES
+from thermal.housing.shaft_geometry import SIDES
 from thermal.housing.stations import GearboxModel
 
 WIDE, LOOSE = replace(BEARING, width=0.045), replace(BEARING, clearance=5e-5)

@@ -11,10 +11,9 @@ from typing import Any
 import pytest
 
 from thermal.housing.geometry import ClampingField, HousingGeometry
-from thermal.housing.measures import GeometryError
-from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
+from thermal.housing.housing_surfaces import body_names, exact_areas, exact_volumes, surface_names
+from thermal.housing.shaft_geometry import EndBearing, GearDisc, GeometryError, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_zones
-from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, surface_names
 
 
 def bearing(width: float = 0.024, diameter: float = 0.040) -> EndBearing:

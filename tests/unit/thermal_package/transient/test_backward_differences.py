@@ -5,8 +5,8 @@ import pytest
 
 from tests.builders.two_blocks import CONDUCTIVITY, conditions, two_blocks
 from thermal.conduction.steady import ConductionSetup, solve_steady
-from thermal.transient.backward_differences import SPREAD, STEPS, WarmingBody, step_lengths
 from thermal.transient.history import StepControl, ThermalStage, solve_transient
+from thermal.transient.time_steps import SPREAD, STEPS, WarmingBody, step_lengths
 
 START, BATH, CAPACITY = 293.15, 393.15, 3.6e6
 

@@ -12,9 +12,8 @@ from tests.builders.two_blocks import law, renamed
 from thermal.conditions.boundary import Adiabatic, BodySource, Film, PrescribedTemperature
 from thermal.conditions.contact import Contact
 from thermal.conditions.streams import Stream, StreamNetwork
-from thermal.conduction.capacity import Storage
+from thermal.conduction.capacity import Conductivity, Storage
 from thermal.conduction.condition_checks import Condition, ConditionError
-from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import box_mesh, disjoint_union
