@@ -25,10 +25,9 @@ from rigdesign.report.study_tables import TableFormat, require_table_libraries, 
 from rigdesign.results.result import RunResult
 from rigdesign.run import main
 from rigdesign.studies.design import StudyDesign
-from rigdesign.studies.result import StudyResult
+from rigdesign.studies.result import CheckSelection, StudyResult
 from rigdesign.studies.run import DEFAULT as ONE_PROCESS_A_CORE
 from rigdesign.studies.run import Execution, StudyOutcome, run_study
-from rigdesign.studies.selection import CheckSelection
 from rigdesign.uncertainty.run import with_ranges
 
 Progress = Callable[[str], None]

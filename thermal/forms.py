@@ -1,7 +1,7 @@
 """Every physical term as a weak form: what the field equations say, in scikit-fem's notation.
 
 u is the unknown and v the test function, w holds the parameters at the quadrature points. Temperatures in K, lengths
-in m. Terms that are assembled over and over have a compiled twin in thermal.fe.assembly or thermal.fe.surfaces; the
+in m. Terms that are assembled over and over have a compiled twin in thermal.fe.assembly or thermal.fe.elements; the
 test of the twins, tests/verification/test_fe_against_scikit_fem.py, holds them against the forms here. A new term is
 written here first, assembled on a basis of `FiniteElements.bases` and added to matrix or load.
 Sources: Carslaw, Jaeger, Conduction of Heat in Solids, 2nd ed., ch. 1; Boley, Weiner, Theory of Thermal Stresses,

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.influence.elastic_segment import Elastic, GearModel, solve_segment
-from dynamics.influence.gear_body import TEETH, SectionDivision
-from dynamics.influence.numbers import InfluenceNumbers
+from dynamics.influence.numbers import TEETH, InfluenceNumbers, SectionDivision
 from dynamics.influence.reading import SegmentReading, rows
 from dynamics.influence.segment import GearSegment, gear_section
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
+from dynamics.influence.numbers import STANDARD, GearBody, SectionDivision
 from dynamics.influence.segment import GearSegment
 from thermal.fe.direct_factor import DirectFactor
 from thermal.fe.levels import Level

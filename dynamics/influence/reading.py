@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from dynamics.influence.elastic_segment import GearModel
-from dynamics.influence.gear_body import TEETH
-from dynamics.influence.numbers import RootFillet
+from dynamics.influence.numbers import TEETH, RootFillet
 from dynamics.influence.segment import GearSegment, turned
 from thermal.fe.reference_elements import QUAD_8
 

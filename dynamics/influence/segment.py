@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.influence.gear_body import STANDARD, TEETH, GearBody, SectionDivision
+from dynamics.influence.numbers import STANDARD, TEETH, GearBody, SectionDivision
 from thermal.fe.gmsh_session import gmsh_session
 from thermal.fe.reference_elements import QUAD_8
 

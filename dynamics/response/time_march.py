@@ -35,8 +35,14 @@ from dynamics.response.march_inputs import (
     slow_loads,
 )
 from dynamics.response.modal_model import ModalModel
-from dynamics.response.propagator import discretise, modal_state, parted_flanks, scaled_state, wrench_inputs
-from dynamics.response.state_reader import StateReader
+from dynamics.response.propagator import (
+    StateReader,
+    discretise,
+    modal_state,
+    parted_flanks,
+    scaled_state,
+    wrench_inputs,
+)
 
 Array = NDArray[np.float64]
 

@@ -39,7 +39,7 @@ from dynamics.response.march_inputs import (
     TurningLoads,
     march_model,
 )
-from dynamics.response.state_reader import SectionEnvelopes, SectionStatistics, StateReader
+from dynamics.response.propagator import SectionEnvelopes, SectionStatistics, StateReader
 from dynamics.response.time_march import CREEP_SHARE, TimeMarch
 
 # Loads that alternate with a shaft at the start of a march, and the motion with which they are in balance there.

@@ -14,8 +14,8 @@ from rigdesign.rig_heat.component import (
     LossMap,
     Machine,
     MachineLoss,
+    Room,
 )
-from rigdesign.rig_heat.room import Room
 
 if TYPE_CHECKING:
     from rigdesign.case.model import Case

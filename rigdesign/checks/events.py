@@ -8,7 +8,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.events import NOT_WITHIN, EventRecord, Quantity
+from rigdesign.results.loads import NOT_WITHIN, EventRecord, Quantity
 from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
 
 GROUP = "events"

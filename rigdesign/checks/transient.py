@@ -13,7 +13,7 @@ from rigdesign.checks.temperatures import WALLS
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.rows.history import UNITS
-from rigdesign.results.transient import Extreme
+from rigdesign.results.thermal import Extreme
 from rigdesign.results.units import HOUR, DisplayUnit
 from rigdesign.transient.soak import Soak
 

@@ -63,7 +63,7 @@ def _launch(
         raise UsageError("--verbose and --quiet exclude each other; leave one of them out")
     before = verbosity.set("verbose" if verbose else "quiet" if quiet else "normal")
     try:
-        from rigdesign.cli.terminal.verbose import cache_use
+        from rigdesign.cli.terminal.console import cache_use
 
         asked = tokens[:1] and not tokens[0].startswith("-")
         if asked and (shortage := memory_shortage()):

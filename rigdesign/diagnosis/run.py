@@ -13,8 +13,7 @@ from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.patch import Constants, constants, patched_values
-from rigdesign.diagnosis.decision.problem import Problem
-from rigdesign.diagnosis.decision.proof import FullRun
+from rigdesign.diagnosis.decision.proof import FullRun, Problem
 from rigdesign.diagnosis.decision.proposals import (
     NOTHING_NEXT,
     NextMeasurements,

@@ -17,8 +17,12 @@ from rigdesign.measurement.processing.impacts import read_impacts
 from rigdesign.measurement.processing.recorded import Readings, SetPlan, read_recordings
 from rigdesign.measurement.processing.sweeps import read_sweeps
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
-from rigdesign.measurement.reading.document import COST_ITEMS, MeasurementFile
-from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
+from rigdesign.measurement.reading.measurement_set import (
+    COST_ITEMS,
+    DataFinding,
+    MeasurementFile,
+    MeasurementSet,
+)
 from rigdesign.measurement.reading.rows import Rows, points_of, read_orders
 from rigdesign.measurement.reading.table import digest_of, document_text, read_table, set_file
 

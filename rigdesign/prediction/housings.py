@@ -10,11 +10,10 @@ import numpy as np
 from scipy import sparse
 
 from rigdesign.base.parallel import BackgroundTasks
-from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.expansion import HousingExpansion, named_expansion
 from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.placed_loss import PointLosses
-from rigdesign.coupling.temperatures import HousingField
+from rigdesign.coupling.temperatures import HousingField, boundary_conditions
 from rigdesign.prediction.places import Weights
 from rigdesign.rig.model import Rig
 from thermal.conditions.boundary import (

@@ -23,7 +23,7 @@ from dynamics.response.response_curve import CurvePoint
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws, signed_torque
 from rigdesign.coupling.mesh_models import MeshModel, laws_of
-from rigdesign.prediction.order_places import OscillatingTorque
+from rigdesign.prediction.places import OscillatingTorque
 from rigdesign.rig.model import Rig
 
 # The motion over the whole hunting cycle, all contacts opening and closing: what the fast way is held to.

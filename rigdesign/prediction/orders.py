@@ -31,7 +31,7 @@ from rigdesign.prediction.order_motion import (
     exact_motion,
     ideal_response,
 )
-from rigdesign.prediction.order_places import OscillatingTorque, motions, place_of
+from rigdesign.prediction.places import OscillatingTorque, motions, place_of
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

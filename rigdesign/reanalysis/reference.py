@@ -20,7 +20,7 @@ from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.events import EventRecord
+from rigdesign.results.loads import EventRecord
 from rigdesign.results.result import DiscretisationRow
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig, build_rig

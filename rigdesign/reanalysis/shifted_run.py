@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from dynamics.response.command import DragCurve
 from dynamics.response.envelopes import EnvelopeWindows
+from dynamics.response.propagator import SectionEnvelopes
 from dynamics.response.response_curve import ResponseCurve
-from dynamics.response.state_reader import SectionEnvelopes
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.placed_loss import drag_shafts

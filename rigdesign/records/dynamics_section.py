@@ -1,8 +1,8 @@
 """The dynamic section of the result: K_V(n) with that of ISO 6336, gear data, crossings, time run, torque balance."""
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from dynamics.contact.root_field import PairForces
 from dynamics.drivetrain.modes import sampling_audit
 from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
+from dynamics.response.response_curve import CurvePoint
 from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
@@ -18,14 +19,16 @@ from rigdesign.records import root
 from rigdesign.records.curves import factor_points, iso_factor
 from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamic_root import dynamic_root
-from rigdesign.records.dynamics import DynamicRun, numbered
+from rigdesign.records.dynamics import DynamicRun, numbered, ramp_history
 from rigdesign.records.flank_rating import flank_ratings
 from rigdesign.records.loaded_contact import loaded_contact
-from rigdesign.records.section_torques import section_torque_record
+from rigdesign.records.run_torques import run_torques
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.spectra import held_spectra, waterfalls
-from rigdesign.records.time_run import ramp_history
 from rigdesign.records.tooth_history import bent_both_ways
+from rigdesign.records.torques_over_speed import (
+    mesh_swing,
+)
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import MeshLoads
 from rigdesign.results.rows import dynamics as rows
@@ -46,6 +49,13 @@ from rigdesign.results.rows.vibration import (
     waterfall_row,
 )
 from rigdesign.results.teeth import PairShare
+from rigdesign.results.vibration import (
+    HeldTorque,
+    RunTorque,
+    SectionTorqueRecord,
+    TorqueOverSpeed,
+    TorquePlace,
+)
 from rigdesign.rig.model import Rig
 
 
@@ -233,3 +243,53 @@ def _over_path(forces: PairForces) -> tuple[Array, Array, Array]:
     order = np.argsort(forces.path, axis=None, kind="stable")
     relative = of_pair / max(float(total.mean()), 1e-300)
     return forces.path.ravel()[order], share.ravel()[order], relative.ravel()[order]
+
+
+# Dynamic torque in every section of the shafts, every joint and mesh: held stages, over speed, in the time run.
+#
+# Held stages and curves over speed are periodic responses, the time run is read at every sample.
+
+
+def section_torque_record(
+    solved: SolvedRig, points: Sequence[CurvePoint], curves: tuple[TorqueOverSpeed, ...]
+) -> SectionTorqueRecord:
+    """Torques of the held points, of the governing curve, and of the time run of a rig with loads.
+
+    points, curves : of `torques_over_speed`
+    """
+    assert solved.run is not None
+    in_run = run_torques(solved.rig, solved.run.ramp)
+    return SectionTorqueRecord(
+        held=tuple(_held(solved, in_run)),
+        torque=next(iter(solved.run.curves.named)),
+        speeds=tuple(point.speed for point in points),
+        curves=curves,
+        run=in_run,
+    )
+
+
+def _held(solved: SolvedRig, run: Sequence[RunTorque]) -> Iterator[HeldTorque]:
+    """Sections, joints and meshes of every held point with their peaks in the time run."""
+    peaks = {(torque.place, torque.stage): torque.peak for torque in run}
+    for point in solved.points:
+        stage = point.point.stage
+        for torque in solved.held_torques:
+            if torque.stage == stage:
+                yield replace(torque, run_peak=peaks.get((torque.place, stage)))
+        yield from _held_meshes(solved, point)
+
+
+def _held_meshes(solved: SolvedRig, point: PointResult) -> Iterator[HeldTorque]:
+    rig, loads, response = solved.rig, solved.loads, point.last.response
+    assert loads is not None and response is not None
+    for mesh, name in enumerate(rig.mesh_names):
+        label = rig.mesh_labels[name]
+        stages = {load.stage: load.peak for load in loads.meshes[label].stage_loads}
+        yield HeldTorque(
+            place=TorquePlace(kind="mesh", part=label),
+            stage=point.point.stage,
+            speed=rig.pinion_speed(point.point.speed),
+            swing=mesh_swing(response, mesh),
+            run_peak=stages.get(point.point.stage),
+            shear_stress=None,
+        )

@@ -53,7 +53,7 @@ from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import held_modes
 from rigdesign.records.passing_peaks import passing_peaks
 from rigdesign.records.run_torques import shear_stress
-from rigdesign.results.events import EventCurve, EventPeak, EventRecord, Quantity, Reversal
+from rigdesign.results.loads import EventCurve, EventPeak, EventRecord, Quantity, Reversal
 from rigdesign.rig.model import Rig
 
 # The solved rig where an event happens: its loop, drags and channels, and what is kept of a march.

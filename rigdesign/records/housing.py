@@ -39,8 +39,7 @@ from rigdesign.results.housing import (
 from rigdesign.results.thermal import TemperatureField
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil
-from rigdesign.rig_heat.component import ComponentHeat
-from rigdesign.rig_heat.room import RoomBalance, room_balance
+from rigdesign.rig_heat.component import ComponentHeat, RoomBalance, room_balance
 from thermal.conditions.boundary import Film, SurfaceSource
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.setup import heat_flux

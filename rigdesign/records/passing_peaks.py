@@ -14,7 +14,7 @@ from rigdesign.records.curves import curve_at, dense, response_solver, torque_ke
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.loop_states import loop_states
 from rigdesign.records.torques_over_speed import LoopOverSpeed, torques_over_speed
-from rigdesign.results.events import PassingPeak, Quantity
+from rigdesign.results.loads import PassingPeak, Quantity
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import PlaceKind, TorqueOverSpeed
 from rigdesign.rig.model import Rig

@@ -13,7 +13,7 @@ from rigdesign.coupling.braced_loop import periodic_laws, shifted_laws
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.coupling.time_run import schedule_of, stage_names
-from rigdesign.results.events import EventPeak, EventRecord, PassingPeak
+from rigdesign.results.loads import EventPeak, EventRecord, PassingPeak
 from rigdesign.results.vibration import HeldTorque, PlaceKind, RunTorque, TorquePlace, TorqueSwing
 from rigdesign.rig.model import Rig
 

@@ -16,12 +16,11 @@ from rigdesign.records.run_torques import PartTorque, part_torques
 from rigdesign.records.vibration import LoopVibration
 from rigdesign.records.warm_gearbox import warm_gearbox
 from rigdesign.results.check import Role
-from rigdesign.results.events import EventRecord
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.lateral import LateralVibration
-from rigdesign.results.loads import DynamicLoads, PressFitCapacity, SplineStress
+from rigdesign.results.loads import DynamicLoads, EventRecord, PressFitCapacity, SplineStress
 from rigdesign.results.result import DiscretisationRow, MeshShift
-from rigdesign.results.transient import HistoryExtremes
+from rigdesign.results.thermal import HistoryExtremes
 from rigdesign.results.vibration import HeldTorque
 from rigdesign.results.warm_gearbox import WarmGearbox
 from rigdesign.rig.model import Rig

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.results.check import Check
-from rigdesign.results.events import NOT_WITHIN
+from rigdesign.results.loads import NOT_WITHIN
 
 if TYPE_CHECKING:
     from rigdesign.difference.document import CheckChange

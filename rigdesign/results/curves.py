@@ -5,8 +5,7 @@ from typing import Any
 
 from rigdesign.base.output_folder import file_stem
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics, RampHistory
-from rigdesign.results.thermal import ExpansionResult
-from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult
+from rigdesign.results.thermal import ExpansionResult, OilPowerCurve, TransientCurve, TransientResult
 
 Columns = dict[str, list[Any]]
 """Values of one length by ``quantity [unit]``."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from rigdesign.oil_circuit.steady import SteadyCircuit
-from rigdesign.rig_heat.room import RoomBalance
+from rigdesign.rig_heat.component import RoomBalance
 from thermal.conduction.balance import HeatFlow
 
 # Heat of the whole rig at one held stage by source and sink, the room that takes its share, and the power it costs.

@@ -15,8 +15,14 @@ from rigdesign.results.check import STATUSES, Checks, Status
 from rigdesign.results.curves import Columns, curves_of, lateral_curves
 from rigdesign.results.dynamics import DynamicsResult
 from rigdesign.results.ranges import RangesResult
-from rigdesign.results.thermal import ExpansionResult, LossRow, OilRow, TemperatureField, ThermalResult
-from rigdesign.results.transient import TransientResult
+from rigdesign.results.thermal import (
+    ExpansionResult,
+    LossRow,
+    OilRow,
+    TemperatureField,
+    ThermalResult,
+    TransientResult,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -23,7 +23,14 @@ from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
 from rigdesign.rig.chamber_views import ChamberViews
-from rigdesign.rig.drivetrain import build_drivetrain, gearbox_forces, loop_forces
+from rigdesign.rig.drivetrain import (
+    SectionTorsion,
+    build_drivetrain,
+    gearbox_forces,
+    loop_forces,
+    refuse_broken_shafts,
+    section_torsions,
+)
 from rigdesign.rig.elastic_rig import (
     ElasticDrivetrain,
     elastic_rig,
@@ -43,7 +50,6 @@ from rigdesign.rig.resolution import (
     with_elements,
 )
 from rigdesign.rig.shaft_axes import LineOfAction, ShaftAxis, line_of_action, shaft_axes
-from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.strain_gauges import RootGauge, root_gauges
 from rigdesign.rig.tooth_influence import QUICK_POSITIONS, Count, Progress, ToothInfluence
 from rigdesign.rig.user_mesh import user_model

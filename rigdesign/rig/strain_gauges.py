@@ -13,8 +13,7 @@ from rigdesign.base.units import show
 from rigdesign.case.gears import PLACES, Gear, StrainBridge, StrainGaugeInput
 from rigdesign.case.model import Case
 from rigdesign.properties.materials import Material
-from rigdesign.strain_gauge.bridge import Bridge
-from rigdesign.strain_gauge.gauge import StrainGauge
+from rigdesign.strain_gauge.gauge import Bridge, StrainGauge
 from rigdesign.strain_gauge.measuring_point import GaugePlacement, MeasuringPoint, RootRegion, SurfaceStress
 
 BRIDGE_KEYS = tuple(StrainBridge.model_fields)

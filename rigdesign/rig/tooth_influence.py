@@ -19,8 +19,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import PairGeometry
 from dynamics.influence.build import influence_numbers
 from dynamics.influence.elastic_segment import FACE_POSITIONS, Elastic, GearModel
-from dynamics.influence.gear_body import GearBody
-from dynamics.influence.numbers import InfluenceNumbers, RootFillet
+from dynamics.influence.numbers import GearBody, InfluenceNumbers, RootFillet
 from rigdesign.base.output_folder import FileLock, HeldError, replace_whole
 from rigdesign.base.parallel import BackgroundTasks, cores
 from thermal.fe.kept_results import kept

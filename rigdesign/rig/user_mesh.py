@@ -22,7 +22,6 @@ from rigdesign.case.rules.surfaces import boundary_faults
 from thermal.fe.kept_results import kept
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.face_rules import FaceRule
-from thermal.housing.fitted import ROUND, fit_cylinder, fitted_model
 from thermal.housing.gearbox import build_field, build_shaft
 from thermal.housing.geometry import HousingGeometry
 from thermal.housing.housing_surfaces import FOOT, body_names, joined_surfaces
@@ -30,7 +29,15 @@ from thermal.housing.mesh_file import read_mesh
 from thermal.housing.shaft_geometry import MINIMUM_LAND, SIDES, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import MeshSizes
-from thermal.housing.stations import GearboxModel, Point, bearing_stations, seal_stations
+from thermal.housing.stations import (
+    ROUND,
+    GearboxModel,
+    Point,
+    bearing_stations,
+    fit_cylinder,
+    fitted_model,
+    seal_stations,
+)
 from thermal.housing.step_file import BODY, StepPart, part_size, read_part, read_step
 
 LARGEST_MESH = 2_000_000_000

@@ -24,8 +24,8 @@ from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks import all_checks
 from rigdesign.checks.geometry import missed
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
+from rigdesign.coupling.loop_over_speed import stage_losses
 from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
 from rigdesign.records.curves import solve_curves
@@ -34,8 +34,8 @@ from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.events import solve_events
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, fields_of
+from rigdesign.records.near_dwell import held_crossings, require_damping
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
-from rigdesign.records.undamped import held_crossings, require_damping
 from rigdesign.records.warm_gearbox import rolling_bearings
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
@@ -55,8 +55,13 @@ from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
 from rigdesign.run.load_convergence import load_errors
-from rigdesign.run.mesh_convergence import BackgroundMeshing, discretisation, looping_rig, on_mesh
-from rigdesign.run.rival_laws import law_spreads
+from rigdesign.run.mesh_convergence import (
+    BackgroundMeshing,
+    discretisation,
+    law_spreads,
+    looping_rig,
+    on_mesh,
+)
 from rigdesign.run.solver_errors import solver_errors
 from rigdesign.run.warnings import not_modelled, warnings_of, without_effect
 from thermal.fe.kernels import one_thread

@@ -14,7 +14,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.history import UNITS, worst_moment_row
-from rigdesign.results.transient import (
+from rigdesign.results.thermal import (
     Extreme,
     HistoryExtremes,
     OilPowerCurve,

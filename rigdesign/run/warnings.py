@@ -19,17 +19,16 @@ from rigdesign.case.usual import stated_numbers
 from rigdesign.checks.assumptions import depends, influences_of
 from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import thrust
-from rigdesign.coupling.boundary import printed_films
 from rigdesign.coupling.braced_loop import averaged_gears, lines_left_out, loads_left_out
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop_over_speed import band_limits
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.coupling.temperatures import HousingField
+from rigdesign.coupling.temperatures import HousingField, printed_films
 from rigdesign.records.curves import iso_factor, own_ratio, resolved
+from rigdesign.records.near_dwell import LIGHTLY, REMEDY, light_dwells
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.records.undamped import LIGHTLY, REMEDY, light_dwells
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM

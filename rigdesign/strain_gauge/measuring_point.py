@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from dynamics.contact.root_field import RootCourse
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import refuse, require_above
-from rigdesign.strain_gauge.bridge import Bridge
-from rigdesign.strain_gauge.gauge import StrainGauge
+from rigdesign.strain_gauge.gauge import Bridge, StrainGauge
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from rigdesign.base.errors import CaseError, UsageError
 from rigdesign.studies.grid import MAX_POINTS, Variation, combinations, parse_variation
 from rigdesign.studies.ranges import ASSUMED, InputRange, parse_ranges, require_number, tolerance_in
-from rigdesign.studies.result import Design, StudyPoint, check_ids
-from rigdesign.studies.selection import CheckSelection, declared_ids
+from rigdesign.studies.result import CheckSelection, Design, StudyPoint, check_ids, declared_ids
 from rigdesign.studies.statistics import CheckState, changes, check_states, ends, stated_values
 
 if TYPE_CHECKING:

@@ -15,9 +15,17 @@ from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers, Workers
 from rigdesign.studies.analysis import analysed, computed_so_far, kept_by_copies
 from rigdesign.studies.design import Plan, StudyDesign, planned
 from rigdesign.studies.ledger import Shard, StudyLedgers, files_lock, folder_lock
-from rigdesign.studies.point import PointSetup, Prepare, Run
 from rigdesign.studies.result import StudyPoint, StudyResult
-from rigdesign.studies.solver import Listeners, PointDefectError, PointSolver, PointTask, tasks_of
+from rigdesign.studies.solver import (
+    Listeners,
+    PointDefectError,
+    PointSetup,
+    PointSolver,
+    PointTask,
+    Prepare,
+    Run,
+    tasks_of,
+)
 
 if TYPE_CHECKING:
     from rigdesign.case import Case

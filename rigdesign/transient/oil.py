@@ -24,9 +24,9 @@ from rigdesign.coupling.bearing_seats import (
     conductances,
     on_surface,
 )
-from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL, OilFilm, without_oils
 from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses, heat_into_gear_oil
+from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, wall_flow
 from thermal.conditions.boundary import Film

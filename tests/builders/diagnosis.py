@@ -16,7 +16,7 @@ import numpy as np
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.decision.defaults import DRIFT, Calibration, Thresholds
-from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual.residual_problem import compare

@@ -10,8 +10,7 @@ from dynamics.contact.points import FaceGrid, FlankGap, no_gap
 from dynamics.gear.pair import GearPair
 from dynamics.influence.build import influence_numbers
 from dynamics.influence.elastic_segment import GearModel
-from dynamics.influence.gear_body import SectionDivision
-from dynamics.influence.numbers import InfluenceNumbers
+from dynamics.influence.numbers import InfluenceNumbers, SectionDivision
 from rigdesign.rig.tooth_influence import gear_model
 
 COARSE = SectionDivision(profile=5, thickness=2, fillet=4, depth=2)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from thermal.conditions.boundary import ConditionError
 from thermal.conditions.contact import clip
-from thermal.conditions.facet_triangles import FacetTriangles
+from thermal.conditions.ray_view_factors import FacetTriangles
 from thermal.fe.mesh import FloatArray, NamedMesh
 from thermal.fe.reference_elements import TRIANGLE_6
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.drivetrain.graph import TorqueSection
 from dynamics.response.envelopes import EnvelopeWindows
-from dynamics.response.state_reader import SectionEnvelopes
+from dynamics.response.propagator import SectionEnvelopes
 from rigdesign.coupling.time_run import schedule_of, stage_names
 from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from rigdesign.strain_gauge.bridge import Bridge
-from rigdesign.strain_gauge.gauge import StrainGauge
+from rigdesign.strain_gauge.gauge import Bridge, StrainGauge
 from rigdesign.strain_gauge.measuring_point import GaugePlacement, MeasuringPoint, RootRegion, SurfaceStress
 
 STEEL = SurfaceStress(youngs_modulus=206e9, poisson_ratio=0.3)

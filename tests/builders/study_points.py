@@ -2,8 +2,7 @@
 
 from rigdesign.report.pages.study import write_study
 from rigdesign.studies.grid import Variation
-from rigdesign.studies.result import StudyPoint, StudyResult
-from rigdesign.studies.selection import CheckSelection
+from rigdesign.studies.result import CheckSelection, StudyPoint, StudyResult
 
 OIL, TORQUE, WIDTH = (
     "gearboxes.test.oil.inlet_temperature",

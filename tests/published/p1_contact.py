@@ -22,7 +22,7 @@ from dynamics.contact.points import FaceGrid, flank_gap
 from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.influence.elastic_segment import GearModel
-from dynamics.influence.gear_body import SectionDivision
+from dynamics.influence.numbers import SectionDivision
 from dynamics.mesh.pair_gap import PairGap
 from rigdesign.records.loaded_contact import ElasticGear, stress_at
 from rigdesign.rig.strain_gauges import RootGauge

@@ -23,7 +23,7 @@ from dynamics.gear.tooth_form import ToothForm
 from dynamics.influence import build
 from dynamics.influence import build as local_part
 from dynamics.influence.elastic_segment import Elastic, GearModel
-from dynamics.influence.gear_body import STANDARD, GearBody, SectionDivision
+from dynamics.influence.numbers import STANDARD, GearBody, SectionDivision
 from dynamics.mesh.pair_gap import PairGap
 from dynamics.rating.root_stress import root_influence
 from tests.builders.loaded_mesh import fzg_c

@@ -12,7 +12,7 @@ from rigdesign.oil_circuit.circuit import Circuit, SupplyLine
 from rigdesign.oil_circuit.parts import Consumer, Coolant, Cooler, Pump, Tank
 from rigdesign.oil_circuit.steady import SteadyCircuit, steady_circuit
 from rigdesign.properties.oil import MIL_PRF_23699, OILS
-from rigdesign.rig_heat.room import Room, room_balance
+from rigdesign.rig_heat.component import Room, room_balance
 from tests.published.main_rig_oil import oil_balance_rows
 
 ZERO = 273.15

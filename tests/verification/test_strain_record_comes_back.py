@@ -16,7 +16,7 @@ from rigdesign.measurement.processing.root_gauges import (
     StrainRecording,
     read_strain_records,
 )
-from rigdesign.measurement.reading.document import Tach
+from rigdesign.measurement.reading.measurement_set import Tach
 from rigdesign.strain_gauge.low_pass import LowPass
 from rigdesign.strain_gauge.turn_average import AngleGrid, TurnCurve
 from tests.builders.recording import write_recording

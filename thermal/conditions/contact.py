@@ -18,7 +18,7 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 
 from thermal.conditions.boundary import ConditionError
-from thermal.conditions.facet_triangles import FacetTriangles
+from thermal.conditions.ray_view_factors import FacetTriangles
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.mesh import FloatArray, IndexArray
 from thermal.fe.reference_elements import SIDES, TRIANGLE_6

@@ -13,8 +13,7 @@ from scipy import sparse
 from thermal.errors import ThermalNotConverged
 from thermal.fe import kernels
 from thermal.fe.arrays import FloatArray
-from thermal.fe.multigrid import HeldMatrix, TwoLevelMultigrid
-from thermal.fe.products import BoolArray, LowRank, Matrix, Product
+from thermal.fe.multigrid import BoolArray, HeldMatrix, LowRank, Matrix, Product, TwoLevelMultigrid
 
 __all__ = [
     "BoolArray",

@@ -62,12 +62,12 @@ def check(
         )
     loaded = loaded_case(case)
     from rigdesign.cli.terminal.checks import print_checks
+    from rigdesign.cli.terminal.console import print_run
     from rigdesign.cli.terminal.progress import Progress, step_times
-    from rigdesign.cli.terminal.verbose import print_run
     from rigdesign.reanalysis.flips import with_flips
     from rigdesign.report import Issue, prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
-    from rigdesign.studies.selection import CheckSelection
+    from rigdesign.studies.result import CheckSelection
 
     selection = CheckSelection(checks or ())
     selection.require(loaded, transient=transient)

@@ -9,8 +9,7 @@ import numpy as np
 from rigdesign.diagnosis.decision.claims import Agreement, Claim, Traces, claim, too_little, withdrawn
 from rigdesign.diagnosis.decision.decision import UNNAMED, mass_of_any
 from rigdesign.diagnosis.decision.defaults import Calibration, Decision
-from rigdesign.diagnosis.decision.problem import Problem, Tier, of_tier
-from rigdesign.diagnosis.decision.proof import Proof, Rerun
+from rigdesign.diagnosis.decision.proof import Problem, Proof, Rerun, Tier, of_tier
 from rigdesign.diagnosis.decision.search import (
     Explanations,
     Look,

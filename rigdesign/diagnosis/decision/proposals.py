@@ -13,7 +13,7 @@ from rigdesign.diagnosis.decision.claims import NAMED
 from rigdesign.diagnosis.decision.decision import UNNAMED
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.naming import in_words, place_of
-from rigdesign.diagnosis.decision.problem import Problem
+from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
 from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Costs, Extra, extra_points
 from rigdesign.diagnosis.library.library import Library, Response

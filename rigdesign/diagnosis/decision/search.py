@@ -13,7 +13,7 @@ from rigdesign.diagnosis.decision.defaults import (
     Thresholds,
     WhitenedSquare,
 )
-from rigdesign.diagnosis.decision.problem import Problem, Tier
+from rigdesign.diagnosis.decision.proof import Problem, Tier
 from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import (
     ORDER_CAUSE,

@@ -6,7 +6,7 @@ from statistics import geometric_mean
 
 from rigdesign.case.model import Case
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.reading.document import ExtraPoint
+from rigdesign.measurement.reading.measurement_set import ExtraPoint
 from rigdesign.prediction.model import STANDING_QUANTITIES, Channel, OperatingCondition, Quantity
 
 SPARE = "could be: "

@@ -13,12 +13,12 @@ from rigdesign.base.errors import MeasurementError
 from rigdesign.measurement.data import Data
 from rigdesign.measurement.quality.checks import LEAST, data_findings, rates
 from rigdesign.measurement.quality.consistency import consistency_findings
-from rigdesign.measurement.reading.document import Transfer
 from rigdesign.measurement.reading.measurement_set import (
     DataFinding,
     MeasuredChannel,
     MeasuredPoint,
     MeasurementSet,
+    Transfer,
 )
 from rigdesign.prediction.model import Feature, OperatingCondition, features_of
 from rigdesign.strain_gauge.low_pass import LowPass

@@ -17,8 +17,7 @@ from rigdesign.case.faults import unknown
 from rigdesign.measurement.processing.recorded import SetPlan
 from rigdesign.measurement.processing.resonance_peak import resonance_peak
 from rigdesign.measurement.quality.checks import signal_findings, usable_signal
-from rigdesign.measurement.reading.document import Impact
-from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, Weight
+from rigdesign.measurement.reading.measurement_set import DataFinding, Impact, MeasuredChannel, Weight
 from rigdesign.measurement.reading.signals import Signal, read_signals
 from rigdesign.prediction.model import Feature
 

@@ -20,8 +20,14 @@ from rigdesign.measurement.quality.checks import (
 )
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, same_worth, to_si
 from rigdesign.measurement.reading.columns import sensors_of
-from rigdesign.measurement.reading.document import MeasurementFile, Recording
-from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
+from rigdesign.measurement.reading.measurement_set import (
+    DataFinding,
+    MeasuredChannel,
+    MeasuredPoint,
+    MeasurementFile,
+    Recording,
+    Weight,
+)
 from rigdesign.measurement.reading.rows import Rows
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, TurnAngle, turn_angle

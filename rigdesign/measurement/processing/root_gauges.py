@@ -13,14 +13,21 @@ from rigdesign.case.model import Case
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.quality.checks import signal_findings
 from rigdesign.measurement.quantities import accepted_unit, same_worth, to_si, unit_problem
-from rigdesign.measurement.reading.document import DataSection, Recording, Tach
-from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
+from rigdesign.measurement.reading.measurement_set import (
+    DataFinding,
+    DataSection,
+    MeasuredChannel,
+    MeasuredPoint,
+    Recording,
+    Tach,
+    Weight,
+)
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, turn_angle
 from rigdesign.prediction.model import Feature
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.strain_gauges import RootGauge
-from rigdesign.strain_gauge.bridge import Bridge
+from rigdesign.strain_gauge.gauge import Bridge
 from rigdesign.strain_gauge.measuring_point import StrainRecord
 from rigdesign.strain_gauge.turn_average import (
     AngleGrid,

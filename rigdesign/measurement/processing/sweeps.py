@@ -21,8 +21,13 @@ from rigdesign.measurement.processing.recorded import FRACTION, SAMPLES_PER_PERI
 from rigdesign.measurement.processing.resonance_peak import Peak, resonance_peak
 from rigdesign.measurement.quality.checks import signal_findings, usable_signal
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, to_si
-from rigdesign.measurement.reading.document import Sweep
-from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
+from rigdesign.measurement.reading.measurement_set import (
+    DataFinding,
+    MeasuredChannel,
+    MeasuredPoint,
+    Sweep,
+    Weight,
+)
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, TurnAngle, turn_angle
 from rigdesign.prediction.model import ORDER_QUANTITIES, Feature, OperatingCondition

@@ -16,8 +16,13 @@ from rigdesign.measurement.quantities import (
     accepted_unit,
     unit_problem,
 )
-from rigdesign.measurement.reading.document import ChannelTable, MeasurementFile, SettingColumn
-from rigdesign.measurement.reading.measurement_set import MeasuredChannel, SettingSensor
+from rigdesign.measurement.reading.measurement_set import (
+    ChannelTable,
+    MeasuredChannel,
+    MeasurementFile,
+    SettingColumn,
+    SettingSensor,
+)
 from rigdesign.prediction.model import (
     LATERAL_QUANTITIES,
     MODAL_QUANTITIES,

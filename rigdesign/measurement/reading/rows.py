@@ -21,14 +21,14 @@ from rigdesign.measurement.quantities import (
     same_worth,
     to_si,
 )
-from rigdesign.measurement.reading.document import MeasurementFile
-from rigdesign.measurement.reading.document import Point as PointTable
 from rigdesign.measurement.reading.measurement_set import (
     DataFinding,
     MeasuredChannel,
     MeasuredPoint,
+    MeasurementFile,
     SettingSensor,
 )
+from rigdesign.measurement.reading.measurement_set import Point as PointTable
 from rigdesign.measurement.reading.table import MOST_FAULTS, Table, numbers, read_table, time_stamps
 from rigdesign.prediction.model import (
     ORDER_QUANTITIES,

@@ -14,7 +14,6 @@ from rigdesign.base import units
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import written
 from rigdesign.measurement.quantities import accepted_unit, same_worth, unit_problem
-from rigdesign.measurement.reading.document import DataSection
 from rigdesign.measurement.reading.hdf5_samples import (
     AGAIN,
     TIME_NAMES,
@@ -22,6 +21,7 @@ from rigdesign.measurement.reading.hdf5_samples import (
     is_meant,
     read_datasets,
 )
+from rigdesign.measurement.reading.measurement_set import DataSection
 from rigdesign.measurement.reading.table import (
     numbers,
     read_table,

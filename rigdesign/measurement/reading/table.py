@@ -18,7 +18,7 @@ from rigdesign.base import units
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.base.files import RefusedFileError, check_regular, foreign, read_regular
 from rigdesign.case.faults import written
-from rigdesign.measurement.reading.document import DataSection
+from rigdesign.measurement.reading.measurement_set import DataSection
 
 MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
 """Cells that say that there is no reading."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.measurement.reading.document import Tach
+from rigdesign.measurement.reading.measurement_set import Tach
 from rigdesign.measurement.reading.signals import Signal, Signals
 
 Array = NDArray[np.float64]

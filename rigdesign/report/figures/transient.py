@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rigdesign.report.figures.drawing import finish, legend_right, new_figure, words
 from rigdesign.report.numbers import unit_text
 from rigdesign.report.palette import COLD, INK, LINES, MUTED, WARM, CurveStyle, curve_style
-from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
+from rigdesign.results.thermal import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,7 @@ import numpy as np
 
 from rigdesign.report.margins.table import MarginTable, StudyAxis, input_name, margin_table, study_axis
 from rigdesign.report.numbers import number_text
-from rigdesign.studies.result import SobolIndex, StudyPoint, StudyResult, Swing, check_ids
-from rigdesign.studies.selection import CheckSelection
+from rigdesign.studies.result import CheckSelection, SobolIndex, StudyPoint, StudyResult, Swing, check_ids
 
 # Where the checks hold over one varied input: ranges, what limits them, and the sentence that says so.
 

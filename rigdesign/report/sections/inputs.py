@@ -4,7 +4,7 @@ from collections import Counter
 
 from rigdesign.report import input_sheets
 from rigdesign.report import input_sheets as drivetrain_sheets
-from rigdesign.report.assumption_groups import assumption_groups, most_influential
+from rigdesign.report.input_sheets import assumption_groups, most_influential
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 

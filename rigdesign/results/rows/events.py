@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rigdesign.results.events import EventRecord
+from rigdesign.results.loads import EventRecord
 from rigdesign.results.units import MPA, RPM
 
 UNITS = {"bearing force": "N"}

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from rigdesign.results.transient import Extreme, WorstMoment
+from rigdesign.results.thermal import Extreme, WorstMoment
 from rigdesign.results.units import (
     DEGREE_CELSIUS,
     KILOWATT,

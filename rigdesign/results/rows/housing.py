@@ -23,7 +23,7 @@ from rigdesign.results.lateral import RollingBearingRecord
 from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import FluidRow, HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
 from rigdesign.results.units import L_MIN, RPM, UM, ZERO
-from rigdesign.rig_heat.room import Room, RoomBalance
+from rigdesign.rig_heat.component import Room, RoomBalance
 from thermal.conduction.balance import HeatFlow
 
 

@@ -15,7 +15,7 @@ from rigdesign.case.paths import Slot, slot_of
 from rigdesign.checks.registry import REGISTRY
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.measurement.quantities import CHANNELS, SETTINGS
-from rigdesign.measurement.reading.document import MeasurementFile
+from rigdesign.measurement.reading.measurement_set import MeasurementFile
 from tests.builders.paths import ROOT
 
 NAME = re.compile(

@@ -14,8 +14,7 @@ from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.contact.points import FaceGrid
 from dynamics.contact.root_field import PairForces, root_course, root_field
 from dynamics.gear.pair import GearPair
-from dynamics.influence.gear_body import SectionDivision
-from dynamics.influence.numbers import InfluenceNumbers
+from dynamics.influence.numbers import InfluenceNumbers, SectionDivision
 from dynamics.mesh.force import ToothForces
 from rigdesign.rig.tooth_influence import gear_model
 from tests.builders.elastic_pairs import equal_helical_pair, numbers_of

@@ -6,7 +6,7 @@ import pytest
 from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.errors import DynamicsInputError
 from dynamics.influence.build import influence_numbers
-from dynamics.influence.gear_body import GearBody
+from dynamics.influence.numbers import GearBody
 from tests.builders.influence import hat_means, small_model
 
 

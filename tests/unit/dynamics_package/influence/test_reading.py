@@ -8,7 +8,7 @@ import pytest
 from scipy import sparse
 
 from dynamics.influence.elastic_segment import solve_segment
-from dynamics.influence.gear_body import TEETH
+from dynamics.influence.numbers import TEETH
 from dynamics.influence.reading import SegmentReading, rows
 from dynamics.influence.segment import GearSegment, gear_section, turned
 from tests.builders.influence import STEEL, small_model

@@ -8,7 +8,7 @@ import pytest
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.tooth_form import TipEdge, ToothForm
 from dynamics.influence import segment as section_module
-from dynamics.influence.gear_body import STANDARD, TEETH, GearBody
+from dynamics.influence.numbers import STANDARD, TEETH, GearBody
 from dynamics.influence.segment import anticlockwise, gear_section, least_jacobian, on_circles
 from tests.builders.influence import COARSE, drawn_gear
 from thermal.fe.reference_elements import QUAD_8

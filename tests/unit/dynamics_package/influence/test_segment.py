@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dynamics.errors import DynamicsInputError
-from dynamics.influence.gear_body import GearBody
+from dynamics.influence.numbers import GearBody
 from dynamics.influence.segment import GearSegment, gear_section
 from tests.builders.influence import COARSE, small_model
 from tests.unit.dynamics_package.influence.test_section import area

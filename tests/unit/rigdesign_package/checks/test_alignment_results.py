@@ -26,7 +26,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.warm_gearbox import axis_alignments, bore_alignments, coupling_alignments
 from rigdesign.results.check import Check
 from rigdesign.results.rows.warm_gearbox import expansion_row
-from rigdesign.results.transient import HistoryExtremes
+from rigdesign.results.thermal import HistoryExtremes
 from rigdesign.results.warm_gearbox import (
     AxisAlignment,
     BoreAlignment,

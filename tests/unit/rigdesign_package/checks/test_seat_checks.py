@@ -13,7 +13,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.report.sections.vibration import least_safe
 from rigdesign.results.check import Check
-from rigdesign.results.events import EventPeak, EventRecord
+from rigdesign.results.loads import EventPeak, EventRecord
 from rigdesign.results.rows.teeth import press_fit_row
 from tests.builders.checks import check as check_of
 from tests.builders.made_run import made_ramp, made_run

@@ -17,7 +17,7 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.solved_rig import solved_rig
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.rival_laws import law_spreads
+from rigdesign.run.mesh_convergence import law_spreads
 from tests.builders.fzg_case import HELD, fzg_case
 
 FREE = {"test": "", "slave": HELD}

@@ -5,8 +5,8 @@ from functools import cache
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.coupling.boundary import side_excess
 from rigdesign.coupling.loop import solve_point
+from rigdesign.coupling.temperatures import side_excess
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed
 from tests.builders.twisting import twisting_rig
 from tests.builders.warm_prototype import Changes, Settled, base, case_with, lost, open_share, settled

@@ -8,9 +8,9 @@ import pytest
 from dynamics.errors import DynamicsNotConverged
 from rigdesign.checks.law_ranges import loss_findings
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.loop_over_speed import stage_losses
 from rigdesign.coupling.losses import oil_jets
 from rigdesign.coupling.placed_loss import PlacedLoss, drag_torques
-from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.housing import cooling_balance
 from rigdesign.results.rows.housing import loss_rows
@@ -84,7 +84,7 @@ def test_a_stage_without_a_periodic_response_says_so(monkeypatch: pytest.MonkeyP
     def unsolved(*_: object) -> None:
         raise DynamicsNotConverged("no periodic response at 10,800 rpm")
 
-    monkeypatch.setattr("rigdesign.coupling.stage_losses.respond", unsolved)
+    monkeypatch.setattr("rigdesign.coupling.loop_over_speed.respond", unsolved)
     for mesh in ("test.main", "reference.main"):
         assert any(
             text.startswith(f"{mesh}, stage test: no periodic response")

@@ -17,8 +17,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.rows.housing import circuit_rows, rig_heat_row
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig_heat.component import CouplingRotor, coupling_windage
-from rigdesign.rig_heat.room import room_balance
+from rigdesign.rig_heat.component import CouplingRotor, coupling_windage, room_balance
 from tests.builders.oil_circuit import PLANT, ZERO
 from tests.builders.rig_heat import ROOM, TRANSMISSION, loss_map
 

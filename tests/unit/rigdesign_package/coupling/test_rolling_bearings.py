@@ -17,7 +17,6 @@ from rigdesign.case.rolling_bearing import BearingSeats
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads, shaft_loads
 from rigdesign.coupling.bearing_seats import conductances
-from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.losses import rotating_losses
@@ -26,6 +25,7 @@ from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
+    boundary_conditions,
     heat_into_films,
     heat_into_oil,
     seat_temperatures,

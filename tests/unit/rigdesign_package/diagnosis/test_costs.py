@@ -5,7 +5,7 @@ from typing import get_args
 import pytest
 
 from rigdesign.diagnosis.library.candidates import NOISE, USUAL_COST, Costs
-from rigdesign.measurement.reading.document import ExtraPoint
+from rigdesign.measurement.reading.measurement_set import ExtraPoint
 from rigdesign.prediction.model import Quantity
 
 

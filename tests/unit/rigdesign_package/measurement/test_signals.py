@@ -14,7 +14,7 @@ import pytest
 from nptdms import ChannelObject, RootObject, TdmsWriter
 
 from rigdesign.base.errors import MeasurementError
-from rigdesign.measurement.reading.document import DataSection, Tach
+from rigdesign.measurement.reading.measurement_set import DataSection, Tach
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, turn_angle
 

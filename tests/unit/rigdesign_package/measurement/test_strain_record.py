@@ -14,7 +14,7 @@ from rigdesign.measurement.processing.root_gauges import (
     StrainRecording,
     read_strain_records,
 )
-from rigdesign.measurement.reading.document import Tach
+from rigdesign.measurement.reading.measurement_set import Tach
 from tests.builders.recording import write_recording
 from tests.builders.strain_gauge import bridge, measuring_point, root_stress, wandering_angle, wandering_speed
 

@@ -25,7 +25,7 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.orders import Orders, shaft_orders
 from rigdesign.prediction.predict import predict
-from rigdesign.records.lateral import lateral_vibration
+from rigdesign.records.vibration import lateral_vibration
 from rigdesign.rig.model import Rig
 from tests.builders.order import BracedCase, settled, shipped
 

@@ -21,7 +21,7 @@ from rigdesign.report.numbers import margin_text, value_text
 from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.check import Checks
-from rigdesign.results.events import EventRecord
+from rigdesign.results.loads import EventRecord
 from rigdesign.results.rows.events import event_row
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.paths import CASES

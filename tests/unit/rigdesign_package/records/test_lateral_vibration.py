@@ -15,7 +15,7 @@ from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.lateral import lateral_vibration, seal_whirls, seat_stiffnesses
+from rigdesign.records.vibration import lateral_vibration, seal_whirls, seat_stiffnesses
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.rows.lateral import lateral_row
 from rigdesign.rig.model import Rig, build_rig

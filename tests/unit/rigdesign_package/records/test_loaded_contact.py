@@ -10,7 +10,7 @@ import pytest
 from dynamics.contact.loaded_mesh import LoadedMesh
 from dynamics.flank.field import AxisMisalignment
 from dynamics.influence.elastic_segment import GearModel
-from dynamics.influence.gear_body import SectionDivision
+from dynamics.influence.numbers import SectionDivision
 from rigdesign.records import root
 from rigdesign.records.gear_loads import COMPUTED, STATED, rated_loads
 from rigdesign.records.loaded_contact import held_contact, loaded_contact

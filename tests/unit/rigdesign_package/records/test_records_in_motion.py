@@ -14,9 +14,8 @@ from rigdesign.checks.dwell_speeds import checks
 from rigdesign.records.dwell_speeds import dwell_record
 from rigdesign.records.dynamic_root import dynamic_root
 from rigdesign.records.dynamics import SolvedLoads, _SolvedMesh
-from rigdesign.records.dynamics_section import pair_shares
+from rigdesign.records.dynamics_section import pair_shares, section_torque_record
 from rigdesign.records.near_dwell import near_dwells
-from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.records.spectra import held_spectra, waterfalls
 from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord

@@ -10,8 +10,8 @@ import pytest
 
 from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.records.curves import Curves, curve_at
+from rigdesign.records.dynamics_section import section_torque_record
 from rigdesign.records.loop_states import chosen
-from rigdesign.records.section_torques import section_torque_record
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.vibration import SectionTorqueRecord
 from tests.builders.made_run import made_ramp, made_run

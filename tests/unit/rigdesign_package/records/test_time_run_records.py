@@ -10,7 +10,7 @@ import pytest
 from dynamics.response.envelopes import EnvelopeWindows, LiftOff
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records import time_run
+from rigdesign.records import dynamics as time_run
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 

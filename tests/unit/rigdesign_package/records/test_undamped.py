@@ -7,7 +7,7 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.records.curves import LEAST_GAIN
 from rigdesign.records.dynamics import numbered
-from rigdesign.records.undamped import LIGHTLY, UNDAMPED, held_crossings, light_dwells, require_damping
+from rigdesign.records.near_dwell import LIGHTLY, UNDAMPED, held_crossings, light_dwells, require_damping
 from rigdesign.results.loads import ModeCrossing
 from tests.builders.solved_loop import solved
 

@@ -18,7 +18,7 @@ from rigdesign.report.figures.transient import (
 from rigdesign.report.numbers import power_text
 from rigdesign.report.palette import VERDICT_COLOURS
 from rigdesign.results.curves import transient_curves
-from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
+from rigdesign.results.thermal import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 from tests.builders.report import thermal_and_expansion
 
 TIMES = [0.0, 10.0, 1000.0, 1001.0, 1010.0, 4610.0, 90000.0]

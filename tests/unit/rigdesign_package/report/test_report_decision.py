@@ -10,21 +10,19 @@ from rigdesign.case import load_case
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.provenance import InputRow
 from rigdesign.report import flips, reasons
-from rigdesign.report.assumption_groups import (
-    assumption_groups,
-    governing_ids,
-    in_braces,
-    most_influential,
-)
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.figures.schematic import phone_schematic_figure, rig_plan, schematic_figure
 from rigdesign.report.input_sheets import (
     CaseSheet,
     Issue,
+    assumption_groups,
     bearing_sheet,
     gear_sheets,
+    governing_ids,
+    in_braces,
     joint_sheet,
     material_sheet,
+    most_influential,
     oil_sheet,
     shaft_sheet,
     signatures,

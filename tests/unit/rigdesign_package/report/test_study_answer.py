@@ -10,8 +10,7 @@ from rigdesign.report.figures.study_samples import tornado_figure
 from rigdesign.report.margins.answer import slices, study_answer
 from rigdesign.report.margins.regions import region_map
 from rigdesign.report.margins.table import input_name, study_axis, value_shown
-from rigdesign.studies.result import Swing
-from rigdesign.studies.selection import CheckSelection
+from rigdesign.studies.result import CheckSelection, Swing
 from tests.builders.study_points import OIL, TORQUE, check_record, map_points, oil_points, point, study_of
 
 ROOT = "!specimen.root*"

@@ -7,8 +7,8 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.case import surface_conditions as laws
 from rigdesign.case.films import NiemannWinter
-from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM
+from rigdesign.coupling.temperatures import boundary_conditions
 from tests.builders.twisting import twisting_rig
 from tests.builders.warm_prototype import base, case_with, heat_by_kind, open_share, outlet, settled
 from thermal.conditions.boundary import Exchange, Film

@@ -10,8 +10,8 @@ from dynamics.drivetrain.parts import Coupling
 from dynamics.drivetrain.shaft import Section, Shaft
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
+from rigdesign.rig.drivetrain import LARGEST_STRAIN, section_torsions
 from rigdesign.rig.model import build_rig
-from rigdesign.rig.shaft_torsion import LARGEST_STRAIN, section_torsions
 from tests.builders.paths import CASES
 from tests.builders.rig import prototype
 

@@ -15,11 +15,12 @@ from rigdesign.rig_heat.component import (
     HeatSplit,
     LossMap,
     Machine,
+    Room,
     coupling_windage,
     drive_train_heat,
     heat_by_sink,
+    room_balance,
 )
-from rigdesign.rig_heat.room import Room, room_balance
 
 ZERO = 273.15
 GRID = LossMap(

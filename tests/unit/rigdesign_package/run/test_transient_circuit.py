@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.results.result import RunResult
-from rigdesign.results.transient import OilPowerCurve
+from rigdesign.results.thermal import OilPowerCurve
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 

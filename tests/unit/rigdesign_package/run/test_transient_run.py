@@ -14,7 +14,7 @@ from rigdesign.cli import main as cli
 from rigdesign.properties.oil import MIL_PRF_23699
 from rigdesign.report import results_document, write_results
 from rigdesign.results.result import RunResult
-from rigdesign.results.transient import TransientCurve, TransientResult
+from rigdesign.results.thermal import TransientCurve, TransientResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 

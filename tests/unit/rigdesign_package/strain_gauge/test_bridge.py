@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError, MeasurementError
-from rigdesign.strain_gauge.bridge import ARMS, WIRES, Bridge
-from rigdesign.strain_gauge.gauge import StrainGauge, ThermalOutput
+from rigdesign.strain_gauge.gauge import ARMS, WIRES, Bridge, StrainGauge, ThermalOutput
 from rigdesign.strain_gauge.measuring_point import SurfaceStress
 from tests.builders.strain_gauge import STEEL, bridge, gauge, measuring_point
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from rigdesign.studies.design import BoundarySearch, DesignPoint, Plan
 from rigdesign.studies.grid import Variation
+from rigdesign.studies.result import CheckSelection
 from rigdesign.studies.run import replaced_pages
-from rigdesign.studies.selection import CheckSelection
 
 INLET = "gearboxes.test.oil.inlet_temperature"
 

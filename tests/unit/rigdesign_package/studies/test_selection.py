@@ -11,7 +11,7 @@ from rigdesign.case import load_case
 from rigdesign.results.check import Checks
 from rigdesign.studies.analysis import kept_by_copies
 from rigdesign.studies.design import StudyDesign, planned
-from rigdesign.studies.selection import CheckSelection
+from rigdesign.studies.result import CheckSelection
 from tests.builders.commands import Rigdesign
 from tests.builders.report import make_check, make_result
 from tests.builders.study import run_study

@@ -15,7 +15,7 @@ from rigdesign.checks.transient import checks as transient_checks
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.transient import Extreme, HistoryExtremes
+from rigdesign.results.thermal import Extreme, HistoryExtremes
 from rigdesign.rig.model import build_rig
 from rigdesign.transient.heating import blended
 from rigdesign.transient.oil import at_least

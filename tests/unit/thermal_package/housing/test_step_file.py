@@ -11,7 +11,7 @@ from tests.builders.housing import area
 from thermal.fe.mesh import MeshError
 from thermal.housing import step_file
 from thermal.housing.face_rules import Box, Cylinder, FaceRule, FaceRuleError, Plane
-from thermal.housing.fitted import fit_cylinder
+from thermal.housing.stations import fit_cylinder
 from thermal.housing.step_file import listed_faces, named_faces, read_part, read_step
 
 SIZE, CIRCLE = 0.03, 10

@@ -13,9 +13,9 @@ from tests.builders.msh_file import write_msh
 from tests.builders.two_blocks import renamed
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, MeshError, NamedMesh, box_mesh, disjoint_union
-from thermal.housing.fitted import fit_cylinder, fitted_model
 from thermal.housing.gearbox import build_gearbox
 from thermal.housing.mesh_file import read_mesh
+from thermal.housing.stations import fit_cylinder, fitted_model
 
 BOX = box_mesh((0.4, 0.3, 0.2), (2, 2, 2), name="housing")
 
