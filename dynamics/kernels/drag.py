@@ -15,14 +15,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
+from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 from dynamics.kernels.contact_table import V_R1, V_R2
 from dynamics.kernels.linear_step import BANK_AT, FOUR, STATE_AT, DragModes
-from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
-from dynamics.kernels.mode_layout import N_BANK, WIDTH
+from dynamics.kernels.mode_pass import N_BANK, WIDTH
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

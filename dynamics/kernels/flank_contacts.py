@@ -11,8 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, Flank, inlined
-from dynamics.kernels.mesh_tables import (
+from dynamics.kernels.contact import (
     BACK_AT,
     BACK_DEVIATION_1_AT,
     BACK_DEVIATION_2_AT,
@@ -21,6 +20,7 @@ from dynamics.kernels.mesh_tables import (
     DEVIATION_1_AT,
     DEVIATION_2_AT,
     FRONT_AT,
+    LOOSE,
     N_CELLS,
     N_PHASE,
     N_PHASES,
@@ -48,10 +48,11 @@ from dynamics.kernels.mesh_tables import (
     SHIFTS_AT,
     START,
     VECTOR,
+    Flank,
     PackedMeshes,
+    inlined,
 )
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

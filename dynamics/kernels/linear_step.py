@@ -11,13 +11,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, inlined
-from dynamics.kernels.mesh_tables import POSITIVE
+from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
-from dynamics.kernels.mode_layout import N_BANK, WIDTH
-from dynamics.kernels.mode_pass import pass_modes
+from dynamics.kernels.mode_pass import N_BANK, WIDTH, pass_modes
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

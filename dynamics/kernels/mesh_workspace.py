@@ -4,7 +4,8 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-# compiled from sources 815a2749
+import numpy as np
+from numpy.typing import NDArray
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -69,3 +70,25 @@ N_SPACE = INVERSE + 4 + 2 * PORT
 def port_place(port: int) -> int:
     """Return the place of a port in the mesh workspace: port 2 m is the pinion of mesh m, 2 m + 1 its wheel."""
     return port // 2 * N_SPACE + port % 2 * PORT
+
+
+# Arrays that begin with a cache line: what a kernel reads together then stands in one line, not in two.
+
+Array = NDArray[np.float64]
+
+LINE = 64
+"""Bytes in a cache line."""
+
+
+def aligned_zeros(count: int) -> Array:
+    """Return ``count`` zeros."""
+    room = np.zeros(count + LINE // 8)
+    first = (-room.ctypes.data // 8) % (LINE // 8)
+    return room[first : first + count]
+
+
+def aligned(array: Array) -> Array:
+    """Return a flat copy of an array."""
+    copy = aligned_zeros(array.size)
+    copy[:] = array.ravel()
+    return copy

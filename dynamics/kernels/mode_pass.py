@@ -10,9 +10,6 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from dynamics.kernels.mode_layout import N_BANK, WIDTH
-
-# compiled from sources 815a2749
 FAST = ("contract", "reassoc", "nsz", "arcp")
 LANES = 8
 """Numbers in a vector."""
@@ -158,3 +155,13 @@ forces push, by ``table`` from ``at`` on: per group the state of all its modes p
 pass_modes: Any = intrinsic(_pass_modes)
 """pass_modes(bank, first, groups, torque_a, torque_b): take a block of the bank over a step with the torques of its two
 ports at the start of it; return speed and turn of port a, speed and turn of port b that its modes give."""
+
+
+# Layout of the modes of a block in the bank, see ``kernels.linear_step``.
+
+WIDTH = 16
+"""Modes in a row of the tables: a fixed number, so that the compiler makes vector instructions of a loop
+over them."""
+N_BANK = 16
+"""Rows of WIDTH in a group of the bank, real and imaginary alternating: state, decay, push of torque a, of torque b,
+speed of port a, turn of port a, speed and turn of port b."""

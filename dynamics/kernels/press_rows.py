@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import inlined, sliding_direction
+from dynamics.kernels.contact import POSITIVE, inlined, sliding_direction
 from dynamics.kernels.contact_table import (
     N_ROW,
     R_CLOSING,
@@ -31,9 +31,7 @@ from dynamics.kernels.contact_table import (
     V_ROLL_2,
     V_SPUR,
 )
-from dynamics.kernels.mesh_tables import POSITIVE
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 
 

@@ -20,7 +20,6 @@ from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_a
 from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40

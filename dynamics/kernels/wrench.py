@@ -13,10 +13,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, inlined
+from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.contact_table import V_BACKLASH, V_FRICTION, V_R1, V_R2
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, STATE_AT
-from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import (
     APART,
     APART_RATE,
@@ -36,10 +35,8 @@ from dynamics.kernels.mesh_workspace import (
     TEETH,
     TURN,
 )
-from dynamics.kernels.mode_layout import N_BANK, WIDTH
-from dynamics.kernels.mode_pass import dot_modes, push_modes
+from dynamics.kernels.mode_pass import N_BANK, WIDTH, dot_modes, push_modes
 
-# compiled from sources 815a2749
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings, slice_sums
+from dynamics.kernels.contact_table import FRICTION, SUMS, NodeLaw, SliceSprings, slice_sums
 from dynamics.mesh.law import MeshLaw, law_content
 from thermal.fe.kept_results import kept_as
 

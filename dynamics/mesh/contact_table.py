@@ -20,9 +20,8 @@ from scipy.ndimage import spline_filter1d
 
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels import contact_table as layout
-from dynamics.kernels.aligned import aligned
-from dynamics.kernels.contact_nodes import FRICTION, SUMS, NodeLaw, SliceSprings
-from dynamics.kernels.contact_table import ContactTables
+from dynamics.kernels.contact_table import FRICTION, SUMS, ContactTables, NodeLaw, SliceSprings
+from dynamics.kernels.mesh_workspace import aligned
 from dynamics.mesh.contact_samples import PADDING, RESOLVED, FlankGrid, PathFilter, flank_samples
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law, law_content
 from dynamics.mesh.tables import has_individual_teeth

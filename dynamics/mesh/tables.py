@@ -17,7 +17,7 @@ from scipy.interpolate import PchipInterpolator
 
 from dynamics import kernels
 from dynamics.kernels import PackedMeshes
-from dynamics.kernels.mesh_tables import DAMP_TIME
+from dynamics.kernels.contact import DAMP_TIME
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law, law_content
 from thermal.fe.kept_results import kept_as
 

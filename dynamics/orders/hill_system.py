@@ -19,7 +19,7 @@ from scipy.sparse import csr_array
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.static_loop import port_model
-from dynamics.kernels.mesh_tables import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
+from dynamics.kernels.contact import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_balance import input_torques, mesh_inputs

@@ -4,13 +4,9 @@ Sources: Amanatides, Woo, A fast voxel traversal algorithm, Eurographics 1987 (t
 Trumbore, J. Graphics Tools 2 (1997) 21 (ray and triangle).
 """
 
-from pathlib import Path
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-
-from thermal.fe.kernel_cache import remove_outdated
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -130,6 +126,3 @@ def first_hits(
                 break
             reach[axis] += rise[axis]
     return hits
-
-
-remove_outdated(Path(__file__).parent)

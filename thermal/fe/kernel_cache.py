@@ -2,22 +2,32 @@
 
 A folder that the user names is taken as it is, also a read-only one; otherwise that of the user, or one of this user in
 the folder for temporary files where there is none that can be written: a container without a home, a read-only disk.
-numba keeps compiled kernels beside their sources and, where it cannot, there.
-
-numba drops an outdated index by the stamp it holds, but it unpickles the argument types first: an index whose types
-name a class that has moved or gone since ends in an AttributeError instead of a compilation. Indices older than their
-sources are removed before it reads them.
+numba keeps a compiled function by the content of its own file, with what other files gave to it compiled in, and reads
+the types of an index before it looks at its stamp. The folder of the kernels is therefore named after all sources that
+are compiled: beside them, or among the caches where that cannot be written.
 """
 
 import os
+import shutil
 import stat
 import sys
 from contextlib import suppress
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
+from time import time
 
 GIVEN = "RIGDESIGN_CACHE_DIR"
 """Environment variable that names the folder."""
+COMPILED = (
+    "dynamics/kernels/*.py",
+    "thermal/fe/kernels.py",
+    "thermal/fe/assembly.py",
+    "thermal/conditions/ray_kernel.py",
+)
+"""Files with compiled code, below the folder of the packages."""
+KEPT = 30 * 86400.0
+"""Seconds after which kernels of other sources go."""
 
 
 def cache_folder() -> Path:
@@ -41,29 +51,37 @@ def user_folder() -> Path | None:
 
 
 def place_kernels() -> None:
-    """Give numba a folder where it has none; before the first kernel is decorated."""
+    """Give numba the folder of these sources; before the first kernel is decorated."""
     beside = Path(__file__).parent / "__pycache__"
-    if os.environ.get("NUMBA_CACHE_DIR") or _writable(beside):
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given:
+        folder = Path(given)
+    elif _writable(beside):
+        folder = beside
+    else:
+        folder = cache_folder() if _writable(cache_folder()) else _temporary_folder()
+    name = f"kernels-{sources_hash()}"
+    if folder.name == name:  # that of the process which started this one
         return
-    folder = cache_folder() if _writable(cache_folder()) else _temporary_folder()
-    os.environ["NUMBA_CACHE_DIR"] = str(folder / "kernels")
+    _remove_unused(folder)
+    os.environ["NUMBA_CACHE_DIR"] = str(folder / name)
     if "numba" in sys.modules:
         sys.modules["numba"].config.reload_config()
 
 
-def remove_outdated(folder: Path) -> None:
-    """Remove the indices of compiled kernels of ``folder`` that are older than a source there, wherever they lie.
+def sources_hash() -> str:
+    """Of all files that hold compiled code."""
+    root = Path(__file__).parents[2]
+    texts = (path.read_bytes() for pattern in COMPILED for path in sorted(root.glob(pattern)))
+    return sha256(b"\0".join(texts)).hexdigest()[:12]
 
-    A folder that cannot be read or written is left as it is.
-    """
-    placed = os.environ.get("NUMBA_CACHE_DIR")  # there numba adds a hash to the name of the folder
+
+def _remove_unused(folder: Path) -> None:
+    """Remove the kernels of other sources that were last added to before `KEPT`."""
     with suppress(OSError):
-        newest = max((path.stat().st_mtime for path in folder.glob("*.py")), default=0.0)
-        elsewhere = Path(placed).glob(f"{folder.name}_*/*.nbi") if placed else ()
-        for index in (*(folder / "__pycache__").glob("*.nbi"), *elsewhere):
-            with suppress(OSError):
-                if index.stat().st_mtime < newest:
-                    index.unlink()
+        for old in folder.glob("kernels-*"):
+            if time() - old.stat().st_mtime > KEPT:
+                shutil.rmtree(old, ignore_errors=True)
 
 
 def _writable(folder: Path) -> bool:

@@ -7,13 +7,10 @@ waking the others costs more than it saves.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 from numba import get_num_threads, njit, prange, set_num_threads
 from numpy.typing import NDArray
-
-from thermal.fe.kernel_cache import remove_outdated
 
 Numbers = NDArray[np.floating]
 Integers = NDArray[np.int32]
@@ -364,6 +361,3 @@ def group_blocks(
                             for j in range(b):
                                 blocks[group, mine * b + i, other * b + j] = data[at, i, j]
     return blocks
-
-
-remove_outdated(Path(__file__).parent)

@@ -1,65 +1,60 @@
 """Compiled loops on disk are never older than the sources they were made from.
 
-numba keeps a compiled function by the content of its own file, with what other files gave to it compiled in. A mark
-of all sources in every file that takes from another makes it new whenever one of them is.
+numba keeps a compiled function by the content of its own file, with what other files gave to it compiled in: the
+folder of the kernels is named after all of them.
 """
 
 import os
-import re
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
-from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
-import dynamics.kernels
 from tests.builders.paths import ROOT
 from thermal.fe import kernel_cache
-from thermal.fe.kernel_cache import cache_folder, remove_outdated
-
-FOLDER = Path(dynamics.kernels.__file__).parent
-MARK = re.compile(r"^# compiled from sources ([0-9a-f]{8})$", re.MULTILINE)
-SOURCES = {path.stem: path.read_text() for path in sorted(FOLDER.glob("*.py")) if path.stem != "__init__"}
+from thermal.fe.kernel_cache import COMPILED, cache_folder, place_kernels, sources_hash
 
 
-@pytest.mark.parametrize("name", [name for name, text in SOURCES.items() if "from dynamics.kernels" in text])
-def test_compiled_loops_are_made_anew_with_their_sources(name: str) -> None:
-    whole = "\n".join(MARK.sub("# compiled from sources", text) for text in SOURCES.values())
-    now = sha256(whole.encode()).hexdigest()[:8]
-    assert MARK.findall(SOURCES[name]) == [now], (
-        f"write '# compiled from sources {now}' into kernels/{name}.py"
-    )
+def test_the_folder_of_the_kernels_is_named_after_every_file_with_compiled_code() -> None:
+    compiled = {
+        path
+        for package in ("dynamics", "thermal", "rigdesign")
+        for path in (ROOT / package).rglob("*.py")
+        if "import njit" in path.read_text() or "numba.njit" in path.read_text()
+    }
+    assert compiled <= {path for pattern in COMPILED for path in ROOT.glob(pattern)}
+    assert Path(os.environ["NUMBA_CACHE_DIR"]).name == f"kernels-{sources_hash()}"
 
 
-def test_indices_older_than_a_source_are_removed_and_newer_ones_stay(
+def test_other_sources_have_another_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = sources_hash()
+    for pattern in COMPILED:
+        for path in ROOT.glob(pattern):
+            copy = tmp_path / path.relative_to(ROOT)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(path.read_bytes())
+    monkeypatch.setattr(kernel_cache, "__file__", str(tmp_path / "thermal" / "fe" / "kernel_cache.py"))
+    assert sources_hash() == before
+    (tmp_path / "dynamics" / "kernels" / "drag.py").write_text("")
+    assert sources_hash() != before
+
+
+def test_processes_that_a_process_starts_share_its_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """numba unpickles the types of an index before it looks at its stamp: a class that has gone ends the run."""
-    (tmp_path / "__pycache__").mkdir()
-    placed = tmp_path / "placed" / f"{tmp_path.name}_0f1e"
-    placed.mkdir(parents=True)
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(placed.parent))
-    files = {
-        "a.py": 100.0,
-        "b.py": 200.0,
-        "__pycache__/a.f-1.py311.nbi": 150.0,
-        "__pycache__/b.g-1.py311.nbi": 300.0,
-        f"placed/{placed.name}/a.f-1.py311.nbi": 150.0,
-        f"placed/{placed.name}/b.g-1.py311.nbi": 300.0,
-    }
-    for name, time in files.items():
-        (tmp_path / name).write_text("")
-        os.utime(tmp_path / name, (time, time))
-    remove_outdated(tmp_path)
-    for folder in (tmp_path / "__pycache__", placed):
-        assert [path.name for path in folder.iterdir()] == ["b.g-1.py311.nbi"]
-
-
-def test_a_folder_without_sources_is_left_alone(tmp_path: Path) -> None:
-    remove_outdated(tmp_path / "nothing")
+    """Kernels of other sources go when nothing was added to them for a month."""
+    old, new = tmp_path / "kernels-old", tmp_path / "kernels-new"
+    for folder in (old, new):
+        folder.mkdir()
+    os.utime(old, (0.0, 0.0))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    for _ in range(2):
+        place_kernels()
+        assert os.environ["NUMBA_CACHE_DIR"] == str(tmp_path / f"kernels-{sources_hash()}")
+    assert new.is_dir() and not old.exists()
 
 
 @pytest.fixture
