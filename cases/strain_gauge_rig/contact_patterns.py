@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rigdesign.validation.p1_contact import cycle_at, elastic_contact, elastic_gears
 
-from dynamics.contact.mesh_cycle import MeshCycle
+from dynamics.tooth.mesh_cycle import MeshCycle
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.mesh_models import mesh_microgeometry

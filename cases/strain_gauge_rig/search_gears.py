@@ -38,19 +38,19 @@ from rigdesign.validation.p1_contact import (
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.points import FaceGrid, flank_gap
-from dynamics.contact.slice_compliance import USUAL_COUPLING, SliceCompliance
-from dynamics.flank.field import FlankField
-from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
+from dynamics.gear.flank import FlankField
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
-from dynamics.mesh.pair_gap import PairGap
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.mesh_cycle import MeshCycle
+from dynamics.tooth.pair_gap import PairGap
+from dynamics.tooth.points import FaceGrid, flank_gap
+from dynamics.tooth.slice_compliance import USUAL_COUPLING, SliceCompliance
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
-from rigdesign.records.loaded_contact import ElasticGear
+from rigdesign.postprocessing.loaded_contact import ElasticGear
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.measuring_point import GaugeCurve

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from dynamics.drivetrain.shaft import STEEL_DENSITY, Disc, Section, Shaft, free_frequencies
+from dynamics.rotor.shaft import STEEL_DENSITY, Disc, Section, Shaft, free_frequencies
 
 Array = NDArray[np.float64]
 

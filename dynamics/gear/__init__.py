@@ -1,1 +1,1 @@
-"""Cylindrical gears and gear pairs: geometry, limits, tooth outline."""
+"""Cylindrical gears and gear pairs: geometry, limits, tooth outline, modifications and deviations of the flanks."""

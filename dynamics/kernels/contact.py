@@ -299,7 +299,7 @@ def flank_powers(
 
 
 class PackedMeshes(NamedTuple):
-    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh.tables.pack_meshes``."""
+    """Tables of all meshes of a drivetrain; packed by ``dynamics.tooth.packed_laws.pack_meshes``."""
 
     values: Array
     """(n_meshes, N_VALUES) plain numbers."""

@@ -137,13 +137,13 @@ def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array
 # ``u = y - G(s)`` the depth of the approach ``y`` of the teeth below the least gap ``G``, so that the first touch
 # stands on a node. Over the depth W is a cubic in each cell, over the path the coefficients of these cubics are uniform
 # cubic B-splines: force ``dW/dy`` and derivative torque ``r_b1 dW/ds`` are continuous and come from one potential, so
-# that the interpolation neither makes nor takes energy (``dynamics.mesh.law``).
+# that the interpolation neither makes nor takes energy (``dynamics.tooth.law``).
 #
 # Where the faces tilt against each other, W is tabulated at some tilts with the tilting moment ``dW/dtilt`` and a cubic
 # over the tilt by both (Hermite), again one potential.
 #
 # ``kernels.hold_path`` contracts the splines of every pair that can touch to one row of numbers, a cubic in y, at a
-# place on the path; ``kernels.press_rows`` sums the rows. Built by ``dynamics.mesh.contact_table``.
+# place on the path; ``kernels.press_rows`` sums the rows. Built by ``dynamics.tooth.contact_table``.
 
 Integers = NDArray[np.int64]
 
@@ -181,7 +181,7 @@ SCRATCH = 2 * CELL + 4 * LINES
 
 
 class ContactTables(NamedTuple):
-    """Tables of all meshes of a drivetrain; see ``dynamics.mesh.contact_table.contact_tables``."""
+    """Tables of all meshes of a drivetrain; see ``dynamics.tooth.contact_table.contact_tables``."""
 
     values: Array
     """(n_meshes, N_TABLE_VALUES) plain numbers."""

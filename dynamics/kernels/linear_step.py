@@ -1,6 +1,6 @@
 """One step of the modes of a drivetrain between its gear meshes.
 
-Arrays come from ``dynamics.response.propagator``. The modes are sorted by shaft line (``branch``: lines that damping
+Arrays come from ``dynamics.vibration.propagator``. The modes are sorted by shaft line (``branch``: lines that damping
 ties together), because a port, the place where a mesh acts on its line, sees the modes of its own branch only.
 One pass over the modes gives the outputs of two ports and takes the modes over the step.
 """
@@ -54,7 +54,7 @@ class DragModes(NamedTuple):
 
 
 class DiscreteModes(NamedTuple):
-    """Modes at one step length and number of steps per sample; see ``dynamics.response.propagator.discretise``.
+    """Modes at one step length and number of steps per sample; see ``dynamics.vibration.propagator.discretise``.
 
     The modal state ``w`` leaves out what follows the torques of the ports at once, so that ``w' = decay w + inputs
     tau`` in each step, ``tau`` being these torques at its start; what the slow inputs give is added once per sample,

@@ -1,10 +1,10 @@
 """March of the modal propagator with the gear meshes as implicit nonlinear torques.
 
-Arrays come from ``dynamics.response.propagator`` (discretised modes) and ``dynamics.mesh.contact_table`` (tables of the
-mesh laws); names, units and validation live above.
+Arrays come from ``dynamics.vibration.propagator`` (discretised modes) and ``dynamics.tooth.contact_table`` (tables of
+the mesh laws); names, units and validation live above.
 
-Within a step the mesh torques are held as ``dynamics.response.propagator`` says, their newest value found implicitly. A
-step guesses the torques (the parabola through the last three), looks at the meshes at the angles this guess leads to,
+Within a step the mesh torques are held as ``dynamics.vibration.propagator`` says, their newest value found implicitly.
+A step guesses the torques (the parabola through the last three), looks at the meshes at the angles this guess leads to,
 and takes a Newton step there (``mesh_solve``). Only where its remainder is too large are the meshes looked at again.
 """
 

@@ -2,7 +2,7 @@
 
 The ports of a mesh carry the torques of its gears with a lateral force along the normal of the flanks that carry. What
 these torques have beyond the normal force, and what the other flanks press, acts on rows of its own
-(``dynamics.drivetrain.linear_system``): two rows of friction in every step, the slide of the flanks while the others
+(``dynamics.rotor.linear_system``): two rows of friction in every step, the slide of the flanks while the others
 touch. They change smoothly and move the ports little: for the modes they are linear over an interval of a few steps,
 from the mean of the steps before; for the ports they stay.
 """

@@ -6,7 +6,7 @@
 from dataclasses import dataclass, field
 
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.friction import FrictionCoefficient, PairStiffness, ToothPath, tooth_loss_factor
+from dynamics.tooth.friction import FrictionCoefficient, PairStiffness, ToothPath, tooth_loss_factor
 
 __all__ = [
     "Loss",

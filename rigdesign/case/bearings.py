@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Tag
 
-from dynamics.bearing.journal_feed import Feed
+from dynamics.rotor.journal_feed import Feed
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import (
@@ -37,7 +37,7 @@ from rigdesign.case.losses import LossFactor
 from rigdesign.case.rolling_bearing import BearingPlace, BearingSeats, RollingBearingInput
 
 if TYPE_CHECKING:
-    from dynamics.bearing.protocol import Bearing
+    from dynamics.rotor.bearing import Bearing
 
 
 class JournalBearingInput(Part):
@@ -135,7 +135,7 @@ class JournalBearingInput(Part):
 
     def as_it_runs(self, place: BearingPlace) -> "Bearing":
         """The bearing for the solver at its place; BearingError where that is impossible."""
-        from dynamics.bearing.journal import JournalBearing
+        from dynamics.rotor.journal import JournalBearing
 
         return JournalBearing(
             diameter=self.diameter,

@@ -34,8 +34,8 @@ from rigdesign.case.fields import (
 from rigdesign.case.losses import LossFactor
 
 if TYPE_CHECKING:
-    from dynamics.bearing.protocol import Bearing
-    from dynamics.bearing.rolling_catalogue import CatalogueBearing
+    from dynamics.rotor.bearing import Bearing
+    from dynamics.rotor.rolling_catalogue import CatalogueBearing
 
 # What surrounds a bearing, for the kinds of bearings of the case. SI units.
 
@@ -124,7 +124,7 @@ class CatalogueNumbers(Part):
 
     @model_validator(mode="after")
     def _computable(self) -> "CatalogueNumbers":
-        from dynamics.bearing.protocol import BearingError
+        from dynamics.rotor.bearing import BearingError
 
         try:
             _ = catalogue_data("", self).elements
@@ -143,7 +143,7 @@ def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> "Catal
     BearingError
         A designation that is not tabled, numbers that do not go together.
     """
-    from dynamics.bearing.rolling_catalogue import CatalogueBearing, catalogue_bearing
+    from dynamics.rotor.rolling_catalogue import CatalogueBearing, catalogue_bearing
 
     if numbers is None:
         return catalogue_bearing(designation)
@@ -240,7 +240,7 @@ class RollingBearingInput(Part):
     @field_validator("designation")
     @classmethod
     def _tabled(cls, value: str | None) -> str | None:
-        from dynamics.bearing.protocol import BearingError
+        from dynamics.rotor.bearing import BearingError
 
         try:
             if value is not None:
@@ -287,7 +287,7 @@ class RollingBearingInput(Part):
     @property
     def drawn_clearance(self) -> float:
         """Radial internal clearance of the unmounted bearing, on the diameter [m]."""
-        from dynamics.bearing.rolling_clearance import class_clearance
+        from dynamics.rotor.rolling_clearance import class_clearance
 
         if self.radial_clearance is not None:
             return self.radial_clearance
@@ -327,13 +327,13 @@ class RollingBearingInput(Part):
 
     def induced_axial_load(self, radial: float) -> float:
         """Axial force that a radial load produces inside the bearing [N]; 0 without a contact angle."""
-        from dynamics.bearing.rolling_life import induced_axial_load
+        from dynamics.rotor.rolling_life import induced_axial_load
 
         return induced_axial_load(self.data, radial)
 
     def as_it_runs(self, place: BearingPlace) -> "Bearing":
         """The bearing for the solver at its place; BearingError where that is impossible."""
-        from dynamics.bearing.rolling import RollingBearing, SeatConductances, housing_path, shaft_path
+        from dynamics.rotor.rolling import RollingBearing, SeatConductances, housing_path, shaft_path
 
         level = self._oil_level(place)
         bath = {"fed": "oil_jet", "grease": "grease", "splash": "oil_bath" if level else "oil_spot"}
@@ -358,8 +358,8 @@ class RollingBearingInput(Part):
 
     def running_clearance(self, seats: BearingSeats) -> float:
         """Radial internal clearance as it runs, on the diameter [m]; negative is preload."""
-        from dynamics.bearing.rolling import housing_path, shaft_path
-        from dynamics.bearing.rolling_clearance import (
+        from dynamics.rotor.rolling import housing_path, shaft_path
+        from dynamics.rotor.rolling_clearance import (
             Fit,
             RingTemperatures,
             SeatMaterial,

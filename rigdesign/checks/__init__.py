@@ -11,8 +11,8 @@ from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import REGISTRY, load_topics
 from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
-from rigdesign.records.hand import disagreeing
-from rigdesign.records.solved_rig import LawSpread, SolvedRig
+from rigdesign.postprocessing.hand_calculation import disagreeing
+from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
 from rigdesign.rig.model import Rig
@@ -66,7 +66,7 @@ def _of_unusual(case: Case, check: Check, paths: Sequence[str]) -> Check:
 
 LINE_LOAD_ERROR: Mapping[Fidelity, float] = {"quick": 0.12, "standard": 0.04, "reference": 0.04}
 """Share of the highest stress that the face positions of the influence numbers leave open
-(`dynamics.influence.elastic_segment.NEAR_ENDS`)."""
+(`dynamics.tooth.elastic_segment.NEAR_ENDS`)."""
 BY_LINE_LOAD = {
     "specimen.root_stress*": 1.0, "strength.root_safety*": 1.0, "flank.contact_pressure*": 1.0, "flank.*": 0.5
 }  # fmt: skip

@@ -6,7 +6,7 @@ from rigdesign.checks.clearances import NOT_EXPANDED
 from rigdesign.checks.omissions import HEAT, coupled_shafts
 from rigdesign.checks.places import couplings
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import MICROMETRE, MILLIMETRE, MILLIRADIAN, MM, NUMBER
 from rigdesign.results.warm_gearbox import CouplingAlignment, ShaftOffset

@@ -15,7 +15,7 @@ from rigdesign.checks.places import housed_seals
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Rule
 from rigdesign.coupling.mesh_models import MeshModel
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import MICROMETRE, MILLIMETRE
 

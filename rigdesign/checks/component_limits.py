@@ -16,8 +16,8 @@ from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records.run_torques import PartTorque
-from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
+from rigdesign.postprocessing.run_torques import PartTorque
+from rigdesign.postprocessing.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.loads import StageBracing
 from rigdesign.results.units import NUMBER

@@ -9,7 +9,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.component_limits import GROUP, is_at
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.records.solved_rig import NO_LOADS, SolvedRig, worst
+from rigdesign.postprocessing.solved_rig import NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
 

@@ -4,17 +4,17 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.flank.field import Flank
+from dynamics.gear.flank import Flank
+from dynamics.tooth.mesh_cycle import MeshCycle
 from rigdesign.case.model import Case
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import meshes, meshes_of
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.records.flank_rating import flank_ratings
-from rigdesign.records.gear_loads import application_factor
-from rigdesign.records.loaded_contact import held_contact
-from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
+from rigdesign.postprocessing.flank_rating import flank_ratings
+from rigdesign.postprocessing.gear_loads import application_factor
+from rigdesign.postprocessing.loaded_contact import held_contact
+from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.teeth import EdgeContact
 from rigdesign.results.units import MEGAPASCAL, MPA

@@ -12,11 +12,11 @@ from rigdesign.checks.omissions import Omissions, long_periods
 from rigdesign.checks.places import meshes
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.coupling.braced_loop import signed_torque
-from rigdesign.records.curves import resolved, speed_ranges
-from rigdesign.records.near_dwell import at_torque, bounds_of, mesh_resonances, root_shares
-from rigdesign.records.resonances import NEAR
-from rigdesign.records.solved_rig import SolvedRig, worst
+from rigdesign.coupling.preloaded_loop import signed_torque
+from rigdesign.postprocessing.curves import resolved, speed_ranges
+from rigdesign.postprocessing.nearest_resonance import at_torque, bounds_of, mesh_resonances, root_shares
+from rigdesign.postprocessing.resonances import NEAR
+from rigdesign.postprocessing.solved_rig import SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.loads import MeshLoads, ModeCrossing, StageLoad
 from rigdesign.results.units import NUMBER, RPM

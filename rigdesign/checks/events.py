@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from rigdesign.case.events import EmergencyStop, EventLoadLimits, Overspeed, ToothLoss
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import NOT_WITHIN, EventRecord, Quantity
 from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit

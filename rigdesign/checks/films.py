@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from dynamics.bearing.protocol import BearingState
+from dynamics.rotor.bearing import BearingState
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.omissions import Omissions, of_gearboxes, thrust, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.records.solved_rig import NO_HOUSING, SolvedRig
+from rigdesign.postprocessing.solved_rig import NO_HOUSING, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import MEGAPASCAL, MICROMETRE, UM
 

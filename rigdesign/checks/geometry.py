@@ -6,7 +6,7 @@ from functools import partial
 from dynamics.gear.limits import NAMES
 from dynamics.gear.pair import GearPair
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
 from rigdesign.rig.model import Rig

@@ -7,7 +7,7 @@ from functools import partial
 
 from dynamics.standards.api617_2014 import AF_CRITICAL
 from rigdesign.checks.registry import REGISTRY, Need, RigRule, Topic, Values
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.lateral import SWAYING, LateralVibration, Separation, StageLateral, Torque
 from rigdesign.results.units import NUMBER, RPM

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from rigdesign.coupling.placed_loss import PlacedLoss
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.coupling.located_loss import PlacedLoss
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.result import Finding
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 

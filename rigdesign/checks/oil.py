@@ -6,7 +6,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.omissions import HEAT, of_gearboxes, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.temperatures import OIL_EXCHANGE
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.units import KILOWATT, LITRE_PER_MINUTE

@@ -7,7 +7,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.omissions import Omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, hold
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import HOUR, DisplayUnit
 

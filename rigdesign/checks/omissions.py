@@ -15,9 +15,9 @@ from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
-from rigdesign.coupling.braced_loop import averaged_gears, lines_left_out, loads_left_out
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.coupling.preloaded_loop import averaged_gears, lines_left_out, loads_left_out
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 
 Omissions = Iterator[Omission]

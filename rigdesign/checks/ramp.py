@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from dynamics.response.schedule import RampLimits, ramp_rules
+from dynamics.vibration.schedule import RampLimits, ramp_rules
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Comparison, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
+from rigdesign.postprocessing.solved_rig import NO_LIMIT, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NEWTON_METRE, REVOLUTION_PER_MINUTE
 
@@ -49,7 +49,7 @@ RAMP = {
         _family("test_torque", "most torque at test speed", "schedule.test_torque", "Most torque at test speed"),
     )
 }  # fmt: skip
-"""By the ids of `dynamics.response.schedule.ramp_rules`."""
+"""By the ids of `dynamics.vibration.schedule.ramp_rules`."""
 TRANSITION_SPEED = RuleFamily(
     key="bearing.transition_speed",
     title="transition speed of the bearings under the start torque",

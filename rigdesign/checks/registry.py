@@ -15,7 +15,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.influences import Influence
 from rigdesign.checks.places import whole_rig
 from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable, not_evaluated
-from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig, worst
+from rigdesign.postprocessing.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.units import DisplayUnit
 

@@ -8,7 +8,7 @@ from rigdesign.checks.oil import GROUP, ROOM_HEAT
 from rigdesign.checks.omissions import HEAT, Omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS
 

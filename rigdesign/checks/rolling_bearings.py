@@ -4,13 +4,13 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.rolling_state import STABILISED_TEMPERATURE, RollingState, rolling_state
+from dynamics.rotor.rolling_state import STABILISED_TEMPERATURE, RollingState, rolling_state
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import HEAT, of_gearboxes
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, HOUR, MICROMETRE, NUMBER, DisplayUnit
 

@@ -5,8 +5,8 @@ from functools import partial
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RigRule, Topic, Values
-from rigdesign.records.press_fits import FRICTION
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.press_fits import FRICTION
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import SplineStressKind
 from rigdesign.results.units import MEGAPASCAL, NUMBER

@@ -15,9 +15,15 @@ from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.records.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
-from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.records.tooth_history import GearInMesh, ReversedBending, by_standard, gear_meshes, of_history
+from rigdesign.postprocessing.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
+from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
+from rigdesign.postprocessing.tooth_history import (
+    GearInMesh,
+    ReversedBending,
+    by_standard,
+    gear_meshes,
+    of_history,
+)
 from rigdesign.results.check import Check
 from rigdesign.results.dynamics import FROM_INFLUENCE
 from rigdesign.results.loads import RootStressPath

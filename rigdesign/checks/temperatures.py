@@ -7,7 +7,7 @@ from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT, films, no_film
 from rigdesign.checks.omissions import HEAT, Omissions, of_gearboxes, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, KELVIN, ZERO
 

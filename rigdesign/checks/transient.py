@@ -10,9 +10,9 @@ from rigdesign.checks.places import couplings, housings
 from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic
 from rigdesign.checks.rules import Comparison, hold, not_evaluated
 from rigdesign.checks.temperatures import WALLS
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.rows.history import UNITS
+from rigdesign.results.serialisation.history import UNITS
 from rigdesign.results.thermal import Extreme
 from rigdesign.results.units import HOUR, DisplayUnit
 from rigdesign.transient.soak import Soak

@@ -29,7 +29,7 @@ from rigdesign.cli.commands import (
     study,
     validate,
 )
-from rigdesign.cli.ending import exit_status, first_stop_counts
+from rigdesign.cli.exit_status import exit_status, first_stop_counts
 from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [

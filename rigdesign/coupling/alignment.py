@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from dynamics.flank.field import AxisMisalignment
+from dynamics.gear.flank import AxisMisalignment
 from dynamics.standards.iso1328_1_2013 import tolerances
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import CouplingInput

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, OilSupply
+from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState, OilSupply
 from rigdesign.base.errors import named
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import injected_flow
@@ -11,7 +11,7 @@ from rigdesign.case.rolling_bearing import BearingPlace
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.bearing_seats import HOUSING, SHAFT, bearing_seats, seats_of
 from rigdesign.coupling.flank_heat import splash_to_bearing
-from rigdesign.coupling.placed_loss import given_power
+from rigdesign.coupling.located_loss import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import OilFeed, bearing_feed

@@ -10,7 +10,7 @@ from weakref import ReferenceType, ref
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.rolling_stiffness import force_on_first, pair_axial_loads
+from dynamics.rotor.rolling_stiffness import force_on_first, pair_axial_loads
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.rotation import has_hands, helix_hands, pinion_hand

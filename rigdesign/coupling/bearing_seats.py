@@ -8,7 +8,7 @@ has no housing, that seat takes none and the oil carries all.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from dynamics.bearing.protocol import BearingState, HeatStar
+from dynamics.rotor.bearing import BearingState, HeatStar
 from rigdesign.case.films import matched
 from rigdesign.case.surface_conditions import BearingFilm
 from rigdesign.coupling.housing_context import OilFilm

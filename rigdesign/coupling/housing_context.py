@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from dynamics.bearing.protocol import BearingState
+from dynamics.rotor.bearing import BearingState
 from rigdesign.case.films import BathPlace, ShaftPlace, SurfaceCondition, SurfacePlace
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import stream_surfaces

@@ -3,20 +3,26 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.bearing.protocol import BearingState
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.bearing import BearingState
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.json_text import finite
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_seats import initial_seats
-from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial, first_torques, respond
 from rigdesign.coupling.expansion import HousingExpansion, expand_housing, uniform_expansion
+from rigdesign.coupling.located_loss import PointLosses, drag_torques
 from rigdesign.coupling.loop_system import axis_tilt, flank_approach, loop_system, mesh_placements
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models
 from rigdesign.coupling.misalignment import warm_misalignment
 from rigdesign.coupling.oil import OilStream, oil_streams
-from rigdesign.coupling.placed_loss import PointLosses, drag_torques
+from rigdesign.coupling.preloaded_loop import (
+    BracingState,
+    LoadedCircuit,
+    brace_initial,
+    first_torques,
+    respond,
+)
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
     TOLERANCE,

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rigdesign.coupling.braced_loop import BracingState
 from rigdesign.coupling.fixed_point import (
     Acceleration,
     Anderson,
@@ -17,8 +16,9 @@ from rigdesign.coupling.fixed_point import (
     unscaled,
 )
 from rigdesign.coupling.iteration import IterationResult, PointProblem
+from rigdesign.coupling.located_loss import STORED
 from rigdesign.coupling.oil_circuits import demand_loss_maps, demand_setpoints
-from rigdesign.coupling.placed_loss import STORED
+from rigdesign.coupling.preloaded_loop import BracingState
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from thermal.transient.time_steps import STEPS, WarmingBody, step_lengths

@@ -5,17 +5,17 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
-from dynamics.drivetrain.linear_system import DrivetrainOverSpeed, SpeedBands
 from dynamics.errors import DynamicsNotConverged
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.linear_system import DrivetrainOverSpeed, SpeedBands
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, respond
 from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.located_loss import PlacedLoss, PointLosses, drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.losses import mesh_losses, oil_jets, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses, drag_torques
+from rigdesign.coupling.preloaded_loop import BracingState, LoadedCircuit, respond
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 

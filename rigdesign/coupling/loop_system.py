@@ -8,16 +8,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.protocol import (
+from dynamics.rotor.bearing import (
     BearingState,
     LateralCoefficients,
     LateralOperation,
     constant_coefficients,
 )
-from dynamics.drivetrain.graph import TwistRows, torsional_twist_rows, with_spline_dampers
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
-from dynamics.elastic_rig.seen_system import elastic_twist_rows
+from dynamics.rotor.bearing_state import BearingCoefficients, RunningState
+from dynamics.rotor.craig_bampton import elastic_twist_rows
+from dynamics.rotor.graph import TwistRows, torsional_twist_rows, with_spline_dampers
+from dynamics.rotor.linear_system import LinearSystem
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.misalignment import coupling_torques, standing_load

@@ -5,21 +5,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol
 
-from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import RIVAL_LAW, RIVAL_POWER, Loss, ToothPath, mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.bearing import BearingState
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet
 from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.bearing_seats import body_shares
-from rigdesign.coupling.braced_loop import first_torques
 from rigdesign.coupling.flank_heat import churning, mesh_split
+from rigdesign.coupling.located_loss import PlacedLoss, given_power
 from rigdesign.coupling.mesh_models import MeshModel
-from rigdesign.coupling.placed_loss import PlacedLoss, given_power
+from rigdesign.coupling.preloaded_loop import first_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed, gear_oil

@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.contact.influence_law import ContactLines, ElasticPair, contact_lines, influence_law
-from dynamics.flank.field import AxisMisalignment
-from dynamics.flank.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
+from dynamics.gear.flank import AxisMisalignment
+from dynamics.gear.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
-from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, default_slices, mesh_law
-from dynamics.mesh.friction import (
+from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from dynamics.tooth.friction import (
     Doleschel,
     FrictionCoefficient,
     FrictionLaw,
@@ -21,9 +20,16 @@ from dynamics.mesh.friction import (
     Schlenk,
     friction_coefficient,
 )
-from dynamics.mesh.law import MeshLaw, in_parallel
-from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
-from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from dynamics.tooth.influence_law import ContactLines, ElasticPair, contact_lines, influence_law
+from dynamics.tooth.law import MeshLaw, in_parallel
+from dynamics.tooth.mesh_law import (
+    ContactDiscretisation,
+    MeshDissipation,
+    MeshPosition,
+    default_slices,
+    mesh_law,
+)
+from dynamics.tooth.pair_stiffness import PairStiffness, pair_stiffness
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
 from rigdesign.coupling.alignment import axes_in_mesh
@@ -95,7 +101,7 @@ def mesh_model(
 
     The flanks that carry the mean torque see the axes as made, ``axis_inclination`` and ``axis_skew``, and as bending
     shafts and journals tilt them. Not in the law: what the expansion of the warm housing adds to them, which the loaded
-    contact at the held points has (`rigdesign.records.loaded_contact`).
+    contact at the held points has (`rigdesign.postprocessing.loaded_contact`).
     """
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
@@ -269,7 +275,7 @@ def mesh_damping(rig: Rig, name: str, law: MeshLaw) -> float:
     """Damping along the line of action, of one half of a double-helical mesh [N s/m].
 
     c = 2 zeta sqrt(k m_red), k the mean stiffness of the mesh and m_red = 1 / (r_b1^2/J_1 + r_b2^2/J_2) the gear
-    bodies reduced to the line of action: the ratio that the damping audit of `dynamics.drivetrain.modes` reports.
+    bodies reduced to the line of action: the ratio that the damping audit of `dynamics.rotor.torsional_modes` reports.
 
     name : of the mesh, ``gearbox.mesh``; law : with mean stiffness and base radii
     """

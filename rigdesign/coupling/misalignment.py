@@ -3,7 +3,7 @@
 Out of line as they were set up, and by what warm housings move the ends of their shafts. A coupling presses with its
 stiffness times what the shafts do not give way of the offset and angle: with bearings at the reference stiffness of the
 reduced rig, as the load decides on their own. Both act at the middle of the coupling. A cross joint under an angle
-bends both shafts by half of its torque times that angle on top (`dynamics.elastic_rig.assembly`).
+bends both shafts by half of its torque times that angle on top (`dynamics.rotor.assembly`).
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.elastic_rig import assembly as cross_joints
-from dynamics.elastic_rig.assembly import bending_moment
-from dynamics.elastic_rig.layout import AxisMisalignment
-from dynamics.elastic_rig.running_state import misalignment_load
+from dynamics.rotor import assembly as cross_joints
+from dynamics.rotor.assembly import bending_moment
+from dynamics.rotor.bearing_state import misalignment_load
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.rotor_model import AxisMisalignment
 from rigdesign.coupling.alignment import coupling_places, end_motion
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig

@@ -11,7 +11,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import FedOil, JetOil
 from rigdesign.case.model import Case
 from rigdesign.case.oil_circuits import place_of
-from rigdesign.coupling.placed_loss import PlacedLoss, heat_into_gear_oil
+from rigdesign.coupling.located_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.properties.oil import Portion, mixed, oil_outlet
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import AS_STATED, OilFeed, bearing_feed, gear_feed, wall_flow

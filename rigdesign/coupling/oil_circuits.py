@@ -18,8 +18,8 @@ from rigdesign.case.model import Case
 from rigdesign.case.oil_circuits import place_of
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.coupling.oil import OilStream
-from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.oil_circuit.line_balance import HeatTaken
 from rigdesign.oil_circuit.steady import SetpointNotHeldError, SteadyCircuit, steady_circuit

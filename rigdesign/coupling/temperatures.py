@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.protocol import BearingState
+from dynamics.rotor.bearing import BearingState
 from rigdesign.case import surface_conditions as laws
 from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.geometry import bearing_on, conditions_of
@@ -24,7 +24,7 @@ from rigdesign.coupling.housing_context import (
     WettedSurface,
     fluid_networks,
 )
-from rigdesign.coupling.placed_loss import STORED, PlacedLoss, PointLosses, heat_into_gear_oil
+from rigdesign.coupling.located_loss import STORED, PlacedLoss, PointLosses, heat_into_gear_oil
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig

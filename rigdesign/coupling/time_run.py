@@ -7,20 +7,20 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.command import Command as RunCommand
-from dynamics.response.command import DragCurve, MotorDrive, Sampling
-from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.schedule import Kind, Schedule, Stage, StageCommand, s_function
-from dynamics.response.time_response import TimeResponse, run_schedule
+from dynamics.vibration.command import Command as RunCommand
+from dynamics.vibration.command import DragCurve, MotorDrive, Sampling
+from dynamics.vibration.modal_model import DEFAULT_CUTOFF
+from dynamics.vibration.schedule import Kind, Schedule, Stage, StageCommand, s_function
+from dynamics.vibration.time_response import TimeResponse, run_schedule
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.braced_loop import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.located_loss import drag_shafts, drag_torques
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.coupling.losses import rotating_losses
-from rigdesign.coupling.placed_loss import drag_shafts, drag_torques
+from rigdesign.coupling.preloaded_loop import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.drivetrain import mesh_frequency
 from rigdesign.rig.model import Rig

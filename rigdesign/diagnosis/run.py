@@ -11,9 +11,9 @@ import numpy as np
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.cross_validation import FullRun, Problem
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.decision.patch import Constants, constants, patched_values
-from rigdesign.diagnosis.decision.proof import FullRun, Problem
 from rigdesign.diagnosis.decision.proposals import (
     NOTHING_NEXT,
     NextMeasurements,

@@ -69,7 +69,7 @@ def built_in(kind: Kind, words: Sequence[str] = ()) -> BuiltIn:
 
 
 def _bearings() -> Iterator[Row]:
-    from dynamics.bearing.rolling_catalogue import RPM, catalogue_bearing, tabled_designations
+    from dynamics.rotor.rolling_catalogue import RPM, catalogue_bearing, tabled_designations
 
     for designation in tabled_designations():
         bearing = catalogue_bearing(designation)

@@ -107,7 +107,7 @@ class Outline:
         """Width of a bearing [m]: of a plain one three quarters of its diameter."""
         if self.journal:
             return 0.75 * units.parse(self.bearings, "length")
-        from dynamics.bearing.rolling_catalogue import catalogue_bearing
+        from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
         return catalogue_bearing(self.bearings).width
 
@@ -119,8 +119,8 @@ class Outline:
 
 def locating_sister(designation: str) -> str:
     """Bearing of the same size that holds its shaft, for one that does not (NU, N): NJ. Empty for any other."""
-    from dynamics.bearing.protocol import BearingError
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+    from dynamics.rotor.bearing import BearingError
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
     if catalogue_bearing(designation).locating:
         return ""
@@ -214,8 +214,8 @@ def _name(text: str, question: Question) -> str:
 
 
 def _check_designation(text: str) -> None:
-    from dynamics.bearing.protocol import BearingError
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+    from dynamics.rotor.bearing import BearingError
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
     try:
         catalogue_bearing(text)

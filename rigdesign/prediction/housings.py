@@ -12,7 +12,7 @@ from scipy import sparse
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.coupling.expansion import HousingExpansion, named_expansion
 from rigdesign.coupling.iteration import IterationParts
-from rigdesign.coupling.placed_loss import PointLosses
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.temperatures import HousingField, boundary_conditions
 from rigdesign.prediction.places import Weights
 from rigdesign.rig.model import Rig

@@ -12,9 +12,9 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.bearing.protocol import BearingState
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
+from dynamics.rotor.bearing import BearingState
+from dynamics.rotor.bearing_state import BearingCoefficients, RunningState
+from dynamics.rotor.linear_system import LinearSystem
 from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.state import CouplingState, OperatingPoint

@@ -12,28 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad, StaticState, port_model
-from dynamics.elastic_rig.mode_names import NamedMode
 from dynamics.errors import DynamicsNotConverged
 from dynamics.losses.mesh_loss import ToothPath
-from dynamics.mesh.flank import alike_teeth
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_problem import HarmonicSolution
-from dynamics.response.harmonic_walk import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
-from dynamics.response.response_curve import CurvePoint, quasi_static_point
+from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.mode_names import NamedMode
+from dynamics.rotor.static_loop import LoopLoad, StaticState, port_model
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.vibration.harmonic_problem import HarmonicSolution
+from dynamics.vibration.response_curve import CurvePoint, quasi_static_point
+from dynamics.vibration.speed_continuation import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
 from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
-from rigdesign.coupling.braced_loop import (
-    BracingState,
-    LoadedCircuit,
-    brace_initial,
-    periodic_laws,
-    respond,
-    shifted_laws,
-    signed_torque,
-)
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult
 from rigdesign.coupling.loop_system import loop_system, running_state
 from rigdesign.coupling.mesh_models import (
@@ -43,6 +34,15 @@ from rigdesign.coupling.mesh_models import (
     mesh_friction,
     mesh_model,
     mesh_phase,
+)
+from rigdesign.coupling.preloaded_loop import (
+    BracingState,
+    LoadedCircuit,
+    brace_initial,
+    periodic_laws,
+    respond,
+    shifted_laws,
+    signed_torque,
 )
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.prediction.static_tests import modes_at_rest, rig_at_rest
@@ -265,7 +265,7 @@ def law_key(law: MeshLaw) -> tuple[object, ...]:
 # quasi-static state. Loads that alternate with a shaft are left out there.
 
 REACH = 1.5
-"""Harmonics go up to this times the highest mode that counts (`dynamics.response.speed_sweep`)."""
+"""Harmonics go up to this times the highest mode that counts (`dynamics.vibration.speed_sweep`)."""
 GAUGE_HARMONICS = 192
 """Harmonics of the common mesh period of a rig with root gauges at least: the highest stress answers to their number
 by some tenths of a per cent, which a mode that just counts or does not would change from rig to rig."""
@@ -277,7 +277,7 @@ followed in time, as in a check."""
 def respond_at_any_speed(
     rig: Rig, circuit: LoadedCircuit, near: HarmonicSolution | None = None
 ) -> CurvePoint:
-    """As `rigdesign.coupling.braced_loop.respond`, slow points quasi-static.
+    """As `rigdesign.coupling.preloaded_loop.respond`, slow points quasi-static.
 
     Raises
     ------

@@ -8,21 +8,21 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.parts import within_period
-from dynamics.drivetrain.static_loop import LoopLoad, port_model
 from dynamics.errors import DynamicsNotConverged
-from dynamics.mesh.flank import alike_teeth
-from dynamics.mesh.force import evaluate_mesh
-from dynamics.mesh.law import MeshLaw
-from dynamics.orders.deviation_response import DeviationResponse, OrderLoads, OrderTorque
-from dynamics.response.harmonic_walk import mesh_cells
-from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.periodic_response import TimeSettings, period_length, periodic_by_time
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws, signed_torque
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.parts import within_period
+from dynamics.rotor.static_loop import LoopLoad, port_model
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh
+from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.vibration.deviation_response import DeviationResponse, OrderLoads, OrderTorque
+from dynamics.vibration.initial_state import pinion_ratios
+from dynamics.vibration.periodic_response import TimeSettings, period_length, periodic_by_time
+from dynamics.vibration.response_curve import CurvePoint
+from dynamics.vibration.speed_continuation import mesh_cells
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.mesh_models import MeshModel, laws_of
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, shifted_laws, signed_torque
 from rigdesign.prediction.places import OscillatingTorque
 from rigdesign.rig.model import Rig
 

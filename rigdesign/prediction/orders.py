@@ -13,14 +13,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
-from dynamics.orders.deviation_response import CYCLE_STEPS, DeviationResponse, OrderLoads, mean_windup
-from dynamics.orders.hill_system import MeshPeriodic
-from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.vibration.deviation_response import CYCLE_STEPS, DeviationResponse, OrderLoads, mean_windup
+from dynamics.vibration.hill_system import MeshPeriodic
+from dynamics.vibration.initial_state import pinion_ratios
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.braced_loop import LoadedCircuit, shifted_laws
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, shifted_laws
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import (
     SAME_ORDER,

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.orders.deviation_response import OrderLoads
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.vibration.deviation_response import OrderLoads
 from rigdesign.base.errors import UsageError
 from rigdesign.prediction.model import LATERAL_QUANTITIES, Channel
 from rigdesign.rig.model import Rig
@@ -126,7 +126,7 @@ def _nearest_surface(surfaces: Mapping[str, np.ndarray], points: FloatArray, poi
 # Where the channels that have orders read the power circuit, and what they read of its loads.
 #
 # A place is a row over the freedoms of the linear system: of shafts that only twist its stations, of shafts that bend
-# the freedoms of the reduced elastic rig (`dynamics.elastic_rig.seen_system`). Both measure turns in the running
+# the freedoms of the reduced elastic rig (`dynamics.rotor.craig_bampton`). Both measure turns in the running
 # direction.
 
 Array = NDArray[np.float64]

@@ -8,14 +8,14 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from dynamics.drivetrain.modes import SEEN_GAIN
-from dynamics.elastic_rig.mode_names import NamedMode
-from dynamics.orders.deviation_response import linearised
-from dynamics.orders.hill_system import MeshPeriodic
+from dynamics.rotor.mode_names import NamedMode
+from dynamics.rotor.torsional_modes import SEEN_GAIN
+from dynamics.vibration.deviation_response import linearised
+from dynamics.vibration.hill_system import MeshPeriodic
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
-from rigdesign.coupling.braced_loop import shifted_laws
+from rigdesign.coupling.preloaded_loop import shifted_laws
 from rigdesign.prediction.converged_point import TOLERANCE, ConvergedPoint, converge_point
 from rigdesign.prediction.full import check_names, like, predict_full, rig_at
 from rigdesign.prediction.memoisation import Memoisation

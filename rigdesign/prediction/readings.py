@@ -8,17 +8,17 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.response_curve import CurvePoint
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import LEAST_TORQUE
+from rigdesign.postprocessing.loaded_contact import HeldContact, held_flanks, kept_contact, stress_at
 from rigdesign.prediction.model import LATERAL_QUANTITIES, ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import is_ideal
 from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import lateral_motion, place_weights
-from rigdesign.records.loaded_contact import HeldContact, held_flanks, kept_contact, stress_at
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge

@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bearing.protocol import BearingState
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.response_curve import CurvePoint
-from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, signed_torque
+from dynamics.rotor.bearing import BearingState
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.coupling.fixed_point import SCALES, numbering, scaled, unscaled
 from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
 from rigdesign.coupling.mesh_models import MeshModel
+from rigdesign.coupling.preloaded_loop import BracingState, LoadedCircuit, signed_torque
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vector
 from rigdesign.prediction.housings import ReducedField
@@ -427,7 +427,7 @@ class _LinearisedResponse:
         return own
 
     def response(self, rig: Rig, circuit: LoadedCircuit) -> CurvePoint:
-        """As `rigdesign.coupling.braced_loop.respond`."""
+        """As `rigdesign.coupling.preloaded_loop.respond`."""
         self.causes = self._drag.causes(rig, circuit, self._films)
         if self.causes is not None:
             return self._drag.response(self.causes)

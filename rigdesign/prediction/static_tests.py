@@ -3,11 +3,11 @@
 The loop stands braced with its first torque, its journals on the shells: no film, no friction of rotation. The teeth
 carry by that torque alone, so that the mesh is as stiff as the pairs it presses together, mean over the places where
 the teeth may have come to rest. Shafts that bend stand on what their bearings are at rest: a journal in the contact
-with its shell and the oil squeezed out of it, as `dynamics.bearing.journal_lateral` has it, rolling elements under
+with its shell and the oil squeezed out of it, as `dynamics.rotor.journal_lateral` has it, rolling elements under
 their load.
 
 A natural frequency is asked for by the number of its torsional mode, ``3`` or ``torsional 3``, or by the name of any
-mode, ``lateral test_pinion 1`` (`dynamics.elastic_rig.mode_names`).
+mode, ``lateral test_pinion 1`` (`dynamics.rotor.mode_names`).
 """
 
 from collections.abc import Callable, Sequence
@@ -16,16 +16,16 @@ from math import pi
 
 import numpy as np
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
-from dynamics.elastic_rig.mode_names import NamedMode, elastic_named_modes, torsional_modes
-from dynamics.mesh.flank import alike_teeth
-from dynamics.mesh.force import evaluate_mesh
-from dynamics.mesh.law import MeshLaw
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.mode_names import NamedMode, elastic_named_modes, torsional_modes
+from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh
+from dynamics.tooth.mesh_law import alike_teeth
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.iteration import SOLVED, IterationParts, initial_state
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig

@@ -24,9 +24,9 @@ from rigdesign.checks.rules import REFERENCE_TEMPERATURE
 from rigdesign.coupling.iteration import PointProblem, solve_loads
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import held_points
+from rigdesign.postprocessing.dynamics import DynamicRun
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.reanalysis.modified_rig import coupled_again, with_records
-from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Flip, FlipSearch, RunResult
 from rigdesign.rig.model import Rig, build_rig

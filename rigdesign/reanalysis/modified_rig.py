@@ -4,17 +4,17 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from dynamics.response.time_response import TimeResponse
+from dynamics.vibration.time_response import TimeResponse
 from rigdesign.case.model import Case
 from rigdesign.checks.assumptions import is_under
 from rigdesign.coupling.fixed_point import Anderson
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.time_run import held_points, run_ramp
+from rigdesign.postprocessing.curves import Curves, solve_curves
+from rigdesign.postprocessing.dynamics import DynamicRun
+from rigdesign.postprocessing.housing import housing_temperatures
+from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.reanalysis.shifted_run import Array, shifted_drive, shifted_run
-from rigdesign.records.curves import Curves, solve_curves
-from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.housing import housing_temperatures
-from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over

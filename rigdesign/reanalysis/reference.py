@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from dynamics.response.time_response import TimeResponse
+from dynamics.vibration.time_response import TimeResponse
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -14,11 +14,11 @@ from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
+from rigdesign.postprocessing.curves import Curves
+from rigdesign.postprocessing.dynamics import DynamicRun
+from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
 from rigdesign.reanalysis.modified_rig import Part, Reanalysis, modified_rig, with_records
 from rigdesign.reanalysis.shifted_run import Array, losses_on_motor, peaks_only
-from rigdesign.records.curves import Curves
-from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import EventRecord
 from rigdesign.results.result import DiscretisationRow

@@ -16,16 +16,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.command import DragCurve
-from dynamics.response.envelopes import EnvelopeWindows
-from dynamics.response.propagator import SectionEnvelopes
-from dynamics.response.response_curve import ResponseCurve
-from dynamics.response.time_response import TimeResponse
+from dynamics.vibration.command import DragCurve
+from dynamics.vibration.envelopes import EnvelopeWindows
+from dynamics.vibration.propagator import SectionEnvelopes
+from dynamics.vibration.response_curve import ResponseCurve
+from dynamics.vibration.time_response import TimeResponse
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.placed_loss import drag_shafts
+from rigdesign.coupling.located_loss import drag_shafts
 from rigdesign.coupling.time_run import drag_curves, schedule_of, torque_limits
-from rigdesign.records.curves import Curves
-from rigdesign.records.dynamics import DynamicRun
+from rigdesign.postprocessing.curves import Curves
+from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

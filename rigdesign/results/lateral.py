@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Literal
 
-from dynamics.elastic_rig.damped_modes import RigMode
+from dynamics.rotor.damped_modes import RigMode
 
 RIGID, SWAYING = 0.05, 0.1
 """Strain energy over kinetic energy, and frequency over that of the fastest shaft, below which a mode is no vibration

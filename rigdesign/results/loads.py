@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
-from dynamics.drivetrain.bracing import BracingDrift
-from dynamics.drivetrain.modes import DampingRecord, LoopMode
+from dynamics.rotor.bracing import BracingDrift
+from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
 from rigdesign.results.dynamics import FROM_FACTORS, StressSource
 from rigdesign.results.teeth import ToothHistory

@@ -6,15 +6,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.points import face_sense
-from dynamics.contact.root_field import Fillet, RootCourse, ToothTurn
-from dynamics.flank.field import AxisMisalignment, Flank
+from dynamics.gear.flank import AxisMisalignment, Flank
 from dynamics.rating.flank_contact import ContactFactors
 from dynamics.rating.micropitting import FilmRatios
 from dynamics.rating.pitting import Pitting
 from dynamics.rating.root_stress import MeanRootStress, mean_stress_factor
 from dynamics.rating.scuffing import ContactTemperature
+from dynamics.tooth.mesh_cycle import MeshCycle
+from dynamics.tooth.points import face_sense
+from dynamics.tooth.root_field import Fillet, RootCourse, ToothTurn
 from rigdesign.results.dynamics import StressSource
 from rigdesign.strain_gauge.measuring_point import GaugeCurve, MeasuringPoint
 

@@ -23,7 +23,7 @@ from rigdesign.rexs_case.stage import (
 )
 
 if TYPE_CHECKING:
-    from dynamics.bearing.rolling_catalogue import BearingKind, CatalogueBearing
+    from dynamics.rotor.rolling_catalogue import BearingKind, CatalogueBearing
 
 CLASSES = ("C2", "CN", "C3", "C4", "C5")
 RPM = math.pi / 30.0
@@ -283,8 +283,8 @@ PRINTED = 0.01
 
 def tabled_bearing(bearing: UnitBearing) -> "CatalogueBearing | None":
     """The tabled bearing of a designation, suffixes left out; None where the bore of the file is another one."""
-    from dynamics.bearing.protocol import BearingError
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+    from dynamics.rotor.bearing import BearingError
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
     written = (bearing.catalogue.designation or "").strip()
     basic = re.match(r"[A-Za-z]*\s*\d{3,5}", written)
@@ -305,7 +305,7 @@ def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
 
     None for a kind that a case does not have, and where no bore is known.
     """
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing, tabled_designations
 
     bore, kind = bearing.inner_diameter, KIND_OF_TYPE.get(bearing.catalogue.type or "")
     if bore is None or kind is None:
@@ -326,7 +326,7 @@ def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
 
 def series_of(bearing: UnitBearing) -> str | None:
     """Dimension series by the designation: 62 of 6207, 2 of NJ 204; None for one without friction coefficients."""
-    from dynamics.bearing.rolling_catalogue import DESCRIBED_SERIES
+    from dynamics.rotor.rolling_catalogue import DESCRIBED_SERIES
 
     digits = re.search(r"\d{3,5}", bearing.catalogue.designation or "")
     kind = KIND_OF_TYPE.get(bearing.catalogue.type or "")
@@ -353,7 +353,7 @@ def has_own_numbers(bearing: UnitBearing) -> bool:
 
 def example_designation(diameter: float | None) -> str:
     """A tabled bearing that holds its shaft, with the bore that is nearest to a shaft diameter [m]."""
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing, tabled_designations
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing, tabled_designations
 
     known = [catalogue_bearing(name) for name in tabled_designations()]
     wanted = 0.04 if diameter is None else diameter

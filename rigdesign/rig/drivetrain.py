@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import (
+from dynamics.gear.cylindrical_gear import CylindricalGear
+from dynamics.gear.pair import GearPair
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.parts import (
     BearingPlace,
     Coupling,
     DragPlace,
@@ -19,9 +21,7 @@ from dynamics.drivetrain.parts import (
     MeshConnection,
     Motor,
 )
-from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
-from dynamics.gear.cylindrical_gear import CylindricalGear
-from dynamics.gear.pair import GearPair
+from dynamics.rotor.shaft import Disc, DrivetrainError, Section, Shaft
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import show
 from rigdesign.case.bearings import BearingInput

@@ -11,10 +11,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.power_loop import speed_ratios
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.layout import (
+from dynamics.gear.pair import GearPair
+from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from dynamics.rotor.assembly import ElasticModel, assemble_rig
+from dynamics.rotor.bearing_state import BearingCoefficients, isotropic_bearing
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.power_loop import speed_ratios
+from dynamics.rotor.reduction import ReducedElasticRig, port_rows_of, reduce_rig
+from dynamics.rotor.rotor_model import (
     AxialLocation,
     AxialMeshSpring,
     AxisMisalignment,
@@ -32,11 +37,6 @@ from dynamics.elastic_rig.layout import (
     isotropic_support,
     residual_unbalances,
 )
-from dynamics.elastic_rig.reduction import ReducedElasticRig, port_rows_of, reduce_rig
-from dynamics.elastic_rig.running_state import BearingCoefficients, isotropic_bearing
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
-from dynamics.gear.pair import GearPair
-from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from rigdesign.case.drivetrain import ShaftInput
 from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS, BALANCE_GRADE
 from rigdesign.case.model import Case

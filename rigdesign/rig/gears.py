@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from dynamics.errors import DynamicsInputError
-from dynamics.flank.field import require_whole_flanks
-from dynamics.flank.microgeometry import Topography
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
+from dynamics.gear.flank import require_whole_flanks
+from dynamics.gear.microgeometry import Topography
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import GearBodies, TipShortening
 from dynamics.gear.tooth_form import FlankEnds, GearDetails, TipEdge

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from dynamics.elastic_rig.layout import HousingSupport
+from dynamics.rotor.rotor_model import HousingSupport
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.properties.materials import Material

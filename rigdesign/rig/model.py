@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, at_speed, joints
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.elastic_rig.layout import HousingSupport
 from dynamics.gear.pair import GearPair
-from dynamics.influence.elastic_segment import FACE_POSITIONS
-from dynamics.response.modal_model import DEFAULT_CUTOFF
+from dynamics.rotor.graph import Drivetrain, TorsionalJoint, assemble, at_speed, joints
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.rotor_model import HousingSupport
+from dynamics.tooth.elastic_segment import FACE_POSITIONS
+from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.circuit_parts import oil_circuits

@@ -2,10 +2,10 @@
 
 The rules follow what excites the loop. A shaft element takes a sixteenth of the torsional wave of the highest
 frequency that counts, the fourth mesh harmonic at the highest speed or 20 kHz: lumped inertia makes a mode there low by
-(2 pi / 16)^2 / 24 = 0.6 % (``dynamics.drivetrain.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a
+(2 pi / 16)^2 / 24 = 0.6 % (``dynamics.rotor.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a
 wave, are not followed. Of shafts that bend the modes above 1.25 times that frequency and above 20 kHz keep their static
 effect at bearings, gears and couplings alone: it moves K_V by 1.6e-3 on the prototype, 2.6e-4 on the main rig
-(``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.mesh.flank.default_slices``. The
+(``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.tooth.mesh_law.default_slices``. The
 case may state element length and slices; what either leaves open stands with the checks
 (`rigdesign.run.load_convergence`).
 """
@@ -15,10 +15,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from dynamics.drivetrain import power_loop
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.shaft import Shaft
-from dynamics.response.modal_model import DEFAULT_CUTOFF
+from dynamics.rotor import power_loop
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.shaft import Shaft
+from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import show
 from rigdesign.case.model import Case

@@ -4,7 +4,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from dynamics.elastic_rig.layout import ElasticRig, HousingSupport
+from dynamics.rotor.rotor_model import ElasticRig, HousingSupport
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.rig.model import Rig
 

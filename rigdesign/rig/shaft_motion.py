@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.elastic_rig.beam import DIRECTIONS
-from dynamics.elastic_rig.layout import SEAT_DIRECTIONS
+from dynamics.rotor.beam import DIRECTIONS
+from dynamics.rotor.rotor_model import SEAT_DIRECTIONS
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

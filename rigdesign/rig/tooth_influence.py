@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import PairGeometry
-from dynamics.influence.build import influence_numbers
-from dynamics.influence.elastic_segment import FACE_POSITIONS, Elastic, GearModel
-from dynamics.influence.numbers import GearBody, InfluenceNumbers, RootFillet
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.elastic_segment import FACE_POSITIONS, Elastic, GearModel
+from dynamics.tooth.influence_model import influence_numbers
+from dynamics.tooth.influence_numbers import GearBody, InfluenceNumbers, RootFillet
 from rigdesign.base.output_folder import FileLock, HeldError, replace_whole
 from rigdesign.base.parallel import BackgroundTasks, cores
 from thermal.fe.kept_results import kept

@@ -16,17 +16,17 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsNotConverged
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks.dynamics import loaded_stages
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, respond
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import mesh_models
+from rigdesign.coupling.preloaded_loop import BracingState, LoadedCircuit, respond
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.result import DiscretisationRow
 from rigdesign.rig.model import Rig
 from rigdesign.rig.resolution import Coarsening

@@ -13,8 +13,8 @@ from types import MappingProxyType
 from threadpoolctl import threadpool_limits
 
 from dynamics.kernels.march import compiled
-from dynamics.response.time_march import compile_time_integration
-from dynamics.response.time_response import TimeResponse
+from dynamics.vibration.time_integration import compile_time_integration
+from dynamics.vibration.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.json_text import require_finite
 from rigdesign.base.parallel import BackgroundTasks, one_core
@@ -23,24 +23,24 @@ from rigdesign.case.model import Case
 from rigdesign.case.usual import unusual_inputs
 from rigdesign.checks import all_checks
 from rigdesign.checks.geometry import missed
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.loop_over_speed import stage_losses
-from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
-from rigdesign.records.curves import solve_curves
-from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.dynamics_section import dynamics_section
-from rigdesign.records.events import solve_events
-from rigdesign.records.hand import hand_checks
-from rigdesign.records.housing import compared_temperatures, fields_of
-from rigdesign.records.near_dwell import held_crossings, require_damping
-from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
-from rigdesign.records.warm_gearbox import rolling_bearings
+from rigdesign.postprocessing.curves import solve_curves
+from rigdesign.postprocessing.dynamics import DynamicRun
+from rigdesign.postprocessing.dynamics_section import dynamics_section
+from rigdesign.postprocessing.events import solve_events
+from rigdesign.postprocessing.hand_calculation import hand_checks
+from rigdesign.postprocessing.housing import compared_temperatures, fields_of
+from rigdesign.postprocessing.nearest_resonance import held_crossings, require_damping
+from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
+from rigdesign.postprocessing.warm_gearbox import rolling_bearings
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
-from rigdesign.results.rows.events import event_row
-from rigdesign.results.rows.housing import (
+from rigdesign.results.serialisation.events import event_row
+from rigdesign.results.serialisation.housing import (
     circuit_rows,
     cooling_row,
     coupling_row,
@@ -50,8 +50,8 @@ from rigdesign.results.rows.housing import (
     rolling_bearing_row,
     thermal_row,
 )
-from rigdesign.results.rows.lateral import lateral_row
-from rigdesign.results.rows.warm_gearbox import expansion_row
+from rigdesign.results.serialisation.lateral import lateral_row
+from rigdesign.results.serialisation.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
 from rigdesign.run.load_convergence import load_errors

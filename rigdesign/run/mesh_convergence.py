@@ -30,14 +30,14 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.expansion import HousingExpansion
 from rigdesign.coupling.fixed_point import Residual, next_state
 from rigdesign.coupling.iteration import HousingResult, IterationResult, solve_housings
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.temperatures import HousingField, body_mean
-from rigdesign.records.housing import housing_temperatures, split_as_solved
-from rigdesign.records.solved_rig import LawSpread, housing_fields, solved_rig
+from rigdesign.postprocessing.housing import housing_temperatures, split_as_solved
+from rigdesign.postprocessing.solved_rig import LawSpread, housing_fields, solved_rig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import HousingTemperatures
 from rigdesign.results.result import DiscretisationRow, MeshShift

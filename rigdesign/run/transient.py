@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from rigdesign.case.model import Case
 from rigdesign.checks import all_checks
 from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, coupling_places
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
-from rigdesign.results.rows.history import UNITS, worst_moment_row
+from rigdesign.results.serialisation.history import UNITS, worst_moment_row
 from rigdesign.results.thermal import (
     Extreme,
     HistoryExtremes,

@@ -8,10 +8,10 @@ from itertools import accumulate, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.modes import modes_above_samples, sampling_audit
-from dynamics.mesh.flank import reach_beyond
-from dynamics.response.march_inputs import FADE
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.torsional_modes import modes_above_samples, sampling_audit
+from dynamics.tooth.mesh_law import reach_beyond
+from dynamics.vibration.march_inputs import FADE
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.case.model import Case
 from rigdesign.case.rules.elastic_shafts import sideways_keys
@@ -19,16 +19,16 @@ from rigdesign.case.usual import stated_numbers
 from rigdesign.checks.assumptions import depends, influences_of
 from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import thrust
-from rigdesign.coupling.braced_loop import averaged_gears, lines_left_out, loads_left_out
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.housing_context import GEAR_OIL
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.coupling.loop_over_speed import band_limits
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.preloaded_loop import averaged_gears, lines_left_out, loads_left_out
 from rigdesign.coupling.temperatures import HousingField, printed_films
-from rigdesign.records.curves import iso_factor, own_ratio, resolved
-from rigdesign.records.near_dwell import LIGHTLY, REMEDY, light_dwells
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.curves import iso_factor, own_ratio, resolved
+from rigdesign.postprocessing.nearest_resonance import LIGHTLY, REMEDY, light_dwells
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
@@ -338,7 +338,7 @@ def not_modelled(solved: SolvedRig) -> list[str]:
 # Ramps that pass a resonance faster than the time run updates the bearing positions.
 #
 # From one speed band to the next the time run changes the mean position of the gears in their bearings, hence the
-# approach of their flanks, over the time `FADE` (`dynamics.response.march_inputs`). A band that is passed in less is
+# approach of their flanks, over the time `FADE` (`dynamics.vibration.march_inputs`). A band that is passed in less is
 # left before the change is complete.
 
 Array = NDArray[np.float64]

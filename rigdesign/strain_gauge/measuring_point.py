@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.root_field import RootCourse
+from dynamics.tooth.root_field import RootCourse
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import refuse, require_above
 from rigdesign.strain_gauge.gauge import Bridge, StrainGauge

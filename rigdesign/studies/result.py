@@ -14,7 +14,7 @@ from rigdesign.studies.grid import Variation
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
-    from rigdesign.records.solved_rig import SolvedRig
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 # Which checks a run or study is read for: patterns on their ids, as ``--checks`` gives them.
 

@@ -8,11 +8,11 @@ from typing import TypeAlias, TypeVar
 
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.coupling.bearing_seats import WarmBearing, bearings_between
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.loop_over_speed import stage_losses
 from rigdesign.coupling.oil import OilStream
 from rigdesign.coupling.oil_circuits import wall_slopes
-from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.transient.oil import between, oil_conditions, supplied

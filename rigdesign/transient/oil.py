@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.protocol import HeatStar
+from dynamics.rotor.bearing import HeatStar
 from rigdesign.case.gearbox import injected_flow
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_seats import (
@@ -25,7 +25,7 @@ from rigdesign.coupling.bearing_seats import (
     on_surface,
 )
 from rigdesign.coupling.housing_context import BEARING_FILM, BEARING_OIL, GEAR_OIL, OilFilm, without_oils
-from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses, heat_into_gear_oil
+from rigdesign.coupling.located_loss import PlacedLoss, PointLosses, heat_into_gear_oil
 from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, wall_flow

@@ -11,7 +11,8 @@ from typing import Any
 
 from rigdesign.diagnosis import catalogue, run
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision import claims, kept_numbers, search
+from rigdesign.diagnosis.decision import claims, search
+from rigdesign.diagnosis.decision import held_out_data as kept_numbers
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from tests.builders.paths import CASES
 from tests.builders.shared_runs import run_cache

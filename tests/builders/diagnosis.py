@@ -15,8 +15,8 @@ import numpy as np
 
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.decision.cross_validation import Problem
 from rigdesign.diagnosis.decision.defaults import DRIFT, Calibration, Thresholds
-from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual.residual_problem import compare
@@ -276,7 +276,7 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
 
 
 def rerun(runs: Sequence[OperatingCondition]):
-    """The formulas with effects in them, as `rigdesign.diagnosis.decision.proof.FullRun` runs the model."""
+    """The formulas with effects in them, as `rigdesign.diagnosis.decision.cross_validation.FullRun` runs the model."""
     by_name = {run.name: run for run in runs}
 
     def again(some: Sequence[Feature], sizes: Mapping[str, tuple[float, ...]]) -> np.ndarray:

@@ -8,7 +8,7 @@ from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.catalogue.waiting import WAITING
+from rigdesign.diagnosis.catalogue.not_modelled import WAITING
 from rigdesign.diagnosis.decision.naming import display_scale
 from rigdesign.diagnosis.residual.sensors import TIMES
 

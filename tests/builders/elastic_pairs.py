@@ -4,13 +4,13 @@ from dataclasses import replace
 from functools import lru_cache
 from math import cos, radians
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid, FlankGap, no_gap
 from dynamics.gear.pair import GearPair
-from dynamics.influence.build import influence_numbers
-from dynamics.influence.elastic_segment import GearModel
-from dynamics.influence.numbers import InfluenceNumbers, SectionDivision
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.elastic_segment import GearModel
+from dynamics.tooth.influence_model import influence_numbers
+from dynamics.tooth.influence_numbers import InfluenceNumbers, SectionDivision
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.points import FaceGrid, FlankGap, no_gap
 from rigdesign.rig.tooth_influence import gear_model
 
 COARSE = SectionDivision(profile=5, thickness=2, fillet=4, depth=2)

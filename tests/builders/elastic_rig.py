@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import BearingPlace, GearBody, JointStiffness, Motor
-from dynamics.drivetrain.shaft import STEEL_DENSITY, Disc, Section, Shaft
-from dynamics.elastic_rig.assembly import ElasticModel
-from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
-from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState, isotropic_bearing
+from dynamics.rotor.assembly import ElasticModel
+from dynamics.rotor.bearing_state import BearingCoefficients, RunningState, isotropic_bearing
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.parts import BearingPlace, GearBody, JointStiffness, Motor
+from dynamics.rotor.rotor_model import AxialLocation, ElasticRig, ShaftPlacement
+from dynamics.rotor.shaft import STEEL_DENSITY, Disc, Section, Shaft
 from tests.builders.rig import CENTRE_DISTANCE, SHAFTS, prototype
 
 BEARINGS = {

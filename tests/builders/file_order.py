@@ -14,6 +14,7 @@ from tests.builders.paths import ROOT
 LONGEST = (
     "regression/test_cases.py",
     "regression/test_frozen_sets.py",
+    "regression/test_published_rows.py",
     "unit/rigdesign_package/studies/test_study.py",
     "unit/rigdesign_package/studies/test_cluster.py",
     "regression/test_readme_recipe.py",
@@ -29,7 +30,6 @@ LONGEST = (
     "verification/test_contact_in_the_loop.py",
     "unit/rigdesign_package/run/test_step_case.py",
     "verification/test_seat_condensation.py",
-    "unit/rigdesign_package/validation/test_validation.py",
 )
 """Files of the tests folder that take more than 20 s of a processor, the longest first."""
 

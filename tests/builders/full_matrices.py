@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
-from dynamics.elastic_rig.assembly import ElasticModel
-from dynamics.elastic_rig.reduction import spline_dampers
-from dynamics.elastic_rig.running_state import RunningState
+from dynamics.rotor.assembly import ElasticModel
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.reduction import spline_dampers
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -11,8 +11,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.shaft import DrivetrainError
-from dynamics.elastic_rig.assembly import ElasticModel
+from dynamics.rotor.assembly import ElasticModel
+from dynamics.rotor.shaft import DrivetrainError
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -1,9 +1,9 @@
 """Two gearboxes with a pinion between two wheels each; two wheel shafts close the loop, the pinions idle."""
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import Coupling, GearBody, MeshConnection, Motor
-from dynamics.drivetrain.shaft import Section, Shaft
-from dynamics.mesh.law import MeshLaw
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.parts import Coupling, GearBody, MeshConnection, Motor
+from dynamics.rotor.shaft import Section, Shaft
+from dynamics.tooth.law import MeshLaw
 from tests.builders.rig import synthetic_law
 
 TEETH = (40, 40)

@@ -4,11 +4,11 @@ from math import cos, radians
 
 import numpy as np
 
-from dynamics.contact.compliance import InterpolatedCompliance
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.influence.elastic_segment import Elastic, GearModel
-from dynamics.influence.numbers import GearBody, InfluenceNumbers, RootFillet, SectionDivision
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.elastic_segment import Elastic, GearModel
+from dynamics.tooth.influence_numbers import GearBody, InfluenceNumbers, RootFillet, SectionDivision
 
 STEEL = Elastic(young=206e9, poisson=0.3)
 COARSE = SectionDivision(profile=3, thickness=2, fillet=4, depth=2, neighbours=(2, 2, 4))

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid, FlankGap, flank_gap
-from dynamics.contact.slice_compliance import SliceCompliance
-from dynamics.flank.field import AxisMisalignment
-from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.flank import AxisMisalignment
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.pair_gap import PairGap
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.pair_gap import PairGap
+from dynamics.tooth.points import FaceGrid, FlankGap, flank_gap
+from dynamics.tooth.slice_compliance import SliceCompliance
 
 
 def equal_gears(module: float = 3e-3, teeth: int = 50, width: float = 20e-3) -> GearPair:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.drivetrain.modes import DampingRecord, LoopMode
+from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
 from rigdesign.results.loads import (
     ContactLoss,

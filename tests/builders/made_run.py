@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.drivetrain.graph import TorqueSection
-from dynamics.response.envelopes import EnvelopeWindows
-from dynamics.response.propagator import SectionEnvelopes
+from dynamics.rotor.graph import TorqueSection
+from dynamics.vibration.envelopes import EnvelopeWindows
+from dynamics.vibration.propagator import SectionEnvelopes
 from rigdesign.coupling.time_run import schedule_of, stage_names
-from rigdesign.records.curves import Curves
-from rigdesign.records.dynamics import DynamicRun
+from rigdesign.postprocessing.curves import Curves
+from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.rig.model import Rig
 
 Torques = Mapping[tuple[int, str], tuple[float, float]]

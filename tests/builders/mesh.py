@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
-from dynamics.mesh.law import MeshLaw
+from dynamics.rotor.linear_system import LinearSystem, line_shapes
+from dynamics.tooth.law import MeshLaw
 
 BASE_RADIUS_1 = 46.5e-3
 TEETH = (99, 102)

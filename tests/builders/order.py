@@ -7,17 +7,17 @@ from typing import Literal
 
 import numpy as np
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.elastic_rig.freedoms import FAMILIES
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import isotropic_bearing
+from dynamics.rotor.bearing_state import isotropic_bearing
+from dynamics.rotor.freedoms import FAMILIES
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.reduction import reduce_rig
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.braced_loop import BracingState, LoadedCircuit, brace_initial
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models
+from rigdesign.coupling.preloaded_loop import BracingState, LoadedCircuit, brace_initial
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.full import modelled_rig
 from rigdesign.prediction.model import Channel, PredictionModel

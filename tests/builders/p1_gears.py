@@ -12,8 +12,8 @@ twist has it, and the pinion at its front end.
 
 from math import radians
 
-from dynamics.flank.microgeometry import Microgeometry
 from dynamics.gear.line_of_action import shift_sum
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.elastic_rig.reduction import ReducedElasticRig
-from dynamics.elastic_rig.running_state import RunningState
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.reduction import ReducedElasticRig
 from tests.builders.full_matrices import full_matrices
 from tests.builders.harmonic_response import receptance
 

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import BearingPlace, Coupling, GearBody, MeshConnection, Motor
-from dynamics.drivetrain.shaft import Disc, Section, Shaft
-from dynamics.mesh.law import MeshLaw
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.parts import BearingPlace, Coupling, GearBody, MeshConnection, Motor
+from dynamics.rotor.shaft import Disc, Section, Shaft
+from dynamics.tooth.law import MeshLaw
 
 TABLE_2 = {
     "test_pinion": (4022.7, 5657.2, 7776.4),

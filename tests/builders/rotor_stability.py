@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.bearing.protocol import LateralCoefficients
 from dynamics.errors import DynamicsInputError
+from dynamics.rotor.bearing import LateralCoefficients
 
 SPEEDS = 60
 """At which a range is searched for the first instability, in equal ratios."""

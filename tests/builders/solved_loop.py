@@ -3,7 +3,7 @@
 from functools import cache
 
 from rigdesign import load_case
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.run.main import solve_case
 from tests.builders.paths import CASES
 

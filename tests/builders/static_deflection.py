@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, csr_array, hstack, vstack
 from scipy.sparse.linalg import splu
 
-from dynamics.drivetrain.shaft import DrivetrainError
-from dynamics.elastic_rig.assembly import ElasticModel
-from dynamics.elastic_rig.location import unresisted
-from dynamics.elastic_rig.running_state import RunningState
+from dynamics.rotor.assembly import ElasticModel
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.location import unresisted
+from dynamics.rotor.shaft import DrivetrainError
 from tests.builders.full_matrices import full_matrices
 
 Array = NDArray[np.float64]

@@ -6,9 +6,9 @@ from pathlib import Path
 from rigdesign import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.temperatures import HousingField, boundary_conditions, solve_housing
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig

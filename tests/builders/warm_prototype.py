@@ -7,7 +7,7 @@ from rigdesign.case import Case, load_case
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.housing import cooling_balance
+from rigdesign.postprocessing.housing import cooling_balance
 from rigdesign.rig.model import Rig
 from tests.builders.twisting import twisting_rig
 

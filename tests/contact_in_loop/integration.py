@@ -17,7 +17,7 @@ The linear part is taken over a step exactly, mode by mode, under forces that ar
 the step are found by Newton's method on the motion of the meshes: what a force gives to the motion of its own step is
 small, so that one look at the contacts is mostly enough.
 
-Each mesh has the seven rows of ``dynamics.elastic_rig.seen_system``: approach and tilt of both flanks, turns of both
+Each mesh has the seven rows of ``dynamics.rotor.craig_bampton``: approach and tilt of both flanks, turns of both
 gears and slide.
 """
 

@@ -2,9 +2,9 @@
 
 In every step the contact of each mesh is solved from the influence numbers of its gears at the positions and tilts that
 the gears have (`tests.contact_in_loop.integration`): both flanks, loss of contact, tip corners, the load over the face.
-Its forces act in the directions in which its motion is seen (`dynamics.elastic_rig.seen_system`): each flank along its
+Its forces act in the directions in which its motion is seen (`dynamics.rotor.craig_bampton`): each flank along its
 own normal, moments over the face, friction across the normals. It is the reference of the faster march on tables
-(`dynamics.response.time_march`), which has one approach per mesh on the flank that carries.
+(`dynamics.vibration.time_integration`), which has one approach per mesh on the flank that carries.
 
 What the shafts' mean load tilts is in the flanks' gap already, as the coupling loop has it; the moment of the mean load
 over the face is taken out here, so that the tilt is that of the motion.
@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
-from dynamics.mesh.law import MeshLaw, back_deviations
-from dynamics.response.initial_state import WoundLoop
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.tooth.law import MeshLaw, back_deviations
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.vibration.initial_state import WoundLoop
 from tests.contact_in_loop.integration import (
     N_RECORD,
     N_ROWS,

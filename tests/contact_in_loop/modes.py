@@ -8,8 +8,8 @@ are then exactly those of its forces, so that their power closes the books of th
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem, ModalForm
-from dynamics.response.propagator import phi, straight_line
+from dynamics.rotor.linear_system import LinearSystem, ModalForm
+from dynamics.vibration.propagator import phi, straight_line
 from tests.contact_in_loop.integration import HeldModes
 
 Array = NDArray[np.float64]

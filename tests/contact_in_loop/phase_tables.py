@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from dynamics.contact.compliance import LocalModel
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import ContactPoints
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.pair_gap import path_reach
+from dynamics.tooth.compliance import LocalModel
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.pair_gap import path_reach
+from dynamics.tooth.points import ContactPoints
 from tests.contact_in_loop.integration import PhaseTable
 
 Array = NDArray[np.float64]

@@ -12,11 +12,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
 from dynamics.errors import DynamicsInputError
-from dynamics.response.initial_state import pinion_ratios, wound_state
-from dynamics.response.periodic_response import HeldSpeed
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.initial_state import pinion_ratios, wound_state
+from dynamics.vibration.periodic_response import HeldSpeed
 from tests.contact_in_loop.loop import ContactLoop, LoopRecord, MeshInLoop
 
 Array = NDArray[np.float64]

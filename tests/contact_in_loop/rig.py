@@ -14,21 +14,21 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.seen_system import wrench_rows
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
-from dynamics.mesh.flank import alike_teeth
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.craig_bampton import wrench_rows
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.vibration.response_curve import CurvePoint
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from rigdesign.base.parallel import BackgroundTasks
-from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
+from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.time_run import drags_at
-from rigdesign.records.dynamics import DynamicRun
-from rigdesign.records.loaded_contact import held_contact
-from rigdesign.records.loop_states import state_at
+from rigdesign.postprocessing.dynamics import DynamicRun
+from rigdesign.postprocessing.loaded_contact import held_contact
+from rigdesign.postprocessing.loop_states import state_at
 from rigdesign.rig.model import Rig
 from tests.contact_in_loop.loop import MeshInLoop
 from tests.contact_in_loop.response import LoopedProblem, LoopedResponse, looped_response

@@ -8,10 +8,10 @@ from time import process_time
 
 import pytest
 
-from dynamics.bearing.journal import JournalBearing
-from dynamics.bearing.protocol import Bearing, BearingOperation, OilSupply
-from dynamics.bearing.rolling import RollingBearing
-from dynamics.bearing.rolling_catalogue import catalogue_bearing
+from dynamics.rotor.bearing import Bearing, BearingOperation, OilSupply
+from dynamics.rotor.journal import JournalBearing
+from dynamics.rotor.rolling import RollingBearing
+from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
 pytestmark = pytest.mark.performance
 

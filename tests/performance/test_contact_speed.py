@@ -9,8 +9,8 @@ from time import process_time
 import pytest
 from threadpoolctl import threadpool_limits
 
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.points import FaceGrid
 from tests.builders.loaded_mesh import influence_of
 from tests.builders.p2_gears import helical_pair, spur_pair
 

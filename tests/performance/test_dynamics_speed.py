@@ -10,17 +10,17 @@ from time import process_time
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.flank.microgeometry import Microgeometry
-from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.stiffness import pair_stiffness
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.rating.iso_rating import mesh_stiffness
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_law import ContactDiscretisation, MeshDissipation, mesh_law
+from dynamics.tooth.pair_stiffness import pair_stiffness
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import wavy_law
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype

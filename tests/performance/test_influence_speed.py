@@ -12,9 +12,9 @@ from time import perf_counter, process_time
 import pytest
 from threadpoolctl import threadpool_limits
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.points import FaceGrid
 from rigdesign.case.loader import load_case
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.tooth_influence import InfluenceStore, gear_model

@@ -11,16 +11,16 @@ from time import process_time
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.contact_table import contact_tables
-from dynamics.mesh.force import evaluate_mesh, evaluate_table
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings, march_model
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.contact_table import contact_tables
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh, evaluate_table
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings, march_model
+from dynamics.vibration.time_integration import TimeMarch
 from tests.performance.test_dynamics_speed import SAMPLE_RATE, TORQUE, phase_laws, rig, shipped_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 
 pytestmark = pytest.mark.performance
 

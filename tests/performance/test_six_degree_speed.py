@@ -15,20 +15,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
-from dynamics.response.initial_state import WoundLoop, wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings, march_model
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.assembly import ElasticModel, assemble_rig
+from dynamics.rotor.bearing_state import BearingCoefficients, RunningState
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.initial_state import WoundLoop, wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings, march_model
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.exudyn_march import ExudynSolver, Motion, WaveMesh, exudyn_march
 from tests.builders.full_matrices import full_matrices
 from tests.performance.test_dynamics_speed import BACKLASH, DAMPING, DEPTHS, SAMPLE_RATE, TORQUE, phase_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import FILM
+from tests.unit.dynamics_package.rotor.test_seen_system import FILM
 
 pytestmark = pytest.mark.performance
 Array = NDArray[np.float64]

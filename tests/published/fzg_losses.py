@@ -10,17 +10,17 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal_film import characteristic
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
-from dynamics.mesh.friction import (
+from dynamics.rotor.journal_film import characteristic
+from dynamics.tooth.friction import (
     Schlenk,
     ToothPath,
     friction_coefficient,
     ohlendorf_factor,
     tooth_loss_factor,
 )
-from dynamics.mesh.stiffness import pair_stiffness
+from dynamics.tooth.pair_stiffness import pair_stiffness
 from tests.published.rows import Gate, Goal, PublishedQuantity, ValidationRow, compare
 
 GEARPIE = "GEARpie (C. Fernandes, University of Porto), printed report"

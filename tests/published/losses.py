@@ -8,7 +8,7 @@ profile shifts, which is not printed, decides the mesh loss of the test gear by 
 from collections.abc import Iterator
 
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.friction import ToothPath, ohlendorf_factor, tooth_loss_factor
+from dynamics.tooth.friction import ToothPath, ohlendorf_factor, tooth_loss_factor
 from tests.published.prototype import Prototype
 from tests.published.rows import PublishedQuantity, ValidationRow, compare, compare_printed
 

@@ -6,15 +6,15 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem, line_shapes, modal_form
-from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
 from dynamics.errors import DynamicsNotConverged
-from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_balance import solve_periodic
-from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
-from dynamics.response.periodic_response import TimeSettings, periodic_by_time
-from dynamics.response.response_curve import waveform
+from dynamics.rotor.linear_system import LinearSystem, line_shapes, modal_form
+from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import PackedMeshes, evaluate_mesh, pack_meshes
+from dynamics.vibration.harmonic_balance import solve_periodic
+from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
+from dynamics.vibration.periodic_response import TimeSettings, periodic_by_time
+from dynamics.vibration.response_curve import waveform
 from rigdesign.rig.model import Rig
 from tests.published.prototype import RPM, TEST_TORQUE, Prototype
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare, not_modelled

@@ -8,14 +8,14 @@ finite elements lie between both. ROSS: gear element with time-varying mesh stif
 from collections.abc import Iterator
 from dataclasses import replace
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.points import FaceGrid
 from dynamics.gear.pair import GearPair
-from dynamics.influence.build import influence_numbers
 from dynamics.rating.iso_rating import RatingOptions, mesh_data, mesh_stiffness
 from dynamics.standards import iso6336_1_2006 as iso6336_1_2006_stiffness
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.influence_model import influence_numbers
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.mesh_cycle import MeshCycle
+from dynamics.tooth.points import FaceGrid
 from rigdesign.rig.tooth_influence import gear_model
 from tests.published.rows import Goal, PublishedQuantity, ValidationRow, compare
 

@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import ContactPattern, MeshCycle, unloaded_contact_ratio
-from dynamics.contact.points import FaceGrid, flank_gap
-from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
-from dynamics.influence.elastic_segment import GearModel
-from dynamics.influence.numbers import SectionDivision
-from dynamics.mesh.pair_gap import PairGap
-from rigdesign.records.loaded_contact import ElasticGear, stress_at
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.elastic_segment import GearModel
+from dynamics.tooth.influence_numbers import SectionDivision
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.mesh_cycle import ContactPattern, MeshCycle, unloaded_contact_ratio
+from dynamics.tooth.pair_gap import PairGap
+from dynamics.tooth.points import FaceGrid, flank_gap
+from rigdesign.postprocessing.loaded_contact import ElasticGear, stress_at
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.rig.tooth_influence import InfluenceStore, gear_model
 from rigdesign.strain_gauge.measuring_point import GaugeCurve

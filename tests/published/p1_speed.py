@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import LoopLoad, port_model, solve_static
-from rigdesign.coupling.braced_loop import signed_torque
+from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.mesh_models import laws_of
+from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records import root
+from rigdesign.postprocessing import root
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.strain_gauge.measuring_point import GaugeCurve
 

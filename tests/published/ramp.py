@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from dynamics.response.schedule import RampLimits, ramp_rules
+from dynamics.vibration.schedule import RampLimits, ramp_rules
 from rigdesign.coupling.time_run import schedule_of
 from tests.published.prototype import RPM, Prototype
 from tests.published.rows import PublishedQuantity, ValidationRow, compare

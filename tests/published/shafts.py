@@ -15,7 +15,7 @@ Found by these rows:
 
 from collections.abc import Iterator, Sequence
 
-from dynamics.drivetrain.modes import (
+from dynamics.rotor.torsional_modes import (
     Crossing,
     damping_audit,
     order_crossings,

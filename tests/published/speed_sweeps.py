@@ -7,21 +7,21 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import DrivetrainOverSpeed, SpeedBands
-from dynamics.drivetrain.modes import LoopMode
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.mode_names import elastic_loop_modes
-from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.pair_gap import tip_separation
-from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.response_curve import Method
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.linear_system import DrivetrainOverSpeed, SpeedBands
+from dynamics.rotor.mode_names import elastic_loop_modes
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.rotor.torsional_modes import LoopMode
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_law import ContactDiscretisation, MeshDissipation, mesh_law
+from dynamics.tooth.pair_gap import tip_separation
+from dynamics.vibration.modal_model import DEFAULT_CUTOFF
+from dynamics.vibration.response_curve import Method
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case.drivetrain import MeshStiffness
-from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_microgeometry, mesh_models
+from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from tests.published.prototype import RPM, TEST_TORQUE, Prototype

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.modes import loop_modes, modes_above_samples
-from dynamics.response.time_response import TimeResponse
+from dynamics.rotor.torsional_modes import loop_modes, modes_above_samples
+from dynamics.vibration.time_response import TimeResponse
 from rigdesign.case import load_case
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.mesh_models import laws_of

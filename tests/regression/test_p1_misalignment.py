@@ -12,9 +12,9 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.decision.cross_validation import Problem
 from rigdesign.diagnosis.decision.defaults import DEFAULT
 from rigdesign.diagnosis.decision.naming import Names, from_evidence
-from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.residual.residual_problem import compare

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.cli import main as cli
-from rigdesign.cli.ending import exit_status
+from rigdesign.cli.exit_status import exit_status
 from tests.builders.page_files import missing_lines, shown, written_out
 from tests.builders.paths import CASES, ROOT
 from tests.builders.shared_runs import run_cache

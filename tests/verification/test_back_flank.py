@@ -12,13 +12,19 @@ from math import acos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
-from dynamics.flank.microgeometry import Microgeometry, pitch_waves
+from dynamics.gear.microgeometry import Microgeometry, pitch_waves
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
-from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, alike_teeth, mesh_law
-from dynamics.mesh.force import evaluate_mesh, pack_meshes, tooth_forces
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.stiffness import pair_stiffness
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh, pack_meshes, tooth_forces
+from dynamics.tooth.mesh_law import (
+    ContactDiscretisation,
+    MeshDissipation,
+    MeshPosition,
+    alike_teeth,
+    mesh_law,
+)
+from dynamics.tooth.pair_stiffness import pair_stiffness
 
 PAIR = GearPair.from_centre_distance(
     normal_module=4.5e-3,

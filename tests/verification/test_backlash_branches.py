@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import modal_form
-from dynamics.drivetrain.static_loop import LoopLoad, port_model
 from dynamics.errors import DynamicsNotConverged
-from dynamics.response.harmonic_balance import solve_periodic
-from dynamics.response.harmonic_branches import CRAWLING, BranchTrace, SpeedProblem, instability
-from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
-from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.response_curve import Method, ResponseCurve, waveform
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import modal_form
+from dynamics.rotor.static_loop import LoopLoad, port_model
+from dynamics.vibration.harmonic_balance import solve_periodic
+from dynamics.vibration.harmonic_branches import CRAWLING, BranchTrace, SpeedProblem, instability
+from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
+from dynamics.vibration.periodic_response import periodic_by_time
+from dynamics.vibration.response_curve import Method, ResponseCurve, waveform
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.rig import prototype, prototype_laws
 from tests.published.mechanics import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 

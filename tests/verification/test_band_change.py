@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.force import evaluate_table
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import (
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_table
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import (
     FADE,
     DriveLoads,
     DriveState,
@@ -24,10 +24,10 @@ from dynamics.response.march_inputs import (
     march_model,
     static_position,
 )
-from dynamics.response.time_march import TimeMarch
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, wavy_law
 from tests.builders.rig import prototype_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import SPEED, films, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import SPEED, films, seen
 
 TORQUE = 180.0
 BRAKE = TORQUE * BASE_RADIUS_2 / BASE_RADIUS_1

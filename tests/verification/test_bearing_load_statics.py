@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
+from dynamics.rotor.bearing_state import RunningState, isotropic_bearing
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_loads import bearing_loads, shaft_loads

@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign.coupling.housing_context import heat_carried_off
 from rigdesign.coupling.temperatures import HousingField, heat_into_oil, heat_to_room
-from rigdesign.records.housing import fluid_temperatures
+from rigdesign.postprocessing.housing import fluid_temperatures
 from rigdesign.rig.model import Rig
 from rigdesign.transient.heating import blended
 from rigdesign.transient.oil import oil_conditions

@@ -9,15 +9,15 @@ import pytest
 import scipy.linalg
 from numpy.typing import NDArray
 
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports, wrench_rows
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.law import in_parallel
-from dynamics.response.initial_state import wound_state
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports, wrench_rows
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import in_parallel
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.points import FaceGrid
+from dynamics.vibration.initial_state import wound_state
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.loaded_mesh import fzg_c, influence_of
 from tests.builders.p2_gears import helical_pair, spur_pair

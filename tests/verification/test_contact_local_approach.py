@@ -8,9 +8,9 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementQuad2, ElementVector, FacetBasis, LinearForm, MeshQuad, asm
 from skfem.models.elasticity import linear_elasticity
 
-from dynamics.contact.compliance import EdgeModel, LocalModel, elastic_moduli, wedge_factor
-from dynamics.contact.corner import contact_places, tip_ends
 from dynamics.kernels.loaded_contact import ContactProblem, local_approach, press_points
+from dynamics.tooth.compliance import EdgeModel, LocalModel, elastic_moduli, wedge_factor
+from dynamics.tooth.corner import contact_places, tip_ends
 from tests.builders.loaded_mesh import equal_gears, sliced_mesh
 
 PAIR = equal_gears()

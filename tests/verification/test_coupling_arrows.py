@@ -16,22 +16,22 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.bearing.rolling_state import RollingState
 from dynamics.losses.mesh_loss import ToothPath
-from dynamics.response.response_curve import CurvePoint
+from dynamics.rotor.rolling_state import RollingState
+from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
 from rigdesign.coupling.alignment import coupled_ends, coupling_places
 from rigdesign.coupling.bearing_loads import bearing_loads
-from rigdesign.coupling.braced_loop import LoadedCircuit, respond
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.loop_system import bearing_coefficients, mesh_placements
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, respond
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.dynamics import bracing_drift
-from rigdesign.records.housing import cooling_balance
+from rigdesign.postprocessing.dynamics import bracing_drift
+from rigdesign.postprocessing.housing import cooling_balance
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.oil_circuit import plant_case
 

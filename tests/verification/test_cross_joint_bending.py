@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.assembly import (
+from dynamics.rotor.assembly import (
     CrossJointLoad,
     ElasticModel,
     assemble_rig,
@@ -14,9 +14,9 @@ from dynamics.elastic_rig.assembly import (
     cross_joint_loads,
     standing_load,
 )
-from dynamics.elastic_rig.layout import CrossJoint
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.rotor_model import CrossJoint
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 
 TORQUE = 180.0

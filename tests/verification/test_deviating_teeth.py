@@ -11,16 +11,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.static_loop import LoopLoad, SlowRotation, port_model, solve_static
-from dynamics.mesh.flank import reach_beyond
-from dynamics.response.command import Command, MotorDrive, Sampling
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.time_response import run_schedule
+from dynamics.rotor.static_loop import LoopLoad, SlowRotation, port_model, solve_static
+from dynamics.tooth.mesh_law import reach_beyond
+from dynamics.vibration.command import Command, MotorDrive, Sampling
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.time_response import run_schedule
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.coupling.braced_loop import brace_initial
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
+from rigdesign.coupling.preloaded_loop import brace_initial
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from tests.builders.twisting import twisting_rig

@@ -13,23 +13,23 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.parts import BearingPlace, GearBody, MeshConnection, Motor
-from dynamics.drivetrain.shaft import Section, Shaft
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.layout import (
+from dynamics.rotor.assembly import ElasticModel, assemble_rig
+from dynamics.rotor.bearing_state import RowSpring, RunningState, isotropic_bearing
+from dynamics.rotor.craig_bampton import approach_row
+from dynamics.rotor.graph import Drivetrain, assemble
+from dynamics.rotor.parts import BearingPlace, GearBody, MeshConnection, Motor
+from dynamics.rotor.rotor_model import (
     AxialLocation,
     AxialMeshSpring,
     ElasticRig,
     ShaftPlacement,
     double_helical_stiffness,
 )
-from dynamics.elastic_rig.running_state import RowSpring, RunningState, isotropic_bearing
-from dynamics.elastic_rig.seen_system import approach_row
-from dynamics.mesh.law import in_parallel
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.shaft import Section, Shaft
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import in_parallel
+from dynamics.vibration.response_curve import CurvePoint
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from rigdesign import load_case
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
-from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings, march_model
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.linear_system import LinearSystem, line_shapes
+from dynamics.vibration.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings, march_model
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import spur_law
 
 OPEN = spur_law(backlash=1e9, offset=-5e8)

@@ -7,11 +7,11 @@ from the momentum gained and lost, the losses from the contacts, the joint rates
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.periodic_response import PeriodicResponse, TimeSettings, periodic_by_time
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.periodic_response import PeriodicResponse, TimeSettings, periodic_by_time
 from tests.builders.rig import prototype, prototype_laws
 
 RPM = np.pi / 30.0

@@ -16,15 +16,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.flank.microgeometry import Microgeometry
-from dynamics.mesh.contact_table import contact_tables
-from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.mesh.force import evaluate_mesh, evaluate_table
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.stiffness import pair_stiffness
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.gear.microgeometry import Microgeometry
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.contact_table import contact_tables
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh, evaluate_table
+from dynamics.tooth.mesh_law import ContactDiscretisation, MeshDissipation, mesh_law
+from dynamics.tooth.pair_stiffness import pair_stiffness
+from dynamics.vibration.response_curve import CurvePoint
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.mesh import chain
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 

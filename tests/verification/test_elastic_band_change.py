@@ -17,14 +17,14 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad, line_ratios
-from dynamics.elastic_rig.running_state import BearingCoefficients, RunningState
-from dynamics.response.initial_state import WoundLoop, wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings, march_model
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.bearing_state import BearingCoefficients, RunningState
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad, line_ratios
+from dynamics.vibration.initial_state import WoundLoop, wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings, march_model
+from dynamics.vibration.time_integration import TimeMarch
 from tests.performance.test_dynamics_speed import BACKLASH, DAMPING, DEPTHS, phase_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import FILM, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import FILM, seen
 
 Array = NDArray[np.float64]
 pytestmark = pytest.mark.slow

@@ -6,13 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace, drift
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
-from dynamics.mesh.law import MeshLaw
+from dynamics.rotor.assembly import ElasticModel, assemble_rig
+from dynamics.rotor.bracing import LoopBracing, Mode, ShiftedGear, brace, drift
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.tooth.law import MeshLaw
 from tests.builders.elastic_rig import bearings, prototype_drivetrain, prototype_rig, running
 from tests.builders.mesh import wavy_law
 from tests.builders.rig import prototype_laws

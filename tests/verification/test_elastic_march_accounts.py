@@ -9,13 +9,13 @@ mesh period. Speeds without the error of the trapezoid, of which the mesh damper
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.modal_model import DEFAULT_CUTOFF
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings
+from dynamics.vibration.modal_model import DEFAULT_CUTOFF
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.rig import prototype_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 
 SPEED, TORQUE, RATE = 600.0, 180.0, 40e3
 

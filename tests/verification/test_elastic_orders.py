@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from dynamics.response.section_torque import section_torques
+from dynamics.vibration.section_torque import section_torques
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.braced_loop import periodic_laws, respond, shifted_laws
 from rigdesign.coupling.loop_system import twist_rows_of
+from rigdesign.coupling.preloaded_loop import periodic_laws, respond, shifted_laws
 from rigdesign.prediction.full import like
 from rigdesign.prediction.model import Channel
 from rigdesign.prediction.orders import shaft_orders

@@ -24,19 +24,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem, SpeedBands
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.linear_system import LinearSystem, SpeedBands
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.time_integration import TimeMarch
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.braced_loop import signed_torque
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
+from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

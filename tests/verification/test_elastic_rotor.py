@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.parts import BearingPlace, MeshConnection, Motor
-from dynamics.drivetrain.shaft import STEEL_DENSITY, STEEL_SHEAR_MODULUS, Disc, Section, Shaft
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.beam import ShearRule, shear_coefficient
-from dynamics.elastic_rig.damped_modes import damped_modes, mode_character, orbit
-from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
-from dynamics.elastic_rig.seen_system import approach_row
+from dynamics.rotor.assembly import ElasticModel, assemble_rig
+from dynamics.rotor.beam import ShearRule, shear_coefficient
+from dynamics.rotor.bearing_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
+from dynamics.rotor.craig_bampton import approach_row
+from dynamics.rotor.damped_modes import damped_modes, mode_character, orbit
+from dynamics.rotor.graph import Drivetrain, assemble
+from dynamics.rotor.parts import BearingPlace, MeshConnection, Motor
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.rotor_model import AxialLocation, ElasticRig, ShaftPlacement
+from dynamics.rotor.shaft import STEEL_DENSITY, STEEL_SHEAR_MODULUS, Disc, Section, Shaft
 from tests.builders.elastic_rig import bearings, gear_on, prototype_drivetrain, prototype_rig, single_shaft
 from tests.builders.full_matrices import full_matrices
 from tests.builders.harmonic_response import Unbalance, unbalance_load

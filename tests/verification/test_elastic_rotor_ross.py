@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import BearingPlace, GearBody, MeshConnection, Motor
-from dynamics.drivetrain.shaft import Disc, Section, Shaft
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.damped_modes import damped_modes
-from dynamics.elastic_rig.layout import AxialLocation, ElasticRig, ShaftPlacement
-from dynamics.elastic_rig.reduction import ReducedElasticRig, reduce_rig
-from dynamics.elastic_rig.running_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
-from dynamics.elastic_rig.seen_system import approach_row
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.bearing_state import BearingCoefficients, RowSpring, RunningState, isotropic_bearing
+from dynamics.rotor.craig_bampton import approach_row
+from dynamics.rotor.damped_modes import damped_modes
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.parts import BearingPlace, GearBody, MeshConnection, Motor
+from dynamics.rotor.reduction import ReducedElasticRig, reduce_rig
+from dynamics.rotor.rotor_model import AxialLocation, ElasticRig, ShaftPlacement
+from dynamics.rotor.shaft import Disc, Section, Shaft
 from tests.builders.full_matrices import full_matrices
 from tests.builders.harmonic_response import Unbalance, unbalance_load
 

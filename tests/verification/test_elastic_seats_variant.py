@@ -10,10 +10,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.layout import ElasticRig
-from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
-from dynamics.elastic_rig.seen_system import approach_row
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.bearing_state import RunningState, isotropic_bearing
+from dynamics.rotor.craig_bampton import approach_row
+from dynamics.rotor.rotor_model import ElasticRig
 from rigdesign import load_case
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

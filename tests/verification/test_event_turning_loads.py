@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble, torsional_twist_rows
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad, harmonic_loads, rotating_load
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.layout import ShaftUnbalance
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RunningState
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
-from dynamics.mesh.force import evaluate_mesh
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_march import (
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.graph import assemble, torsional_twist_rows
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.parts import LoadOrder, PeriodicLoad, harmonic_loads, rotating_load
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.rotor_model import ShaftUnbalance
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh
+from dynamics.vibration.event_march import (
     Brake,
     Channel,
     EventMarch,
@@ -28,11 +28,11 @@ from dynamics.response.event_march import (
     steady_start,
     torque_channels,
 )
-from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.march_inputs import TurningLoads
-from dynamics.response.periodic_response import TimeSettings
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.initial_state import pinion_ratios
+from dynamics.vibration.march_inputs import TurningLoads
+from dynamics.vibration.periodic_response import TimeSettings
+from dynamics.vibration.response_curve import CurvePoint
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, chain, wavy_law
 from tests.builders.rig import prototype, prototype_laws

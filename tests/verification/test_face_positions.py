@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid, default_positions
-from dynamics.contact.root_field import root_course
 from dynamics.gear.pair import GearPair
-from dynamics.influence.build import influence_numbers
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.influence_model import influence_numbers
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.points import FaceGrid, default_positions
+from dynamics.tooth.root_field import root_course
 from rigdesign.case import load_case
-from rigdesign.records.loaded_contact import ROOT
+from rigdesign.postprocessing.loaded_contact import ROOT
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.tooth_influence import gear_model
 from tests.builders.paths import CASES

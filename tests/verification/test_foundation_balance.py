@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.elastic_rig import motion_of_all
 from tests.builders.rig import CENTRE_DISTANCE, prototype_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 
 Array = NDArray[np.float64]
 SPEED, TORQUE = 600.0, 180.0

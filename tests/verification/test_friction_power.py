@@ -7,10 +7,10 @@ import pytest
 
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import mesh_loss
-from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.mesh.force import evaluate_mesh, tooth_forces
-from dynamics.mesh.friction import GivenFriction, ToothPath, friction_coefficient
-from dynamics.mesh.stiffness import pair_stiffness
+from dynamics.tooth.friction import GivenFriction, ToothPath, friction_coefficient
+from dynamics.tooth.mesh_force import evaluate_mesh, tooth_forces
+from dynamics.tooth.mesh_law import ContactDiscretisation, MeshDissipation, mesh_law
+from dynamics.tooth.pair_stiffness import pair_stiffness
 from tests.builders.p2_gears import helical_pair, spur_pair
 
 OMEGA = 12000 * math.pi / 30

@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
-from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.hand import _losses, end_wall_clearance, mean_gap, partition_gap
+from rigdesign.postprocessing.hand_calculation import _losses, end_wall_clearance, mean_gap, partition_gap
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
 from tests.builders.warm_prototype import base

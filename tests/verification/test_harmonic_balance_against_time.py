@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.law import DampedRate
-from dynamics.response.periodic_response import TimeSettings, periodic_by_time
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import DampedRate
+from dynamics.vibration.periodic_response import TimeSettings, periodic_by_time
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.rig import prototype, prototype_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 
 RPM = math.pi / 30.0
 

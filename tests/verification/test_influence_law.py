@@ -1,6 +1,6 @@
 """The dynamic mesh law from influence numbers against the loaded contact it is made from.
 
-The loaded contact (`dynamics.contact.loaded_mesh`) agrees with CalculiX; the law has its teeth as springs on one shared
+The loaded contact (`dynamics.tooth.loaded_mesh`) agrees with CalculiX; the law has its teeth as springs on one shared
 body instead, linear about the mean load.
 """
 
@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.influence_law import ElasticPair, influence_law
-from dynamics.contact.mesh_cycle import MeshCycle
 from dynamics.errors import DynamicsInputError
-from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.flank import ContactDiscretisation, mesh_law
-from dynamics.mesh.force import StaticCycle, static_cycle
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.stiffness import pair_stiffness
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.influence_law import ElasticPair, influence_law
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_cycle import MeshCycle
+from dynamics.tooth.mesh_force import StaticCycle, static_cycle
+from dynamics.tooth.mesh_law import ContactDiscretisation, mesh_law
+from dynamics.tooth.pair_stiffness import pair_stiffness
 from tests.builders.elastic_pairs import coarse_gears, equal_helical_pair, loaded, plane_gears
 from tests.builders.loaded_mesh import gap_of
 from tests.reference.tooth_contact import tables

@@ -15,17 +15,17 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from dynamics.contact.compliance import InterpolatedCompliance
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.points import FaceGrid, flank_gap
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
-from dynamics.influence import build
-from dynamics.influence import build as local_part
-from dynamics.influence.elastic_segment import Elastic, GearModel
-from dynamics.influence.numbers import STANDARD, GearBody, SectionDivision
-from dynamics.mesh.pair_gap import PairGap
 from dynamics.rating.root_stress import root_influence
+from dynamics.tooth import influence_model as build
+from dynamics.tooth import influence_model as local_part
+from dynamics.tooth.compliance import InterpolatedCompliance
+from dynamics.tooth.elastic_segment import Elastic, GearModel
+from dynamics.tooth.influence_numbers import STANDARD, GearBody, SectionDivision
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.pair_gap import PairGap
+from dynamics.tooth.points import FaceGrid, flank_gap
 from tests.builders.loaded_mesh import fzg_c
 from tests.builders.p2_gears import ALLOWANCES, spur_pair
 from tests.reference.tooth_contact import tables

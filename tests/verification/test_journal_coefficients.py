@@ -11,16 +11,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.bearing.journal_feed import film_arcs
-from dynamics.bearing.journal_film import film_grid, short_bearing_attitude, solve_arc, solve_film
-from dynamics.bearing.journal_lateral import (
+from dynamics.kernels.journal import short_bearing_load
+from dynamics.rotor.bearing import LateralCoefficients, LateralOperation
+from dynamics.rotor.journal_feed import film_arcs
+from dynamics.rotor.journal_film import film_grid, short_bearing_attitude, solve_arc, solve_film
+from dynamics.rotor.journal_lateral import (
     RunningFilm,
     coefficient_table,
     film_coefficients,
     journal_lateral,
 )
-from dynamics.bearing.protocol import LateralCoefficients, LateralOperation
-from dynamics.kernels.journal import short_bearing_load
 from tests.builders.rotor_stability import rotor_stability, threshold_speed
 
 # J. W. Lund, K. K. Thomsen, A calculation method and data for the dynamic coefficients of oil-lubricated journal

@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from dynamics.bearing.journal_film import (
+from dynamics.kernels.journal import short_bearing_load
+from dynamics.rotor.journal_film import (
     characteristic,
     short_bearing_attitude,
     short_bearing_side_flow,
     solve_film,
 )
-from dynamics.kernels.journal import short_bearing_load
 
 # A. A. Raimondi, J. Boyd, A solution for the finite journal bearing III, ASLE Trans. 1 (1958), full bearing:
 # L/D, eps, S = (r/c)^2 mu N / P, friction f r/c, attitude angle [deg], flow Q/(r c N L), share of side flow

@@ -18,13 +18,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.periodic_response import periodic_by_time
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.rig import prototype, prototype_laws
-from tests.unit.dynamics_package.elastic_rig.test_seen_system import films, seen
+from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 
 RPM = math.pi / 30.0
 BY_HARMONICS = SweepSettings(methods=("harmonic_balance",))

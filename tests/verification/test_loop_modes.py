@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvals
 
-from dynamics.drivetrain.graph import Drivetrain, assemble
-from dynamics.drivetrain.modes import closed_matrices, loop_crossings, loop_modes
-from dynamics.mesh.law import MeshLaw
+from dynamics.rotor.graph import Drivetrain, assemble
+from dynamics.rotor.torsional_modes import closed_matrices, loop_crossings, loop_modes
+from dynamics.tooth.law import MeshLaw
 from tests.builders.rig import prototype, prototype_laws
 
 HIGHEST = 6e3

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.shaft import Section, Shaft, free_frequencies
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.shaft import Section, Shaft, free_frequencies
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case import Case, load_case
 from rigdesign.checks import all_checks
-from rigdesign.coupling.braced_loop import LoadedCircuit, respond, signed_torque
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, respond, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.resolution import MOST_SHAFT_ELEMENTS, counted_frequency, highest_mode, with_elements

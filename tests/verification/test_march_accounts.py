@@ -6,8 +6,8 @@ Work put in = losses of teeth and joints + what skew stiffness takes + change of
 import numpy as np
 import pytest
 
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, static_position
-from dynamics.response.time_march import TimeMarch
+from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings, static_position
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, spur_law, wavy_law
 from tests.verification.test_band_change import BRAKE, TORQUE, drive, system
 

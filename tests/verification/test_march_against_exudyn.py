@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.response.initial_state import WoundLoop, wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.vibration.initial_state import WoundLoop, wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.exudyn_march import Motion, WaveMesh, exudyn_march
 from tests.performance.test_dynamics_speed import BACKLASH, DAMPING, DEPTHS, phase_laws, rig
 

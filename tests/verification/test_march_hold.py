@@ -7,9 +7,9 @@ under load; an elastic chain keeps its energy.
 import numpy as np
 import pytest
 
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, two_bodies, wavy_law
 
 TORQUE = 180.0

@@ -10,10 +10,10 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from dynamics.mesh.force import evaluate_mesh
-from dynamics.mesh.law import DampedRate, MeshLaw
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.tooth.law import DampedRate, MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh
+from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import (
     BASE_RADIUS_1,
     BASE_RADIUS_2,

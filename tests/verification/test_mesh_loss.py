@@ -5,7 +5,7 @@ import math
 import pytest
 
 from dynamics.losses.mesh_loss import mesh_loss
-from dynamics.mesh.friction import (
+from dynamics.tooth.friction import (
     Schlenk,
     ToothPath,
     friction_coefficient,

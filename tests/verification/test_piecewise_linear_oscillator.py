@@ -8,9 +8,9 @@ cycles, swept up and down. The damper acts in the gap too, so it stands on the g
 import numpy as np
 import pytest
 
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
-from dynamics.response.time_march import TimeMarch
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.vibration.time_integration import TimeMarch
 from tests.builders.mesh import two_bodies
 from tests.published.mechanics import DOWN, FORCE, MEAN_FORCE, UP, ZETA
 

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
-from dynamics.drivetrain.static_loop import LoopLoad, SlowRotation, port_model, solve_static
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.force import evaluate_mesh, static_cycle
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.initial_state import wound_state
+from dynamics.rotor.graph import assemble
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.shaft import STEEL_SHEAR_MODULUS
+from dynamics.rotor.static_loop import LoopLoad, SlowRotation, port_model, solve_static
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh, static_cycle
+from dynamics.vibration.initial_state import wound_state
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 
 

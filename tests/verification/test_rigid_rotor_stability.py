@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.bearing.protocol import LateralCoefficients
 from dynamics.errors import DynamicsInputError
+from dynamics.rotor.bearing import LateralCoefficients
 from tests.builders.rotor_stability import rotor_stability, threshold_speed
 
 SKEWED = ([[2.1e8, 0.9e8], [-1.6e8, 0.8e8]], [[2.2e5, 0.4e5], [0.4e5, 1.5e5]])

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.parts import Coupling, JointStiffness, LoadOrder, harmonic_loads, rotating_load
-from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS, Disc, Section
-from dynamics.drivetrain.static_loop import LoopLoad, line_ratios
-from dynamics.elastic_rig.assembly import ElasticModel, assemble_rig
-from dynamics.elastic_rig.layout import (
+from dynamics.rotor.assembly import ElasticModel, assemble_rig
+from dynamics.rotor.bearing_state import RunningState, isotropic_bearing, line_loads, misalignment_load
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.parts import Coupling, JointStiffness, LoadOrder, harmonic_loads, rotating_load
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.rotor_model import (
     AxisMisalignment,
     ElasticRig,
     FlangeRunOut,
@@ -20,10 +21,9 @@ from dynamics.elastic_rig.layout import (
     ShaftPlacement,
     ShaftUnbalance,
 )
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing, line_loads, misalignment_load
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.rotor.shaft import STEEL_SHEAR_MODULUS, Disc, Section
+from dynamics.rotor.static_loop import LoopLoad, line_ratios
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, single_shaft
 from tests.builders.full_matrices import full_matrices
 from tests.builders.mesh import BASE_RADIUS_1, TEETH, chain, wavy_law

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import TwistRows, assemble, torsional_twist_rows
-from dynamics.drivetrain.linear_system import DrivetrainOverSpeed, SpeedBands
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig, elastic_twist_rows, mesh_ports
-from dynamics.response.command import Command, MotorDrive, Sampling
-from dynamics.response.event_march import Watched, torque_channels
-from dynamics.response.time_response import TimeResponse, run_schedule
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.craig_bampton import SeenRig, elastic_twist_rows, mesh_ports
+from dynamics.rotor.graph import TwistRows, assemble, torsional_twist_rows
+from dynamics.rotor.linear_system import DrivetrainOverSpeed, SpeedBands
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.vibration.command import Command, MotorDrive, Sampling
+from dynamics.vibration.event_march import Watched, torque_channels
+from dynamics.vibration.time_response import TimeResponse, run_schedule
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.rig import prototype, prototype_laws
 

@@ -9,15 +9,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.command import Command, MotorDrive, Sampling
-from dynamics.response.initial_state import wound_state
-from dynamics.response.march_inputs import DriveLoads, MarchSettings
-from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from dynamics.response.time_march import TimeMarch
-from dynamics.response.time_response import TimeResponse, run_schedule
-from rigdesign.records.spectra import order_spectrum
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.command import Command, MotorDrive, Sampling
+from dynamics.vibration.initial_state import wound_state
+from dynamics.vibration.march_inputs import DriveLoads, MarchSettings
+from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.time_integration import TimeMarch
+from dynamics.vibration.time_response import TimeResponse, run_schedule
+from rigdesign.postprocessing.spectra import order_spectrum
 from tests.builders.mesh import BASE_RADIUS_1, chain, spur_law
 
 TEETH, SPEED, TORQUE = 20, 890.0, 100.0

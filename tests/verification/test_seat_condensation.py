@@ -6,7 +6,7 @@ import skfem
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from dynamics.elastic_rig.layout import SEAT_DIRECTIONS
+from dynamics.rotor.rotor_model import SEAT_DIRECTIONS
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.rig.model import build_rig

@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble, torsional_twist_rows
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.seen_system import SeenRig, elastic_twist_rows, mesh_ports
-from dynamics.mesh.force import evaluate_mesh
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.periodic_response import Motion
-from dynamics.response.response_curve import CurvePoint
-from dynamics.response.section_torque import section_torques
-from dynamics.response.speed_sweep import periodic_response
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.craig_bampton import SeenRig, elastic_twist_rows, mesh_ports
+from dynamics.rotor.graph import assemble, torsional_twist_rows
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.parts import LoadOrder, PeriodicLoad
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import evaluate_mesh
+from dynamics.vibration.periodic_response import Motion
+from dynamics.vibration.response_curve import CurvePoint
+from dynamics.vibration.section_torque import section_torques
+from dynamics.vibration.speed_sweep import periodic_response
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.full_matrices import full_matrices
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype, synthetic_law

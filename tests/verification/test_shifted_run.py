@@ -7,9 +7,9 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.reanalysis.modified_rig import PARTS, Reanalysis, modified_rig
 from rigdesign.reanalysis.reference import Reference, restored, solve_reference
-from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.loads import StageLoad
 from rigdesign.run.main import run_case
 from rigdesign.studies.from_base import FromBase

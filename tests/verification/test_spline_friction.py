@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.drivetrain.graph import (
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.graph import (
     Drivetrain,
     assemble,
     at_speed,
     torsional_twist_rows,
     with_spline_dampers,
 )
-from dynamics.drivetrain.parts import GearBody, MeshConnection, Motor
-from dynamics.drivetrain.shaft import DrivetrainError, Section, Shaft
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.layout import ElasticRig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RunningState
+from dynamics.rotor.parts import GearBody, MeshConnection, Motor
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.rotor_model import ElasticRig
+from dynamics.rotor.shaft import DrivetrainError, Section, Shaft
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.full_matrices import full_matrices
 

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.pair_gap import path_reach, tip_separation
+from dynamics.tooth.pair_gap import path_reach, tip_separation
 from tests.builders.p2_gears import helical_pair, spur_pair
 
 UHCF = spur_pair()

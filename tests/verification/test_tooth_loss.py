@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import assemble, shaft_chains, torsional_twist_rows
-from dynamics.drivetrain.linear_system import LinearSystem, line_shapes
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RunningState
-from dynamics.elastic_rig.seen_system import SeenRig, elastic_twist_rows, mesh_directions, mesh_ports
 from dynamics.errors import DynamicsInputError
-from dynamics.mesh.force import tooth_forces
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.event_march import (
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.craig_bampton import SeenRig, elastic_twist_rows, mesh_directions, mesh_ports
+from dynamics.rotor.graph import assemble, shaft_chains, torsional_twist_rows
+from dynamics.rotor.linear_system import LinearSystem, line_shapes
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_force import tooth_forces
+from dynamics.vibration.event_march import (
     Brake,
     EventMarch,
     SteadyStart,
@@ -28,7 +28,7 @@ from dynamics.response.event_march import (
     torque_channels,
     without_teeth,
 )
-from dynamics.response.initial_state import pinion_ratios
+from dynamics.vibration.initial_state import pinion_ratios
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.rig import prototype, prototype_laws
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.static_loop import LoopLoad
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.periodic_response import (
+from dynamics.rotor.static_loop import LoopLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.periodic_response import (
     PeriodicResponse,
     TimeSettings,
     period_length,

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.parts import LoadOrder, PeriodicLoad
-from dynamics.mesh.law import MeshLaw
-from dynamics.response.command import Command, MotorDrive, Sampling
-from dynamics.response.march_inputs import FollowingLoads, TurningLoads
-from dynamics.response.time_response import TimeResponse, run_schedule
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.parts import LoadOrder, PeriodicLoad
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.command import Command, MotorDrive, Sampling
+from dynamics.vibration.march_inputs import FollowingLoads, TurningLoads
+from dynamics.vibration.time_response import TimeResponse, run_schedule
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, wavy_law
 
 Array = NDArray[np.float64]

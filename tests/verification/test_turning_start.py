@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.parts import LoadOrder, rotating_load
-from dynamics.elastic_rig.assembly import assemble_rig
-from dynamics.elastic_rig.layout import FlangeRunOut, ShaftBow
-from dynamics.elastic_rig.reduction import reduce_rig
-from dynamics.elastic_rig.running_state import RunningState
-from dynamics.elastic_rig.seen_system import SeenRig, mesh_ports
-from dynamics.mesh.law import MeshLaw
-from dynamics.response import time_response
-from dynamics.response.command import Command, MotorDrive, Sampling
-from dynamics.response.march_inputs import SpeedControl
-from dynamics.response.time_response import TurningStart, run_schedule, turning_start
+from dynamics.rotor.assembly import assemble_rig
+from dynamics.rotor.bearing_state import RunningState
+from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
+from dynamics.rotor.linear_system import LinearSystem
+from dynamics.rotor.parts import LoadOrder, rotating_load
+from dynamics.rotor.reduction import reduce_rig
+from dynamics.rotor.rotor_model import FlangeRunOut, ShaftBow
+from dynamics.tooth.law import MeshLaw
+from dynamics.vibration import time_response
+from dynamics.vibration.command import Command, MotorDrive, Sampling
+from dynamics.vibration.march_inputs import SpeedControl
+from dynamics.vibration.time_response import TurningStart, run_schedule, turning_start
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, wavy_law
 from tests.builders.rig import prototype_laws

@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.running_state import RowSpring
+from dynamics.rotor.bearing_state import RowSpring
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import initial_state

@@ -29,7 +29,7 @@ FLANGE = (3.25, 0.35)
 FOUR_POLE = 1500.0 * math.tau / 60.0
 """Synchronous speed of a four-pole motor [rad/s]: the size of a rotor goes with torque, at whatever speed it turns."""
 STEEPEST = 1.875
-"""Largest slope of a stage over its mean, see `dynamics.response.schedule.s_derivative`."""
+"""Largest slope of a stage over its mean, see `dynamics.vibration.schedule.s_derivative`."""
 DAMPING_TIME = 2e-5
 """Damping over stiffness of a coupling [s]: a loss factor of 0.06 at 500 Hz."""
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from rigdesign.case.defaults.rule import RawTree
 
 if TYPE_CHECKING:
-    from dynamics.bearing.rolling_catalogue import CatalogueBearing
+    from dynamics.rotor.rolling_catalogue import CatalogueBearing
 
 
 def shaft_of(tree: RawTree, box: str, kind: str, part: str) -> str | None:
@@ -69,8 +69,8 @@ def tabled(tree: RawTree, box: str, bearing: str) -> "CatalogueBearing | None":
     designation = tree.text(f"gearboxes.{box}.bearings.{bearing}.designation")
     if designation is None:
         return None
-    from dynamics.bearing.protocol import BearingError
-    from dynamics.bearing.rolling_catalogue import catalogue_bearing
+    from dynamics.rotor.bearing import BearingError
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
     try:
         return catalogue_bearing(designation)

@@ -1,6 +1,6 @@
 """Rules of shafts that bend: what holds each of them along its axis and sideways, and what its parts have to state.
 
-The same as `dynamics.elastic_rig.location` asks of the assembled rig, from the keys of the case alone.
+The same as `dynamics.rotor.location` asks of the assembled rig, from the keys of the case alone.
 """
 
 import math
@@ -114,8 +114,8 @@ def _axial(case: "Case", shafts: Collection[str], couplings: Sequence["CouplingI
 def _screwing(
     case: "Case", shafts: Collection[str], floating: Sequence[list[str]]
 ) -> Iterator[Sequence[str]]:
-    """Those of the floating groups that helical meshes do not hold (`dynamics.elastic_rig.location`)."""
-    from dynamics.elastic_rig.location import HelicalTie, not_held, turning_together
+    """Those of the floating groups that helical meshes do not hold (`dynamics.rotor.location`)."""
+    from dynamics.rotor.location import HelicalTie, not_held, turning_together
 
     assert case.drivetrain is not None
     couplings = case.drivetrain.couplings

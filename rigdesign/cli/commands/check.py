@@ -8,7 +8,7 @@ from cyclopts import Parameter
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.cli.application import OptionalOutFolder, Several, app, loaded_case, print_json
-from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
+from rigdesign.cli.exit_status import NOTHING_KEPT, failure_kept, interrupted
 from rigdesign.cli.terminal.console import verbosity
 
 

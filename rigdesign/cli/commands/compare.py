@@ -5,7 +5,7 @@ from typing import Literal
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.cli.application import OptionalOutFolder, app, loaded_case, print_json
-from rigdesign.cli.ending import NOTHING_KEPT, interrupted
+from rigdesign.cli.exit_status import NOTHING_KEPT, interrupted
 
 
 @app.command

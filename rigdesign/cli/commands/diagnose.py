@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from rigdesign.base.errors import UsageError
 from rigdesign.cli.application import OutFolder, app, loaded_case, print_json
-from rigdesign.cli.ending import SIMULATIONS_KEPT, interrupted
+from rigdesign.cli.exit_status import SIMULATIONS_KEPT, interrupted
 
 if TYPE_CHECKING:
     from rigdesign.case import Case

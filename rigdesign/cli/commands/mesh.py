@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.cli.application import OutFolder, app, loaded_case
-from rigdesign.cli.ending import NOTHING_KEPT, interrupted
+from rigdesign.cli.exit_status import NOTHING_KEPT, interrupted
 
 
 @app.command

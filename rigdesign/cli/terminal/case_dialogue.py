@@ -5,7 +5,7 @@ from typing import TypeVar
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.units import QuantityError
-from rigdesign.cli.ending import NOTHING_KEPT, interrupted
+from rigdesign.cli.exit_status import NOTHING_KEPT, interrupted
 from rigdesign.new_case.outline import QUESTIONS, AnswersError, Question, read_answer
 
 T = TypeVar("T")

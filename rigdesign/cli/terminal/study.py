@@ -22,7 +22,7 @@ LEAST_LIKELY = 5
 
 def print_study(outcome: "StudyOutcome", out: Path) -> None:
     """The answer in sentences, what failed, then where page and table are."""
-    from rigdesign.report.margins.answer import influence_lines, slices, study_answer
+    from rigdesign.report.margins.passing_range import influence_lines, slices, study_answer
     from rigdesign.report.numbers import counted
 
     found = outcome.result

@@ -10,7 +10,7 @@ as they are ground and turned in; clearances by the tolerance of their fit.
 from cmath import phase, rect
 from collections.abc import Callable, Iterator
 
-from dynamics.elastic_rig.layout import rotor_of
+from dynamics.rotor.rotor_model import rotor_of
 from rigdesign.case.drivetrain import BowInput, ShaftInput
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import (

@@ -16,9 +16,9 @@ from scipy.stats import chi2
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.cross_validation import Proof, Sizes
 from rigdesign.diagnosis.decision.defaults import Decision, Thresholds, Verdict, WhitenedSquare
 from rigdesign.diagnosis.decision.naming import Names, display_scale
-from rigdesign.diagnosis.decision.proof import Proof, Sizes
 from rigdesign.diagnosis.statistics.columns import Array, numbered
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN

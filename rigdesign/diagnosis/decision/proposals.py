@@ -10,10 +10,10 @@ from scipy.linalg import solve_triangular
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.claims import NAMED
+from rigdesign.diagnosis.decision.cross_validation import Problem
 from rigdesign.diagnosis.decision.decision import UNNAMED
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.naming import in_words, place_of
-from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import Diagnosis, diagnose
 from rigdesign.diagnosis.library.candidates import NOISE, SPARE, Costs, Extra, extra_points
 from rigdesign.diagnosis.library.library import Library, Response

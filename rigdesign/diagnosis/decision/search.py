@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from rigdesign.diagnosis.decision.cross_validation import Problem, Tier
 from rigdesign.diagnosis.decision.decision import PRIOR, UNNAMED, Posterior, decide, gain_of, posterior
 from rigdesign.diagnosis.decision.defaults import (
     Calibration,
@@ -13,7 +14,6 @@ from rigdesign.diagnosis.decision.defaults import (
     Thresholds,
     WhitenedSquare,
 )
-from rigdesign.diagnosis.decision.proof import Problem, Tier
 from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import (
     ORDER_CAUSE,

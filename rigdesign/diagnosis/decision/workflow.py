@@ -13,10 +13,10 @@ import numpy as np
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.diagnosis.decision.claims import Claim, Refusal, refusals
+from rigdesign.diagnosis.decision.cross_validation import Problem, Proof, Rerun, Tier
 from rigdesign.diagnosis.decision.decision import mass_of_any, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration, Decision
-from rigdesign.diagnosis.decision.kept_numbers import SURE, WORDS, Numbers, Suspicion, suspected
-from rigdesign.diagnosis.decision.proof import Problem, Proof, Rerun, Tier
+from rigdesign.diagnosis.decision.held_out_data import SURE, WORDS, Numbers, Suspicion, suspected
 from rigdesign.diagnosis.decision.search import Evaluation, Look, explanations_of, signature_of
 from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.catalogue.waiting import WAITING
+from rigdesign.diagnosis.catalogue.not_modelled import WAITING
 from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.decision.proposals import RequiredCause, required_causes
 from rigdesign.diagnosis.document.outcome import Outcome

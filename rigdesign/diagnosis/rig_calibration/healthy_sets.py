@@ -7,8 +7,8 @@ from pathlib import Path
 from rigdesign.base.errors import MeasurementError, UsageError
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.decision.cross_validation import Problem
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.rig_calibration.estimate import FEWEST, MOST, RigFit, estimate

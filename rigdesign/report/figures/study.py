@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rigdesign.report.margins.answer import PassRange, StudyAnswer
+    from rigdesign.report.margins.passing_range import PassRange, StudyAnswer
     from rigdesign.report.margins.regions import RegionMap
     from rigdesign.report.margins.table import MarginTable, StudyAxis
 

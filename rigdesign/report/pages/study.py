@@ -10,7 +10,7 @@ from rigdesign.base.errors import UsageError
 from rigdesign.base.json_text import csv_text
 from rigdesign.base.output_folder import staged
 from rigdesign.report.figures.drawing import drawing_style
-from rigdesign.report.margins.answer import study_answer
+from rigdesign.report.margins.passing_range import study_answer
 from rigdesign.report.margins.table import MarginTable, margin_table
 from rigdesign.report.numbers import margin_unit
 from rigdesign.results.check import status

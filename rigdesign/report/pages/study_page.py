@@ -12,7 +12,7 @@ from rigdesign.base.version import __version__
 from rigdesign.report.figures import study, study_samples
 from rigdesign.report.figures import study as study_map
 from rigdesign.report.figures.drawing import NumberedFigures
-from rigdesign.report.margins.answer import StudyAnswer, by_check, passing, slices
+from rigdesign.report.margins.passing_range import StudyAnswer, by_check, passing, slices
 from rigdesign.report.margins.regions import region_map
 from rigdesign.report.margins.table import MarginTable
 from rigdesign.studies.result import StudyPoint, StudyResult

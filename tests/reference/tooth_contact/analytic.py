@@ -1,4 +1,4 @@
-"""What the analytic tooth model and ISO 6336-3 say of the same section: quick fidelity of ``dynamics.mesh``."""
+"""What the analytic tooth model and ISO 6336-3 say of the same section: quick fidelity of ``dynamics.tooth``."""
 
 from dataclasses import replace
 from functools import cache
@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from dynamics.mesh.flank import ContactDiscretisation, mesh_law
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.stiffness import pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.rating.root_stress import root_influence
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.mesh_law import ContactDiscretisation, mesh_law
+from dynamics.tooth.pair_stiffness import pair_stiffness
 from tests.reference.tooth_contact.contact_cases import PAIRS, ContactCase
 
 

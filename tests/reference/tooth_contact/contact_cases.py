@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.flank.field import FlankField
-from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.flank import FlankField
+from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_form import ToothForm
 from rigdesign.case.loader import load_case

@@ -6,15 +6,15 @@ from math import pi
 import numpy as np
 import pytest
 
-from dynamics.contact.corner import contact_places, tip_ends
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.flank.field import require_whole_flanks
 from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.flank import require_whole_flanks
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.gear.tooth_form import GearDetails, TipEdge, ToothForm
-from dynamics.mesh.pair_gap import tip_separation
 from dynamics.rating.iso_rating import mesh_data, root_stress
+from dynamics.tooth.corner import contact_places, tip_ends
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.pair_gap import tip_separation
 from tests.builders.loaded_mesh import fzg_c, sliced_mesh
 
 PAIR = fzg_c()

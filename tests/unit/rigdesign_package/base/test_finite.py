@@ -10,7 +10,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.base.errors import NonFiniteResultError
 from rigdesign.base.json_text import require_finite
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.coupling import iteration as passes
 from rigdesign.results.result import RunResult

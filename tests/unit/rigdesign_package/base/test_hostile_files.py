@@ -15,7 +15,7 @@ from rigdesign.base.files import RefusedFileError, foreign, read_regular
 from rigdesign.base.output_folder import prepare_output
 from rigdesign.case import load_case
 from rigdesign.case.loader import changed_together
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.studies.grid import parse_variation
 from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import assemble
+from dynamics.rotor.graph import assemble
 from rigdesign.base.errors import CaseError
 from rigdesign.base.units import parse
 from rigdesign.case import Case, load_case

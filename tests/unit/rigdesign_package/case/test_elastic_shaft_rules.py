@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.drivetrain.shaft import DrivetrainError
+from dynamics.rotor.shaft import DrivetrainError
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import Case, load_case
 from rigdesign.case.elastic_shafts import disc_mass

@@ -6,7 +6,7 @@ from types import ModuleType
 
 import pytest
 
-from dynamics.drivetrain.shaft import Disc, Section, Shaft, free_frequencies
+from dynamics.rotor.shaft import Disc, Section, Shaft, free_frequencies
 from rigdesign.case import Case, load_case
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.paths import known_paths

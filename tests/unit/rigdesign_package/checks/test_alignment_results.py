@@ -21,11 +21,11 @@ from rigdesign.coupling.alignment import (
     coupled_ends,
     coupling_places,
 )
-from rigdesign.records.hand import axis_rise
-from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.records.warm_gearbox import axis_alignments, bore_alignments, coupling_alignments
+from rigdesign.postprocessing.hand_calculation import axis_rise
+from rigdesign.postprocessing.solved_rig import SolvedRig
+from rigdesign.postprocessing.warm_gearbox import axis_alignments, bore_alignments, coupling_alignments
 from rigdesign.results.check import Check
-from rigdesign.results.rows.warm_gearbox import expansion_row
+from rigdesign.results.serialisation.warm_gearbox import expansion_row
 from rigdesign.results.thermal import HistoryExtremes
 from rigdesign.results.warm_gearbox import (
     AxisAlignment,

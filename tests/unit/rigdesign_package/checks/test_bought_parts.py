@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import TorqueSection
+from dynamics.rotor.graph import TorqueSection
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.component_limits import checks
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import StageBracing
 from rigdesign.rig.model import build_rig

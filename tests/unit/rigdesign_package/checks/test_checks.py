@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.bearing.journal import JournalBearing, transition_speed
+from dynamics.rotor.journal import JournalBearing, transition_speed
 from rigdesign.case import load_case
 from rigdesign.checks import clearances, dwell_speeds, dynamics, films, oil, ramp, strength, temperatures
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import with_omissions
-from rigdesign.records.near_dwell import NearDwell, mesh_resonances
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.nearest_resonance import NearDwell, mesh_resonances
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance, HeatSource, RigHeat
 from rigdesign.results.loads import ContactLoss, MeshResonance, StageLoad, UnsolvedSpeed

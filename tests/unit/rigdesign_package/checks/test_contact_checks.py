@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact.loaded_mesh import LoadedMesh
-from dynamics.contact.mesh_cycle import MeshCycle
-from dynamics.contact.points import FaceGrid
-from dynamics.flank.field import PARALLEL
+from dynamics.gear.flank import PARALLEL
+from dynamics.tooth.loaded_mesh import LoadedMesh
+from dynamics.tooth.mesh_cycle import MeshCycle
+from dynamics.tooth.points import FaceGrid
 from rigdesign.case import Case, load_case
 from rigdesign.checks import contact
 from rigdesign.checks.registry import RuleFamily
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.teeth import LoadedContact
 from rigdesign.rig.model import Rig

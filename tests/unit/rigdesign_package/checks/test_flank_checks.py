@@ -12,11 +12,11 @@ from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks import flanks, strength
 from rigdesign.checks.assumptions import depends
-from rigdesign.records.flank_rating import flank_ratings
-from rigdesign.records.gear_loads import rated_cycles, rated_loads
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.flank_rating import flank_ratings
+from rigdesign.postprocessing.gear_loads import rated_cycles, rated_loads
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.rows.teeth import flank_rating_row
+from rigdesign.results.serialisation.teeth import flank_rating_row
 from rigdesign.rig.model import Rig
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from dynamics.flank.field import require_whole_flanks
 from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
+from dynamics.gear.flank import require_whole_flanks
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from rigdesign.case import load_case
 from rigdesign.checks import geometry
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.rig.model import Rig
 from rigdesign.run import main

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from dynamics.elastic_rig.damped_modes import RigMode
+from dynamics.rotor.damped_modes import RigMode
 from rigdesign.case.loader import load_case
 from rigdesign.checks.clearances import checks as clearance_checks
 from rigdesign.checks.lateral import checks

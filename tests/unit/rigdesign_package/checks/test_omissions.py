@@ -22,8 +22,8 @@ from rigdesign.checks.registry import REGISTRY, RuleFamily
 from rigdesign.checks.rules import Omission, Rule, hold, with_omissions
 from rigdesign.checks.transient import EXTREMES
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.housing import housing_temperatures
-from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
+from rigdesign.postprocessing.housing import housing_temperatures
+from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import Rig

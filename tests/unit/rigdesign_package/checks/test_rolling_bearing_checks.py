@@ -9,7 +9,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.checks import rolling_bearings
 from rigdesign.checks.rolling_bearings import RULES
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

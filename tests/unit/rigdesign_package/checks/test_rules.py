@@ -6,7 +6,7 @@ import pytest
 
 from rigdesign.base.errors import NonFiniteResultError
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, with_error
-from rigdesign.records.solved_rig import worst
+from rigdesign.postprocessing.solved_rig import worst
 from rigdesign.results.check import overall
 
 

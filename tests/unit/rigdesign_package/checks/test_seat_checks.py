@@ -6,15 +6,15 @@ from typing import Any
 
 import pytest
 
-from dynamics.drivetrain.graph import TorqueSection
+from dynamics.rotor.graph import TorqueSection
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.seats import checks
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.report.sections.vibration import least_safe
 from rigdesign.results.check import Check
 from rigdesign.results.loads import EventPeak, EventRecord
-from rigdesign.results.rows.teeth import press_fit_row
+from rigdesign.results.serialisation.teeth import press_fit_row
 from tests.builders.checks import check as check_of
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.twisting import twisting_rig

@@ -25,7 +25,7 @@ from threadpoolctl import threadpool_info
 from rigdesign.base.parallel import BLAS_THREADS
 from rigdesign.base.system import APT_LINE
 from rigdesign.cli import main as cli
-from rigdesign.cli.ending import exit_status
+from rigdesign.cli.exit_status import exit_status
 from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write
 from tests.builders.schema import complaints
 

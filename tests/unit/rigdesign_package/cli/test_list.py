@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from dynamics.bearing.rolling_catalogue import catalogue_bearing
+from dynamics.rotor.rolling_catalogue import catalogue_bearing
 from rigdesign.case import load_case
 from rigdesign.case.defaults.rule import Given, RawTree
 from rigdesign.case.defaults.runs import standard_limits

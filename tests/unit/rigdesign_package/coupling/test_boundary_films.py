@@ -9,10 +9,10 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.located_loss import PlacedLoss, PointLosses
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.placed_loss import PlacedLoss, PointLosses
 from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.drivetrain.modes import damping_audit
+from dynamics.rotor.torsional_modes import damping_audit
 from rigdesign.case import Case, load_case
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models

@@ -15,7 +15,7 @@ from rigdesign.coupling.flank_heat import churning
 from rigdesign.coupling.housing_context import GEAR_OIL
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.solved_rig import solved_rig
+from rigdesign.postprocessing.solved_rig import solved_rig
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.mesh_convergence import law_spreads
 from tests.builders.fzg_case import HELD, fzg_case

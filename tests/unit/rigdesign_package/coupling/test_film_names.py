@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.bearing.protocol import BearingState
+from dynamics.rotor.bearing import BearingState
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import initial_state
-from rigdesign.coupling.placed_loss import PointLosses
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.coupling.time_run import held_points
 from rigdesign.properties.materials import MATERIALS

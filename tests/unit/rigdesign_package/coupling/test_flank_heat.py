@@ -15,9 +15,9 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import mesh_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
+from rigdesign.postprocessing.housing import friction_heat, heat_splits
 from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
-from rigdesign.records.housing import friction_heat, heat_splits
-from rigdesign.results.rows.housing import heat_split_row
+from rigdesign.results.serialisation.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.oil_supply import ChamberOil
 from tests.builders.paths import CASES

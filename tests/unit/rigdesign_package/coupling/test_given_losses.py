@@ -8,11 +8,11 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.located_loss import PlacedLoss, drag_shafts, drag_torques, given_power
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PlacedLoss, drag_shafts, drag_torques, given_power
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

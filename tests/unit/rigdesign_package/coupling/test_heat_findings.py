@@ -13,7 +13,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import initial_state
-from rigdesign.coupling.placed_loss import PointLosses
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.coupling.time_run import held_points
 from rigdesign.report import results_document

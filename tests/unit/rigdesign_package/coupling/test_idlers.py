@@ -10,12 +10,12 @@ from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads
-from rigdesign.coupling.braced_loop import shifted_gear
 from rigdesign.coupling.fixed_point import next_state
 from rigdesign.coupling.iteration import PointProblem, initial_state, run_iteration
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PointLosses
+from rigdesign.coupling.preloaded_loop import shifted_gear
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.coupling.time_run import held_points

@@ -7,13 +7,13 @@ import pytest
 
 from dynamics.errors import DynamicsNotConverged
 from rigdesign.checks.law_ranges import loss_findings
+from rigdesign.coupling.located_loss import PlacedLoss, drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_over_speed import stage_losses
 from rigdesign.coupling.losses import oil_jets
-from rigdesign.coupling.placed_loss import PlacedLoss, drag_torques
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records.housing import cooling_balance
-from rigdesign.results.rows.housing import loss_rows
+from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.results.serialisation.housing import loss_rows
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base, drive_power, lost_in_all, settled
 

@@ -2,11 +2,11 @@
 
 import pytest
 
-from dynamics.bearing.journal import JournalBearing
-from dynamics.bearing.protocol import BearingError, BearingOperation, OilSupply
+from dynamics.rotor.bearing import BearingError, BearingOperation, OilSupply
+from dynamics.rotor.journal import JournalBearing
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
-from rigdesign.coupling.placed_loss import given_power
+from rigdesign.coupling.located_loss import given_power
 from rigdesign.properties.oil import FVA_3
 from rigdesign.rig.drivetrain import build_drivetrain
 from tests.builders.warm_prototype import (

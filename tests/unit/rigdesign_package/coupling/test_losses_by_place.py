@@ -9,9 +9,9 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.coupling.losses import chamber_mist, rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
-from rigdesign.coupling.placed_loss import PlacedLoss
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

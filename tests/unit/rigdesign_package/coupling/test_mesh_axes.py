@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.flank.field import PARALLEL
-from dynamics.mesh.law import MeshLaw
-from dynamics.mesh.pair_gap import PairGap
+from dynamics.gear.flank import PARALLEL
+from dynamics.tooth.law import MeshLaw
+from dynamics.tooth.pair_gap import PairGap
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.iteration import initial_state

@@ -8,10 +8,10 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.placed_loss import PlacedLoss
+from rigdesign.coupling.located_loss import PlacedLoss
+from rigdesign.postprocessing.housing import cooling_balance
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.records.housing import cooling_balance
-from rigdesign.results.rows.housing import loss_rows
+from rigdesign.results.serialisation.housing import loss_rows
 from rigdesign.run.main import losses_by_stage
 from tests.builders.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
 from tests.published.prototype import Prototype

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.mesh.flank import reach_beyond
+from dynamics.tooth.mesh_law import reach_beyond
 from rigdesign import load_case
-from rigdesign.coupling.braced_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import mesh_models, mesh_phase
+from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, respond
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.builders.idler_case import idler_case

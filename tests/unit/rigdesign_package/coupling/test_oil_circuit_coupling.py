@@ -8,8 +8,8 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.oil_circuits import circuit_balances, demand_setpoints
 from rigdesign.coupling.time_run import held_points
 from rigdesign.oil_circuit.steady import SetpointNotHeldError
-from rigdesign.records.housing import cooling_balance
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.oil_circuit import ZERO, plant_case
 

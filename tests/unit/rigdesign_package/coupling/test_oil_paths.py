@@ -8,9 +8,9 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.flank_heat import gear_flanks
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import OilStream, heater_and_cooler, oil_streams
-from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699, Portion, mixed
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, gear_oil

@@ -12,10 +12,10 @@ from rigdesign.checks.rig_heat import checks as room_checks
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.oil_circuits import demand_loss_maps, drive_heat
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.housing import cooling_balance
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.rows.housing import circuit_rows, rig_heat_row
+from rigdesign.results.serialisation.housing import circuit_rows, rig_heat_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig_heat.component import CouplingRotor, coupling_windage, room_balance
 from tests.builders.oil_circuit import PLANT, ZERO

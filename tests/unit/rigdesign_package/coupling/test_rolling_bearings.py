@@ -8,9 +8,9 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from dynamics.bearing.protocol import BearingOperation, HeatStar, OilSupply
-from dynamics.bearing.rolling import RollingBearing, SeatConductances, shaft_path
-from dynamics.bearing.rolling_catalogue import catalogue_bearing
+from dynamics.rotor.bearing import BearingOperation, HeatStar, OilSupply
+from dynamics.rotor.rolling import RollingBearing, SeatConductances, shaft_path
+from dynamics.rotor.rolling_catalogue import catalogue_bearing
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.case.rolling_bearing import BearingSeats
@@ -18,11 +18,11 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads, shaft_loads
 from rigdesign.coupling.bearing_seats import conductances
 from rigdesign.coupling.iteration import initial_state
+from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.placed_loss import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
     boundary_conditions,

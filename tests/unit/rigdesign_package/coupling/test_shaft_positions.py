@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.running_state import RunningState, isotropic_bearing
+from dynamics.rotor.bearing_state import RunningState, isotropic_bearing
 from rigdesign import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.iteration import initial_state

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.force import static_cycle
+from dynamics.tooth.mesh_force import static_cycle
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case

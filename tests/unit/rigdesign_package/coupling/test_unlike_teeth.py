@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.parts import LoadOrder
-from dynamics.flank.field import FlankField
-from dynamics.flank.microgeometry import Microgeometry, pitch_waves
-from dynamics.mesh.flank import alike_teeth, mesh_law
+from dynamics.gear.flank import FlankField
+from dynamics.gear.microgeometry import Microgeometry, pitch_waves
+from dynamics.rotor.parts import LoadOrder
+from dynamics.tooth.mesh_law import alike_teeth, mesh_law
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.coupling.braced_loop import averaged_gears, locked_share, periodic_laws, signed_torque
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
+from rigdesign.coupling.preloaded_loop import averaged_gears, locked_share, periodic_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.warnings import _deviating_teeth

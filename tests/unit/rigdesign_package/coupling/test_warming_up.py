@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.coupling.placed_loss import STORED
+from rigdesign.coupling.located_loss import STORED
+from rigdesign.postprocessing.housing import cooling_balance
 from rigdesign.prediction.places import place_weights
-from rigdesign.records.housing import cooling_balance
 from rigdesign.run.warnings import _warming
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.phases import Knot, Phase

@@ -11,7 +11,7 @@ from rigdesign.diagnosis.catalogue import effects as families
 from rigdesign.diagnosis.catalogue import effects as registry
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect, UncertainValue
-from rigdesign.diagnosis.catalogue.waiting import WAITING
+from rigdesign.diagnosis.catalogue.not_modelled import WAITING
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from tests.builders.effects_page import effects_page
 from tests.builders.paths import CASES

@@ -11,7 +11,7 @@ from rigdesign.case import load_case
 from rigdesign.cli.terminal.diagnosis import print_diagnosis
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.decision.claims import Traces, _group
-from rigdesign.diagnosis.decision.proof import FullRun, Problem, Proof
+from rigdesign.diagnosis.decision.cross_validation import FullRun, Problem, Proof
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome

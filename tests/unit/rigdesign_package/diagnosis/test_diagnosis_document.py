@@ -11,7 +11,7 @@ from rigdesign.base.errors import UsageError
 from rigdesign.base.json_text import to_text
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.catalogue.waiting import WAITING
+from rigdesign.diagnosis.catalogue.not_modelled import WAITING
 from rigdesign.diagnosis.decision.naming import Names, formatted
 from rigdesign.diagnosis.decision.proposals import (
     NOTHING_NEXT,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.cli.terminal.diagnosis import print_diagnosis
 from rigdesign.diagnosis import run

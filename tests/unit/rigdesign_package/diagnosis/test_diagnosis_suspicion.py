@@ -9,9 +9,9 @@ import pytest
 
 from rigdesign.cli.terminal.diagnosis import print_diagnosis
 from rigdesign.diagnosis.decision.claims import agreement
-from rigdesign.diagnosis.decision.kept_numbers import AGREEMENT
+from rigdesign.diagnosis.decision.cross_validation import Problem
+from rigdesign.diagnosis.decision.held_out_data import AGREEMENT
 from rigdesign.diagnosis.decision.naming import in_words
-from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import MeasurementError, UsageError
+from rigdesign.diagnosis.decision.cross_validation import Problem
 from rigdesign.diagnosis.decision.defaults import DEFAULT
-from rigdesign.diagnosis.decision.proof import Problem
 from rigdesign.diagnosis.decision.workflow import diagnose
 from rigdesign.diagnosis.residual.baseline import Change, Drift, fit_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem

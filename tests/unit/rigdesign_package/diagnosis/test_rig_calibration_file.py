@@ -14,7 +14,7 @@ import pytest
 from rigdesign import api
 from rigdesign.base.errors import UsageError
 from rigdesign.case import load_case
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.diagnosis import run
 from rigdesign.diagnosis.decision.defaults import DEFAULT

@@ -9,7 +9,7 @@ import pytest
 from rigdesign.base.errors import UsageError
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
 from rigdesign.case.provenance import InputRow
-from rigdesign.cli.ending import exit_status
+from rigdesign.cli.exit_status import exit_status
 from rigdesign.cli.main import app
 from rigdesign.cli.terminal.difference import print_difference
 from rigdesign.difference.document import difference_document, headline, results_difference

@@ -11,7 +11,7 @@ import pytest
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.cli.ending import exit_status
+from rigdesign.cli.exit_status import exit_status
 from rigdesign.measurement import Data, DataFinding, features, load_measurement
 from rigdesign.measurement.reading import hdf5_samples
 from rigdesign.prediction import Feature

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from dynamics.mesh.force import evaluate_mesh, pack_meshes
-from dynamics.orders.deviation_response import DeviationResponse, OrderTorque, _Mixing
-from dynamics.orders.hill_system import Motion, excitation, pair_sensitivity, tooth_pattern
+from dynamics.tooth.mesh_force import evaluate_mesh, pack_meshes
+from dynamics.vibration.deviation_response import DeviationResponse, OrderTorque, _Mixing
+from dynamics.vibration.hill_system import Motion, excitation, pair_sensitivity, tooth_pattern
 from rigdesign.base.errors import UsageError
 from rigdesign.prediction.model import Channel
 from rigdesign.prediction.order_motion import ExactMotion, ideal_response

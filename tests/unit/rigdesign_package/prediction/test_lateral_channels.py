@@ -8,12 +8,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.elastic_rig.damped_modes import Orbit, line_whirls, orbit, reduced_line_loads, whirl_at
-from dynamics.elastic_rig.running_state import RowSpring, RunningState, isotropic_bearing
+from dynamics.rotor.bearing_state import RowSpring, RunningState, isotropic_bearing
+from dynamics.rotor.damped_modes import Orbit, line_whirls, orbit, reduced_line_loads, whirl_at
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.braced_loop import LoadedCircuit
 from rigdesign.coupling.loop import solve_point
+from rigdesign.coupling.preloaded_loop import LoadedCircuit
 from rigdesign.coupling.state import OperatingPoint
+from rigdesign.postprocessing.vibration import lateral_vibration
 from rigdesign.prediction.full import modelled_rig
 from rigdesign.prediction.model import (
     OWN_MODEL,
@@ -25,7 +26,6 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.orders import Orders, shaft_orders
 from rigdesign.prediction.predict import predict
-from rigdesign.records.vibration import lateral_vibration
 from rigdesign.rig.model import Rig
 from tests.builders.order import BracedCase, settled, shipped
 

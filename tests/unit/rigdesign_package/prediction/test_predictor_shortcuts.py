@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import linear_system
-from dynamics.drivetrain.linear_system import modal_form
+from dynamics.rotor import linear_system
+from dynamics.rotor.linear_system import modal_form
 from rigdesign.case.loader import load_case
-from rigdesign.coupling import braced_loop
+from rigdesign.coupling import preloaded_loop as braced_loop
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.prediction import OWN_MODEL, Channel, OperatingCondition, memoisation
 from rigdesign.prediction.order_motion import ideal_response, is_ideal

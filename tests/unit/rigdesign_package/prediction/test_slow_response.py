@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.coupling.braced_loop import respond
+from rigdesign.coupling.preloaded_loop import respond
 from rigdesign.prediction import memoisation as slow_response
 from rigdesign.prediction.memoisation import respond_at_any_speed
 from tests.builders.order import changed, settled, shipped

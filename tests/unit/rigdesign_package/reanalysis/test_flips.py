@@ -7,8 +7,8 @@ import pytest
 
 from rigdesign import Case, load_case, run_case
 from rigdesign.base.errors import NotConvergedError
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.reanalysis.flips import Search, with_flips
-from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.report.flips import searched
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import FlipSearch, RunResult

@@ -7,7 +7,7 @@ from rigdesign.report.figures.heat import rig_heat_figure
 from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.housing import HeatSource, RigHeat
-from rigdesign.results.rows.housing import rig_heat_row
+from rigdesign.results.serialisation.housing import rig_heat_row
 from rigdesign.rig_heat.component import Room, room_balance
 from tests.builders.report import make_result
 

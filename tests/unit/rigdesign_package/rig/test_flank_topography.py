@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.flank.field import FlankField
-from dynamics.flank.microgeometry import Microgeometry
+from dynamics.gear.flank import FlankField
+from dynamics.gear.microgeometry import Microgeometry
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case

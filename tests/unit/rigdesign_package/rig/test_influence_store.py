@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.influence.numbers import GearBody
+from dynamics.tooth.influence_numbers import GearBody
 from rigdesign.base import parallel
 from rigdesign.base.output_folder import FileLock
 from rigdesign.rig import tooth_influence as influence_store

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import Coupling
-from dynamics.drivetrain.shaft import Section, Shaft
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.parts import Coupling
+from dynamics.rotor.shaft import Section, Shaft
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
 from rigdesign.rig.drivetrain import LARGEST_STRAIN, section_torsions

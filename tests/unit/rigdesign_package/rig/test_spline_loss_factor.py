@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.drivetrain.linear_system import SpeedBands
+from dynamics.rotor.linear_system import SpeedBands
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import initial_state

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dynamics.response.march_inputs import FADE
+from dynamics.vibration.march_inputs import FADE
 from rigdesign.run import warnings as module
 from rigdesign.run.warnings import fast_ramps, passed_bands
 

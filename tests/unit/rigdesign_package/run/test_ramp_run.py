@@ -7,9 +7,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from dynamics.response.envelopes import EnvelopeWindows, LiftOff
-from dynamics.response.march_inputs import DriveState
-from dynamics.response.time_response import TimeResponse
+from dynamics.vibration.envelopes import EnvelopeWindows, LiftOff
+from dynamics.vibration.march_inputs import DriveState
+from dynamics.vibration.time_response import TimeResponse
 from rigdesign.case import load_case
 from rigdesign.checks.registry import REGISTRY
 from rigdesign.coupling.time_run import (
@@ -19,7 +19,7 @@ from rigdesign.coupling.time_run import (
     schedule_of,
     torque_limits,
 )
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 

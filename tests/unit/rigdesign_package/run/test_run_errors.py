@@ -9,9 +9,9 @@ import pytest
 
 import dynamics.errors
 import thermal.errors
-from dynamics.bearing.journal import BearingNotConvergedError
-from dynamics.drivetrain.shaft import DrivetrainError
-from dynamics.response.time_march import MarchDiverged
+from dynamics.rotor.journal import BearingNotConvergedError
+from dynamics.rotor.shaft import DrivetrainError
+from dynamics.vibration.time_integration import MarchDiverged
 from rigdesign import load_case
 from rigdesign.base import system
 from rigdesign.base.errors import (

@@ -10,7 +10,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case.model import Case
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.time_run import held_points

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.properties.oil import MIL_PRF_23699
 from rigdesign.report import results_document, write_results

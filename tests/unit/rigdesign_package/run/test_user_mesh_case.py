@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError, UsageError
 from rigdesign.case.model import Case
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.cli.mesh_export import export_meshes
 from rigdesign.results.result import RunResult

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from dynamics.contact.root_field import RootCourse
+from dynamics.tooth.root_field import RootCourse
 from rigdesign.base.errors import CaseError
 from rigdesign.report.figures.teeth import strain_gauge_figure
-from rigdesign.results.rows.teeth import gauge_stress_row
+from rigdesign.results.serialisation.teeth import gauge_stress_row
 from rigdesign.results.teeth import GaugeStress
 from rigdesign.strain_gauge.measuring_point import GaugePlacement, gauge_curve, grid_average
 from tests.builders.strain_gauge import measuring_point

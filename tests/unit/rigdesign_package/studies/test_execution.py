@@ -17,7 +17,7 @@ import pytest
 from rigdesign.base import worker_pool
 from rigdesign.base.errors import MissingLibraryError
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers
-from rigdesign.cli.ending import exit_status
+from rigdesign.cli.exit_status import exit_status
 from rigdesign.studies.solver import PointDefectError
 from tests.builders.paths import ROOT
 from tests.builders.study import InProcess, run_study

@@ -12,7 +12,7 @@ import pytest
 
 from rigdesign.base.output_folder import FileLock
 from rigdesign.base.parallel import STOPS
-from rigdesign.cli import ending
+from rigdesign.cli import exit_status as ending
 from rigdesign.studies.ledger import LEDGER_NAME, LOCK_NAME, read_points
 from tests.builders.paths import ROOT
 

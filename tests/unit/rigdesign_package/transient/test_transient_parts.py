@@ -13,7 +13,7 @@ from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.checks.transient import checks as transient_checks
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.thermal import Extreme, HistoryExtremes
 from rigdesign.rig.model import build_rig

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.mesh.law import MeshLaw
+from dynamics.tooth.law import MeshLaw
 from rigdesign.coupling.mesh_models import MeshModel
 from tests.builders.paths import CASES
 from tests.published import decomposition

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.mesh.friction import ToothPath
+from dynamics.tooth.friction import ToothPath
 from tests.published.fzg_losses import TESTS, fzg_loss_rows
 
 ROWS = {row.id: row for row in fzg_loss_rows()}

@@ -4,7 +4,7 @@ gauge."""
 import numpy as np
 import pytest
 
-from rigdesign.records.dynamic_root import dynamic_root
+from rigdesign.postprocessing.dynamic_root import dynamic_root
 from rigdesign.strain_gauge.measuring_point import GaugeCurve
 from tests.builders.solved_loop import solved
 from tests.published import p1_speed

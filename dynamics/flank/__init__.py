@@ -1,1 +1,0 @@
-"""Modifications and deviations of tooth flanks as one field over profile, face width and tooth."""

@@ -1,1 +1,0 @@
-"""The law of a gear mesh: flanks, stiffness, forces, friction, sliding."""

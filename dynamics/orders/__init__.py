@@ -1,1 +1,0 @@
-"""Orders of torque and angle from deviations of single teeth."""

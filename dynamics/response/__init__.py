@@ -1,1 +1,0 @@
-"""Motion of the drivetrain: over a schedule in time, periodic over speed."""

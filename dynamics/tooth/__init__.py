@@ -1,0 +1,1 @@
+"""Teeth in mesh: influence numbers, loaded contact, mesh law with forces, friction and sliding, root stress."""
