@@ -18,17 +18,17 @@ from rigdesign.diagnosis.rig_calibration.document import load_rig_calibration
 from rigdesign.diagnosis.run import diagnose_measurement
 from rigdesign.measurement.comparison.compare import Comparison, compare_measurement
 from rigdesign.prediction.predict import Thermal
-from rigdesign.reanalysis.flips import with_flips
 from rigdesign.report import write_results
 from rigdesign.report.pages.study import write_study
 from rigdesign.report.study_tables import TableFormat, require_table_libraries, write_tables
 from rigdesign.results.result import RunResult
 from rigdesign.run import main
+from rigdesign.studies.assumed_ranges import with_ranges
 from rigdesign.studies.design import StudyDesign
 from rigdesign.studies.result import CheckSelection, StudyResult
 from rigdesign.studies.run import DEFAULT as ONE_PROCESS_A_CORE
 from rigdesign.studies.run import Execution, StudyOutcome, run_study
-from rigdesign.uncertainty.run import with_ranges
+from rigdesign.studies.verdict_sensitivity import with_flips
 
 Progress = Callable[[str], None]
 

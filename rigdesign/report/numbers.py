@@ -9,8 +9,8 @@ from rigdesign.results.check import Check
 from rigdesign.results.loads import NOT_WITHIN
 
 if TYPE_CHECKING:
-    from rigdesign.difference.document import CheckChange
-    from rigdesign.difference.reading import CheckValue
+    from rigdesign.studies.difference import CheckChange
+    from rigdesign.studies.stored_results import CheckValue
 
 UNIT_SIGNS = {
     "degC": "°C", "deg": "°", "um": "µm", "N/mm2": "N/mm²", "MPa": "N/mm²", "m2": "m²", "m2/s": "m²/s",

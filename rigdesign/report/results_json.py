@@ -9,9 +9,9 @@ from rigdesign.base.errors import WIDEST_PLACE, NotConvergedError, UsageError, s
 from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import write_whole
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
-from rigdesign.difference.reading import AGAIN, read_document
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import CouplingHistory, RunResult
+from rigdesign.studies.stored_results import AGAIN, read_document
 
 WITHOUT_DYNAMICS: Mapping[str, Any] = {"gearboxes": {}}
 """What stands for the dynamics of a rig without drivetrain."""

@@ -1,1 +1,1 @@
-"""Parameter studies: a case over a grid of values."""
+"""A case with changed inputs: parameter studies, assumed ranges, what would turn a verdict, two results compared."""

@@ -12,13 +12,13 @@ from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.checks import estimated_checks
-from rigdesign.reanalysis.modified_rig import Reanalysis, reanalysis
-from rigdesign.reanalysis.reference import Reference, reanalysed, restored, solve_reference
 from rigdesign.results.check import overall
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.reuse import same_housings
 from rigdesign.run.main import run_case
 from rigdesign.run.solver_errors import solver_errors
+from rigdesign.studies.modified_rig import Reanalysis, reanalysis
+from rigdesign.studies.reference_rig import Reference, reanalysed, restored, solve_reference
 from rigdesign.studies.result import CheckedPoint, checked_point
 from thermal.fe.kernels import one_thread
 

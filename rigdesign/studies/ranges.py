@@ -8,7 +8,7 @@ from rigdesign.base import units
 from rigdesign.base.errors import UsageError, shortened
 from rigdesign.base.units import number_match
 from rigdesign.studies.grid import KELVIN_STEPS, Variation
-from rigdesign.uncertainty.plan import tied_inputs
+from rigdesign.studies.range_plan import tied_inputs
 
 if TYPE_CHECKING:
     from rigdesign.case import Case

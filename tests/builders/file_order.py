@@ -21,7 +21,7 @@ LONGEST = (
     "verification/test_coupling_arrows.py",
     "regression/test_readme.py",
     "unit/rigdesign_package/run/test_transient_run.py",
-    "unit/rigdesign_package/uncertainty/test_ranges_solve.py",
+    "unit/rigdesign_package/studies/test_ranges_solve.py",
     "regression/test_tutorial.py",
     "unit/rigdesign_package/studies/test_study_command.py",
     "verification/test_ranges_plan.py",

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TypeVar
 
 from rigdesign import load_case
-from rigdesign.reanalysis.flips import with_flips
 from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
+from rigdesign.studies.verdict_sensitivity import with_flips
 from tests.builders.paths import CASES
 from thermal.fe.kernel_cache import cache_folder
 

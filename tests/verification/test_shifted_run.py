@@ -8,11 +8,11 @@ import pytest
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.reanalysis.modified_rig import PARTS, Reanalysis, modified_rig
-from rigdesign.reanalysis.reference import Reference, restored, solve_reference
 from rigdesign.results.loads import StageLoad
 from rigdesign.run.main import run_case
 from rigdesign.studies.from_base import FromBase
+from rigdesign.studies.modified_rig import PARTS, Reanalysis, modified_rig
+from rigdesign.studies.reference_rig import Reference, restored, solve_reference
 
 INLET = "gearboxes.test.oil.inlet_temperature"
 START_TORQUE = {"loop_1to1": 60.0, "uhcf_prototype": 90.0}

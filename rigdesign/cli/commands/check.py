@@ -64,10 +64,10 @@ def check(
     from rigdesign.cli.terminal.checks import print_checks
     from rigdesign.cli.terminal.console import print_run
     from rigdesign.cli.terminal.progress import Progress, step_times
-    from rigdesign.reanalysis.flips import with_flips
     from rigdesign.report import Issue, prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
     from rigdesign.studies.result import CheckSelection
+    from rigdesign.studies.verdict_sensitivity import with_flips
 
     selection = CheckSelection(checks or ())
     selection.require(loaded, transient=transient)
@@ -92,7 +92,7 @@ def check(
             count=progress.count,
         )
         if ranges:
-            from rigdesign.uncertainty.run import with_ranges
+            from rigdesign.studies.assumed_ranges import with_ranges
 
             result = with_ranges(loaded, result, progress=progress, count=progress.count)
         if out is not None:

@@ -36,8 +36,8 @@ def diff(
         List everything that differs in the terminal, not the largest differences alone.
     """
     from rigdesign.cli.terminal.difference import print_difference
-    from rigdesign.difference.document import difference_document, results_difference
     from rigdesign.report.pages.difference import write_difference
+    from rigdesign.studies.difference import difference_document, results_difference
 
     difference = results_difference(a, b)
     if out is not None:

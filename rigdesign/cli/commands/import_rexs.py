@@ -9,7 +9,7 @@ from rigdesign.cli.terminal.console import new_console
 
 if TYPE_CHECKING:
     from rigdesign.rexs.attribute_log import ListedAttribute
-    from rigdesign.rexs_case.write import ImportedCase
+    from rigdesign.rexs.write_case import ImportedCase
 WIDEST = 36
 """Characters of a value in a column; the case has it in full."""
 
@@ -30,7 +30,7 @@ def import_rexs(file: Path, /, *, out: OutFolder, stage: int | None = None) -> i
     stage
         Number of the stage, where the file has several.
     """
-    from rigdesign.rexs_case.write import import_case
+    from rigdesign.rexs.write_case import import_case
 
     console = new_console()
     for line in _report(import_case(file, out, stage)):

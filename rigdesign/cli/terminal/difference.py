@@ -12,8 +12,8 @@ from rigdesign.cli.terminal.console import new_console, verbosity, verdict_conso
 from rigdesign.report.numbers import change_text, limit_change_text, number_text, quantity_text
 
 if TYPE_CHECKING:
-    from rigdesign.difference.document import CheckChange, QuantityChange, ResultsDifference, TextChanges
-    from rigdesign.difference.reading import CheckedResults, InputChange
+    from rigdesign.studies.difference import CheckChange, QuantityChange, ResultsDifference, TextChanges
+    from rigdesign.studies.stored_results import CheckedResults, InputChange
 
 WIDTH = 80
 """Columns of a line at most."""
@@ -30,7 +30,7 @@ def print_difference(difference: "ResultsDifference", out: Path | None, *, every
 
     everything : all lines instead of the first of each part
     """
-    from rigdesign.difference.document import headline
+    from rigdesign.studies.difference import headline
 
     if verbosity.get() == "quiet":
         verdict_console().print(headline(difference))

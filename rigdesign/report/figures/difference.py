@@ -10,7 +10,7 @@ from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rigdesign.difference.document import CheckChange
+    from rigdesign.studies.difference import CheckChange
 
 MOST_ROWS = 24
 """Checks drawn, those that moved most."""

@@ -5,8 +5,8 @@ from pathlib import Path
 from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
-from rigdesign.difference.document import ResultsDifference, difference_document, headline
 from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
+from rigdesign.studies.difference import ResultsDifference, difference_document, headline
 
 
 def write_difference(difference: ResultsDifference, out: Path) -> None:

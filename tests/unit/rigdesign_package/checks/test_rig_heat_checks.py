@@ -11,7 +11,7 @@ from rigdesign.case import Case, load_case
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.checks.oil_circuits import machines_over_time
 from rigdesign.checks.rig_heat import TEMPERATURE, checks, without_machines
-from rigdesign.reanalysis.modified_rig import parts_of, through_heat
+from rigdesign.studies.modified_rig import parts_of, through_heat
 from tests.builders.oil_circuit import PLANT
 from tests.builders.paths import CASES
 from tests.builders.rig_heat import ROOM, TRANSMISSION

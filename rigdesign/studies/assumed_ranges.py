@@ -13,7 +13,6 @@ from functools import partial
 
 from rigdesign.base.worker_pool import DIED, compute_all, worker_count
 from rigdesign.case.model import Case
-from rigdesign.reanalysis.reference import Reference
 from rigdesign.results.check import Check, Checks, Verdict, overall
 from rigdesign.results.ranges import (
     CheckRange,
@@ -24,7 +23,7 @@ from rigdesign.results.ranges import (
     TemperatureRange,
 )
 from rigdesign.results.result import RunResult
-from rigdesign.uncertainty.plan import (
+from rigdesign.studies.range_plan import (
     FIDELITY,
     CheckAtEnd,
     EndResult,
@@ -33,6 +32,7 @@ from rigdesign.uncertainty.plan import (
     solve_end,
     solve_stated,
 )
+from rigdesign.studies.reference_rig import Reference
 
 # Verdicts over ranges: margins of the run shifted by what every end changes, and what a check is worth then.
 #

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from rigdesign.rexs.gear_unit import UnitBearing
-from rigdesign.rexs_case.stage import (
+from rigdesign.rexs.gear_stage import (
     SIDES,
     CaseTable,
     Entry,
@@ -21,6 +20,7 @@ from rigdesign.rexs_case.stage import (
     quantity,
     quoted,
 )
+from rigdesign.rexs.gear_unit import UnitBearing
 
 if TYPE_CHECKING:
     from dynamics.rotor.rolling_catalogue import BearingKind, CatalogueBearing

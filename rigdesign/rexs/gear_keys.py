@@ -5,8 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rigdesign.rexs.gear_unit import UnitGear, UnitMaterial
-from rigdesign.rexs_case.stage import (
+from rigdesign.rexs.gear_stage import (
     Entry,
     GearStage,
     Origins,
@@ -16,6 +15,7 @@ from rigdesign.rexs_case.stage import (
     needed,
     quantity,
 )
+from rigdesign.rexs.gear_unit import UnitGear, UnitMaterial
 
 CASE_HARDENING = re.compile(r"\d+\s*(Cr|Mn|Ni|Mo)[A-Za-z]*\s*\d")
 """Designations of alloyed steels in which case-hardening steels are written: 16MnCr5, 18CrNiMo7-6."""

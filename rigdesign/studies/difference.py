@@ -6,7 +6,13 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from rigdesign.base.version import __version__
-from rigdesign.difference.reading import CheckedResults, CheckValue, InputChange, changed_inputs, read_results
+from rigdesign.studies.stored_results import (
+    CheckedResults,
+    CheckValue,
+    InputChange,
+    changed_inputs,
+    read_results,
+)
 
 # Checks and other results that differ between two runs.
 

@@ -3,7 +3,7 @@
 import pytest
 
 from rigdesign import Case, load_case
-from rigdesign.reanalysis.modified_rig import PARTS, Reanalysis, reanalysis
+from rigdesign.studies.modified_rig import PARTS, Reanalysis, reanalysis
 
 INLET = "gearboxes.test.oil.inlet_temperature"
 

@@ -17,8 +17,6 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.curves import Curves
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
-from rigdesign.reanalysis.modified_rig import Part, Reanalysis, modified_rig, with_records
-from rigdesign.reanalysis.shifted_run import Array, losses_on_motor, peaks_only
 from rigdesign.results.check import Check
 from rigdesign.results.loads import EventRecord
 from rigdesign.results.result import DiscretisationRow
@@ -26,6 +24,8 @@ from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import Progress, solve_case
 from rigdesign.run.solver_errors import solver_errors
+from rigdesign.studies.modified_rig import Part, Reanalysis, modified_rig, with_records
+from rigdesign.studies.shifted_run import Array, losses_on_motor, peaks_only
 
 
 @dataclass(frozen=True, kw_only=True)

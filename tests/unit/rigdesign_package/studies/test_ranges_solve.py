@@ -9,13 +9,13 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.reanalysis import modified_rig
-from rigdesign.reanalysis.modified_rig import PARTS, Part, parts_of
-from rigdesign.reanalysis.reference import Reference
 from rigdesign.results.check import Check
 from rigdesign.run.main import run_case
-from rigdesign.uncertainty.plan import EndResult, RangeEnd, plan, solve_end, solve_stated
-from rigdesign.uncertainty.run import with_ranges
+from rigdesign.studies import modified_rig
+from rigdesign.studies.assumed_ranges import with_ranges
+from rigdesign.studies.modified_rig import PARTS, Part, parts_of
+from rigdesign.studies.range_plan import EndResult, RangeEnd, plan, solve_end, solve_stated
+from rigdesign.studies.reference_rig import Reference
 from tests.builders.paths import CASES
 
 pytestmark = pytest.mark.whole_run

@@ -8,10 +8,10 @@ import pytest
 from rigdesign import Case, load_case, run_case
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.reanalysis.flips import Search, with_flips
 from rigdesign.report.flips import searched
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import FlipSearch, RunResult
+from rigdesign.studies.verdict_sensitivity import Search, with_flips
 from tests.builders.checks import check
 from tests.builders.report import make_result
 

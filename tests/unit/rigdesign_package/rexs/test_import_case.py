@@ -9,10 +9,10 @@ from dynamics.gear.pair import GearPair
 from rigdesign.base.errors import CaseError, OutputError, RexsError, UsageError
 from rigdesign.case import load_case
 from rigdesign.coupling.flank_heat import dipped_gear
+from rigdesign.rexs.case_tables import pinion_loads
 from rigdesign.rexs.gear_unit_import import import_gear_unit
 from rigdesign.rexs.reader import parse_rexs
-from rigdesign.rexs_case.case_tables import pinion_loads
-from rigdesign.rexs_case.write import ImportedCase, import_case
+from rigdesign.rexs.write_case import ImportedCase, import_case
 from rigdesign.rig.model import build_rig
 from tests.builders.commands import Rigdesign, rigdesign
 from tests.builders.rexs import SUFFIXES, UnitText, archive_of, changed, rexs_file

@@ -26,12 +26,12 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.reanalysis.modified_rig import coupled_again, with_records
 from rigdesign.results.check import Check
 from rigdesign.results.result import Flip, FlipSearch, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 from rigdesign.run.solver_errors import solver_errors
+from rigdesign.studies.modified_rig import coupled_again, with_records
 
 STRESSED = ("specimen.root_stress*", "strength.root_safety*")
 """Checks that follow torque and face width in proportion, about."""

@@ -7,21 +7,9 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 from rigdesign.base.units import ZERO_CELSIUS
-from rigdesign.rexs.gear_unit import (
-    GearUnit,
-    OperatingCase,
-    ShaftLoad,
-    ShaftSection,
-    UnitBearing,
-    UnitLubricant,
-    UnitMaterial,
-    UnitMesh,
-    UnitShaft,
-)
-from rigdesign.rexs.gear_unit_import import GearUnitImport
-from rigdesign.rexs_case.bearing_keys import bearing_tables, tabled_bearing
-from rigdesign.rexs_case.gear_keys import gear_entries, material_entry, mesh_entries, toothing_of
-from rigdesign.rexs_case.stage import (
+from rigdesign.rexs.bearing_keys import bearing_tables, tabled_bearing
+from rigdesign.rexs.gear_keys import gear_entries, material_entry, mesh_entries, toothing_of
+from rigdesign.rexs.gear_stage import (
     SAME,
     CaseTable,
     Entry,
@@ -37,6 +25,18 @@ from rigdesign.rexs_case.stage import (
     quantity,
     quoted,
 )
+from rigdesign.rexs.gear_unit import (
+    GearUnit,
+    OperatingCase,
+    ShaftLoad,
+    ShaftSection,
+    UnitBearing,
+    UnitLubricant,
+    UnitMaterial,
+    UnitMesh,
+    UnitShaft,
+)
+from rigdesign.rexs.gear_unit_import import GearUnitImport
 
 # Speed and torque at the pinion of a stage from those that a gear unit states anywhere, without losses.
 

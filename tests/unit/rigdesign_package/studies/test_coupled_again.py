@@ -9,9 +9,9 @@ from rigdesign import load_case
 from rigdesign.case.loader import changed_together
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.time_run import held_points
-from rigdesign.reanalysis import modified_rig
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+from rigdesign.studies import modified_rig
 
 FACE_WIDTHS = [f"gearboxes.test.gears.{gear}.face_width" for gear in ("pinion", "wheel")]
 INLET = ["gearboxes.test.oil.inlet_temperature"]

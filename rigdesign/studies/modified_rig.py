@@ -14,10 +14,10 @@ from rigdesign.postprocessing.curves import Curves, solve_curves
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.housing import housing_temperatures
 from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
-from rigdesign.reanalysis.shifted_run import Array, shifted_drive, shifted_run
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+from rigdesign.studies.shifted_run import Array, shifted_drive, shifted_run
 
 # Which parts of the model an input touches, and which inputs reach the loads through temperatures alone.
 #

@@ -10,16 +10,16 @@ from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks import held_checks
-from rigdesign.reanalysis.modified_rig import Part, Reanalysis, parts_of
-from rigdesign.reanalysis.reference import (
+from rigdesign.results.check import Check, Verdict
+from rigdesign.results.ranges import LeftOut
+from rigdesign.studies.modified_rig import Part, Reanalysis, parts_of
+from rigdesign.studies.reference_rig import (
     ReanalysisResult,
     Reference,
     reanalysed,
     result_of,
     solve_reference,
 )
-from rigdesign.results.check import Check, Verdict
-from rigdesign.results.ranges import LeftOut
 
 End = Literal["low", "high"]
 

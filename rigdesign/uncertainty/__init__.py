@@ -1,1 +1,0 @@
-"""Assumed inputs over their ranges, and what they decide."""
