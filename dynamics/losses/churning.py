@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from dynamics.losses.immersion import OilBath, RunningGear, immersion, level_warnings, wetted_area
-from dynamics.losses.mesh_loss import Loss, LossError
+from dynamics.losses.loss import Loss, LossError
 from dynamics.losses.windage import disc_coefficient
 from dynamics.standards import iso_tr_14179_2_2001 as tr14179
 

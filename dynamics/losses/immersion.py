@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 from typing import Self
 
 from dynamics.gear.pair import GearPair
-from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.loss import LossError
 
 SPLASH_SPEED = 3.0
 """Tip speed [m/s] from which a dipped gear throws oil on teeth and bearings (Changenet and Velex 2008)."""

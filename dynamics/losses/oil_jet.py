@@ -8,7 +8,7 @@ that is faster than the pitch line hands a part of the pump's power to the shaft
 import math
 from dataclasses import dataclass
 
-from dynamics.losses.mesh_loss import Loss, LossError
+from dynamics.losses.loss import Loss, LossError
 
 JET_ANGLES = {"into_mesh": 0.0, "radial": 0.5 * math.pi, "out_of_mesh": math.pi}
 """Angle between jet and surface speed [rad] by the side of the mesh the nozzle points at."""

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from dynamics.losses.mesh_loss import Loss, LossError
+from dynamics.losses.loss import Loss, LossError
 from dynamics.standards import iso_tr_14179_2_2001 as tr14179
 
 TAYLOR_LIMIT = 41.3

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from dynamics.gear.pair import GearPair
-from dynamics.losses.mesh_loss import Loss, LossError
+from dynamics.losses.loss import Loss, LossError
 
 LAMINAR_LIMIT = 3e5
 """omega R^2 / nu at which the boundary layer of a free disc turns turbulent (Schlichting)."""

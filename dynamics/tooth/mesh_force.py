@@ -187,7 +187,7 @@ def static_cycle(law: MeshLaw, force: float, n: int = 64, start: float | None = 
 
     start : path position of pair 0 at mid-face at the first rotation [m]; None: the start of the grid
 
-    Past the ends of the tables pairs carry nothing, see ``dynamics.tooth.mesh_law.reach_beyond``. Raises
+    Past the ends of the tables pairs carry nothing, see ``dynamics.tooth.mesh_laws.reach_beyond``. Raises
     DynamicsInputError for a force that is not positive, DynamicsNotConverged where no pair touches at the widest gap of
     the tables.
     """

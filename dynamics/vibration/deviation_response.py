@@ -23,7 +23,7 @@ from dynamics.errors import DynamicsInputError
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.tooth.law import MeshLaw, back_deviations
 from dynamics.tooth.mesh_force import evaluate_mesh
-from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.tooth.packed_laws import pack_meshes
 from dynamics.vibration.harmonic_balance import input_torques
 from dynamics.vibration.hill_system import (

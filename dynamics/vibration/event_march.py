@@ -32,7 +32,7 @@ from dynamics.vibration.march_inputs import (
     march_model,
 )
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
-from dynamics.vibration.periodic_response import (
+from dynamics.vibration.steady_motion import (
     DEFAULT_TIME,
     HeldSpeed,
     Period,

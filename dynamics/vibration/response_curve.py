@@ -15,13 +15,13 @@ from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
 from dynamics.vibration.harmonic_balance import in_time, motion_of_mesh
 from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
-from dynamics.vibration.periodic_response import PERIODIC, Motion, Period, PeriodicResponse
 from dynamics.vibration.speed_continuation import (
     LEAST_HARMONICS,
     LEAST_SAMPLES,
     mesh_cells,
     quasi_static_start,
 )
+from dynamics.vibration.steady_motion import PERIODIC, Motion, Period, PeriodicResponse
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from dynamics.rotor.linear_system import ModalForm
 from dynamics.rotor.static_loop import PortModel, SlowRotation, solve_static
 from dynamics.vibration.harmonic_balance import solve_periodic
 from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
-from dynamics.vibration.periodic_response import Period
+from dynamics.vibration.steady_motion import Period
 
 LEAST_HARMONICS, MOST_HARMONICS = 24, 640
 """Harmonics of the mesh frequency that are used at least and at most: a point of a rig with modes up to 9 kHz whose

@@ -3,7 +3,7 @@
 Harmonic balance is used where its harmonics reach 1.5 times the highest oscillating mode that the propagator
 keeps. It follows the stable branches over the speeds (``dynamics.vibration.harmonic_branches``): a walk in the order
 given, round turning points by arclength, and back for a second stable response. Where no mesh-periodic response lasts,
-``dynamics.vibration.periodic_response`` marches in time and says what the motion is: steady, subharmonic,
+``dynamics.vibration.steady_motion`` marches in time and says what the motion is: steady, subharmonic,
 quasi-periodic or chaotic.
 """
 
@@ -21,9 +21,9 @@ from dynamics.vibration.harmonic_branches import BranchSearch, HarmonicStates
 from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.vibration.initial_state import pinion_ratios
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
-from dynamics.vibration.periodic_response import Period, TimeIntegration, TimeSettings
 from dynamics.vibration.response_curve import CurvePoint, Method, ResponseCurve, point_in_time, point_of
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS, HarmonicWalk, mesh_cells
+from dynamics.vibration.steady_motion import Period, TimeIntegration, TimeSettings
 
 Array = NDArray[np.float64]
 DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | None

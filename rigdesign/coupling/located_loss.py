@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from dynamics.losses.mesh_loss import RIVAL_LAW, RIVAL_POWER, Loss
+from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss
 from dynamics.rotor.bearing import BearingState
 from dynamics.rotor.graph import Drivetrain
 from rigdesign.case.losses import GivenLoss

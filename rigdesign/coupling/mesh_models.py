@@ -9,8 +9,9 @@ import numpy as np
 from dynamics.gear.flank import AxisMisalignment
 from dynamics.gear.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
-from dynamics.losses.mesh_loss import ToothPath
+from dynamics.losses.loss import ToothPath
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
+from dynamics.tooth.elastic_pair import ContactLines, ElasticPair, contact_lines, influence_law
 from dynamics.tooth.friction import (
     Doleschel,
     FrictionCoefficient,
@@ -20,16 +21,15 @@ from dynamics.tooth.friction import (
     Schlenk,
     friction_coefficient,
 )
-from dynamics.tooth.influence_law import ContactLines, ElasticPair, contact_lines, influence_law
 from dynamics.tooth.law import MeshLaw, in_parallel
-from dynamics.tooth.mesh_law import (
+from dynamics.tooth.mesh_laws import (
     ContactDiscretisation,
     MeshDissipation,
     MeshPosition,
     default_slices,
     mesh_law,
 )
-from dynamics.tooth.pair_stiffness import PairStiffness, pair_stiffness
+from dynamics.tooth.stiffness import PairStiffness, pair_stiffness
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
 from rigdesign.coupling.alignment import axes_in_mesh

@@ -12,14 +12,14 @@ from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.parts import left_out
 from dynamics.rotor.static_loop import LoopLoad, StaticState
 from dynamics.tooth.law import MeshLaw
-from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.tooth.packed_laws import has_individual_teeth
 from dynamics.vibration.harmonic_problem import HarmonicSolution
 from dynamics.vibration.initial_state import pinion_ratios
-from dynamics.vibration.periodic_response import period_length
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import period_length
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig

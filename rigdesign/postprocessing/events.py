@@ -29,8 +29,8 @@ from dynamics.vibration.event_march import (
     without_teeth,
 )
 from dynamics.vibration.initial_state import pinion_ratios
-from dynamics.vibration.periodic_response import TimeSettings
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import TimeSettings
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.bearing_loads import bearing_loads

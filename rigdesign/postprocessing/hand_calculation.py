@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.losses.mesh_loss import RIVAL_POWER
+from dynamics.losses.loss import RIVAL_POWER
 from rigdesign.case.geometry import seals_on
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.mesh_models import MeshModel

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from dynamics.errors import DynamicsNotConverged
-from dynamics.losses.mesh_loss import ToothPath
+from dynamics.losses.loss import ToothPath
 from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.mode_names import NamedMode
 from dynamics.rotor.static_loop import LoopLoad, StaticState, port_model
 from dynamics.tooth.law import MeshLaw
-from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.vibration.harmonic_problem import HarmonicSolution
 from dynamics.vibration.response_curve import CurvePoint, quasi_static_point
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells

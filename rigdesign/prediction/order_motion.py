@@ -14,13 +14,13 @@ from dynamics.rotor.parts import within_period
 from dynamics.rotor.static_loop import LoopLoad, port_model
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
-from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.vibration.deviation_response import DeviationResponse, OrderLoads, OrderTorque
 from dynamics.vibration.initial_state import pinion_ratios
-from dynamics.vibration.periodic_response import TimeSettings, period_length, periodic_by_time
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_continuation import mesh_cells
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import TimeSettings, period_length, periodic_by_time
 from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.coupling.preloaded_loop import LoadedCircuit, shifted_laws, signed_torque
 from rigdesign.prediction.places import OscillatingTorque

@@ -22,7 +22,7 @@ from dynamics.rotor.mode_names import NamedMode, elastic_named_modes, torsional_
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
-from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.tooth.mesh_laws import alike_teeth
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.iteration import SOLVED, IterationParts, initial_state
 from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque

@@ -5,8 +5,8 @@ frequency that counts, the fourth mesh harmonic at the highest speed or 20 kHz: 
 (2 pi / 16)^2 / 24 = 0.6 % (``dynamics.rotor.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a
 wave, are not followed. Of shafts that bend the modes above 1.25 times that frequency and above 20 kHz keep their static
 effect at bearings, gears and couplings alone: it moves K_V by 1.6e-3 on the prototype, 2.6e-4 on the main rig
-(``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.tooth.mesh_law.default_slices``. The
-case may state element length and slices; what either leaves open stands with the checks
+(``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.tooth.mesh_laws.default_slices``.
+The case may state element length and slices; what either leaves open stands with the checks
 (`rigdesign.run.load_convergence`).
 """
 

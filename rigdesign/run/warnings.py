@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.torsional_modes import modes_above_samples, sampling_audit
-from dynamics.tooth.mesh_law import reach_beyond
+from dynamics.tooth.mesh_laws import reach_beyond
 from dynamics.vibration.march_inputs import FADE
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import show

@@ -16,7 +16,7 @@ from dynamics.errors import DynamicsInputError
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.vibration.initial_state import pinion_ratios, wound_state
-from dynamics.vibration.periodic_response import HeldSpeed
+from dynamics.vibration.steady_motion import HeldSpeed
 from tests.contact_in_loop.loop import ContactLoop, LoopRecord, MeshInLoop
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.rotor.craig_bampton import wrench_rows
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import MeshLaw
-from dynamics.tooth.mesh_law import alike_teeth
+from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from rigdesign.base.parallel import BackgroundTasks

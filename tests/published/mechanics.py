@@ -13,8 +13,8 @@ from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.vibration.harmonic_balance import solve_periodic
 from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
-from dynamics.vibration.periodic_response import TimeSettings, periodic_by_time
 from dynamics.vibration.response_curve import waveform
+from dynamics.vibration.steady_motion import TimeSettings, periodic_by_time
 from rigdesign.rig.model import Rig
 from tests.published.prototype import RPM, TEST_TORQUE, Prototype
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare, not_modelled

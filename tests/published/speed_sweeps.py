@@ -12,7 +12,7 @@ from dynamics.rotor.mode_names import elastic_loop_modes
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.rotor.torsional_modes import LoopMode
 from dynamics.tooth.law import MeshLaw
-from dynamics.tooth.mesh_law import ContactDiscretisation, MeshDissipation, mesh_law
+from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.tooth.pair_gap import tip_separation
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from dynamics.vibration.response_curve import Method

@@ -17,14 +17,14 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh, pack_meshes, tooth_forces
-from dynamics.tooth.mesh_law import (
+from dynamics.tooth.mesh_laws import (
     ContactDiscretisation,
     MeshDissipation,
     MeshPosition,
     alike_teeth,
     mesh_law,
 )
-from dynamics.tooth.pair_stiffness import pair_stiffness
+from dynamics.tooth.stiffness import pair_stiffness
 
 PAIR = GearPair.from_centre_distance(
     normal_module=4.5e-3,

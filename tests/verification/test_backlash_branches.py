@@ -18,9 +18,9 @@ from dynamics.rotor.static_loop import LoopLoad, port_model
 from dynamics.vibration.harmonic_balance import solve_periodic
 from dynamics.vibration.harmonic_branches import CRAWLING, BranchTrace, SpeedProblem, instability
 from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
-from dynamics.vibration.periodic_response import periodic_by_time
 from dynamics.vibration.response_curve import Method, ResponseCurve, waveform
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import periodic_by_time
 from tests.builders.rig import prototype, prototype_laws
 from tests.published.mechanics import FORCE, MEAN_FORCE, SOFT, TEETH, ZETA, _oscillator
 

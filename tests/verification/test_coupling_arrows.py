@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.losses.mesh_loss import ToothPath
+from dynamics.losses.loss import ToothPath
 from dynamics.rotor.rolling_state import RollingState
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.errors import NotConvergedError

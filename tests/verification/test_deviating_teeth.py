@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from dynamics.rotor.static_loop import LoopLoad, SlowRotation, port_model, solve_static
-from dynamics.tooth.mesh_law import reach_beyond
+from dynamics.tooth.mesh_laws import reach_beyond
 from dynamics.vibration.command import Command, MotorDrive, Sampling
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from dynamics.vibration.time_response import run_schedule

@@ -11,7 +11,7 @@ from dynamics.rotor.graph import assemble
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import MeshLaw
-from dynamics.vibration.periodic_response import PeriodicResponse, TimeSettings, periodic_by_time
+from dynamics.vibration.steady_motion import PeriodicResponse, TimeSettings, periodic_by_time
 from tests.builders.rig import prototype, prototype_laws
 
 RPM = np.pi / 30.0

@@ -30,9 +30,9 @@ from dynamics.vibration.event_march import (
 )
 from dynamics.vibration.initial_state import pinion_ratios
 from dynamics.vibration.march_inputs import TurningLoads
-from dynamics.vibration.periodic_response import TimeSettings
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import TimeSettings
 from tests.builders.elastic_rig import bearings, prototype_rig
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, chain, wavy_law
 from tests.builders.rig import prototype, prototype_laws

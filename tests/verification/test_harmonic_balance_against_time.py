@@ -17,8 +17,8 @@ from dynamics.rotor.graph import assemble
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import DampedRate
-from dynamics.vibration.periodic_response import TimeSettings, periodic_by_time
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import TimeSettings, periodic_by_time
 from tests.builders.rig import prototype, prototype_laws
 from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 

@@ -10,9 +10,9 @@ from dynamics.rotor.shaft import STEEL_SHEAR_MODULUS
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.rotor.torsional_modes import loop_modes
 from dynamics.tooth.law import MeshLaw
-from dynamics.vibration.periodic_response import periodic_by_time
 from dynamics.vibration.speed_continuation import mesh_cells
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import periodic_by_time
 from tests.builders.idler import COUPLING_STIFFNESS, RADIUS, SPLINE_STIFFNESS, idler_laws, idler_rig
 
 RPM = math.pi / 30.0

@@ -13,12 +13,12 @@ from dynamics.errors import DynamicsInputError
 from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.tooth.compliance import InterpolatedCompliance
-from dynamics.tooth.influence_law import ElasticPair, influence_law
+from dynamics.tooth.elastic_pair import ElasticPair, influence_law
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_cycle import MeshCycle
 from dynamics.tooth.mesh_force import StaticCycle, static_cycle
-from dynamics.tooth.mesh_law import ContactDiscretisation, mesh_law
-from dynamics.tooth.pair_stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import ContactDiscretisation, mesh_law
+from dynamics.tooth.stiffness import pair_stiffness
 from tests.builders.elastic_pairs import coarse_gears, equal_helical_pair, loaded, plane_gears
 from tests.builders.loaded_mesh import gap_of
 from tests.reference.tooth_contact import tables

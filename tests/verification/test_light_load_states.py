@@ -21,8 +21,8 @@ import pytest
 from dynamics.rotor.graph import assemble
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.static_loop import LoopLoad
-from dynamics.vibration.periodic_response import periodic_by_time
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
+from dynamics.vibration.steady_motion import periodic_by_time
 from tests.builders.rig import prototype, prototype_laws
 from tests.unit.dynamics_package.rotor.test_seen_system import films, seen
 

@@ -14,10 +14,10 @@ from dynamics.rotor.reduction import reduce_rig
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
-from dynamics.vibration.periodic_response import Motion
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.section_torque import section_torques
 from dynamics.vibration.speed_sweep import periodic_response
+from dynamics.vibration.steady_motion import Motion
 from tests.builders.elastic_rig import bearings, prototype_rig, running
 from tests.builders.full_matrices import full_matrices
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype, synthetic_law

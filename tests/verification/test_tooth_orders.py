@@ -5,7 +5,7 @@ import pytest
 
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import MeshLaw
-from dynamics.vibration.periodic_response import (
+from dynamics.vibration.steady_motion import (
     PeriodicResponse,
     TimeSettings,
     period_length,

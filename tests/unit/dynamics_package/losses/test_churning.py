@@ -17,7 +17,7 @@ from dynamics.losses.churning import (
     side_friction,
     stage_churning,
 )
-from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.loss import LossError
 from tests.builders.fzg_bath import LOW_VOLUME, bath, stage
 
 PINION, WHEEL = stage()

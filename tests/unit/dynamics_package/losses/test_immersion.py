@@ -15,7 +15,7 @@ from dynamics.losses.immersion import (
     tooth_space_flow,
     wetted_area,
 )
-from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.loss import LossError
 from tests.builders.fzg_bath import bath, stage
 from tests.builders.p2_gears import helical_pair
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.loss import LossError
 from dynamics.losses.oil_jet import JET_ANGLES, OilJet, oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.loss import LossError
 from dynamics.losses.windage import (
     LAMINAR_LIMIT,
     GearRotor,

@@ -8,13 +8,13 @@ from dynamics.gear.flank import AxisMisalignment, FlankField
 from dynamics.gear.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.tooth.law import check_mesh_law
-from dynamics.tooth.mesh_law import (
+from dynamics.tooth.mesh_laws import (
     ContactDiscretisation,
     MeshDissipation,
     MeshPosition,
     mesh_law,
 )
-from dynamics.tooth.pair_stiffness import PairStiffness, pair_stiffness
+from dynamics.tooth.stiffness import PairStiffness, pair_stiffness
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 
 TEST_GEAR = spur_pair(**ALLOWANCES)

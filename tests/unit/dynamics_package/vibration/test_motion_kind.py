@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.vibration.periodic_response import growth_per_period, kind_of, repeats_after, swings
+from dynamics.vibration.steady_motion import growth_per_period, kind_of, repeats_after, swings
 
 STEPS = 32
 

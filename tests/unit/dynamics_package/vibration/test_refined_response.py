@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.vibration.periodic_response import PERIODIC
 from dynamics.vibration.response_curve import ResponseCurve, point_in_time
 from dynamics.vibration.speed_sweep import refined_response
+from dynamics.vibration.steady_motion import PERIODIC
 
 NARROW = 3.0
 """Half width of the resonance below [rad/s], half of the first grid's step."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.losses.mesh_loss import RIVAL_POWER
+from dynamics.losses.loss import RIVAL_POWER
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.checks import mesh_checks, of_other_law

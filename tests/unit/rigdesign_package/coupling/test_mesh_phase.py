@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.tooth.mesh_law import reach_beyond
+from dynamics.tooth.mesh_laws import reach_beyond
 from rigdesign import load_case
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import mesh_models, mesh_phase

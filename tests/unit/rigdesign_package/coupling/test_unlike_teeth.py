@@ -11,7 +11,7 @@ import pytest
 from dynamics.gear.flank import FlankField
 from dynamics.gear.microgeometry import Microgeometry, pitch_waves
 from dynamics.rotor.parts import LoadOrder
-from dynamics.tooth.mesh_law import alike_teeth, mesh_law
+from dynamics.tooth.mesh_laws import alike_teeth, mesh_law
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case

@@ -14,7 +14,7 @@ from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.tooth.law import DampedRate, MeshLaw
 from dynamics.tooth.pair_gap import FLAWLESS, PairGap, flank_fields, path_reach, tip_separation
-from dynamics.tooth.pair_stiffness import PairStiffness
+from dynamics.tooth.stiffness import PairStiffness
 
 Array = NDArray[np.float64]
 Engagement = Literal["corner", "path"]

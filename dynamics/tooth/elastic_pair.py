@@ -31,7 +31,7 @@ from dynamics.tooth.compliance import SOFT_EDGES, InterpolatedCompliance, LocalM
 from dynamics.tooth.corner import ContactPlace, Profiles, contact_places, settled, tip_ends
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import StaticCycle, static_cycle
-from dynamics.tooth.mesh_law import (
+from dynamics.tooth.mesh_laws import (
     DEFAULT_CONTACT,
     LOSSLESS,
     NOMINAL_POSITION,
@@ -91,7 +91,7 @@ def influence_law(
     discretisation: ContactDiscretisation = DEFAULT_CONTACT,
     lines: "ContactLines | None" = None,
 ) -> MeshLaw:
-    """Mesh law of a pair from its influence numbers; other arguments as in `dynamics.tooth.mesh_law.mesh_law`.
+    """Mesh law of a pair from its influence numbers; other arguments as in `dynamics.tooth.mesh_laws.mesh_law`.
 
     lines : of the cold pair, where its law is asked for at many temperatures; None: of this pair
 
