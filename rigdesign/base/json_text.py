@@ -1,4 +1,4 @@
-"""Records as JSON and tables as CSV: plain values with ten digits, the same bytes for the same numbers."""
+"""Records as JSON and tables as CSV: ten digits, of curves six, the same bytes for the same numbers."""
 
 import csv
 import io
@@ -15,6 +15,8 @@ from rigdesign.base.errors import NonFiniteResultError, one_line
 
 SIGNIFICANT_DIGITS = 10
 """Digits kept of every number: far beyond any model's accuracy, short of the last bits of round-off."""
+CURVE, CURVE_DIGITS = 16, 6
+"""Numbers of a list from which it is a curve, and the digits that each of them keeps in JSON."""
 
 FORMULA = ("=", "+", "-", "@")
 """What a spreadsheet takes for the beginning of a formula."""
@@ -24,12 +26,12 @@ Row = Sequence[Any]
 
 
 def to_text(document: Mapping[str, Any]) -> str:
-    """JSON text with a final newline; keys keep their order."""
-    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    """JSON text without indentation, with a final newline; keys keep their order."""
+    return json.dumps(document, separators=(",", ":"), ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def to_plain(value: Any, path: str = "") -> Any:
-    """Turn records, arrays and numpy scalars into what JSON knows; numbers keep ten significant digits.
+    """Turn records, arrays and numpy scalars into what JSON knows; numbers keep ten significant digits, of curves six.
 
     Raises
     ------
@@ -55,12 +57,14 @@ def to_plain(value: Any, path: str = "") -> Any:
     if isinstance(value, np.ndarray):
         return to_plain(value.tolist(), path)
     if isinstance(value, Sequence):
+        if len(value) >= CURVE and all(isinstance(item, float) for item in value):
+            return [_rounded(item, f"{path}[{index}]", CURVE_DIGITS) for index, item in enumerate(value)]
         return [to_plain(item, f"{path}[{index}]") for index, item in enumerate(value)]
     raise TypeError(f"{path}: {type(value).__name__} has no JSON form")
 
 
-def _rounded(value: float, path: str) -> float:
-    return float(f"{finite(path, value):.{SIGNIFICANT_DIGITS}g}") + 0.0
+def _rounded(value: float, path: str, digits: int = SIGNIFICANT_DIGITS) -> float:
+    return float(f"{finite(path, value):.{digits}g}") + 0.0
 
 
 def _join(path: str, key: str) -> str:
