@@ -235,10 +235,9 @@ def _pieces(push: Array, layout: ModalLayout) -> tuple[NDArray[np.int64], Array]
 # - the straight line between both values, ``a = phi_2`` and ``t = phi_3``: exact for slow inputs that are one, and
 #   passive for torques that brake. Of second order: a mesh spring that it holds swings too slowly by (omega h)^2 / 24.
 # - the method of Numerov on the matrix exponential, exact for a torque that is a parabola over two steps: of fourth
-# order
-#   in the displacements, so that meshes see where their bodies are. It uses both ends of a step alike, so that a step
-#   back in time undoes a step forward and an undamped vibration on mesh springs neither grows nor decays, which no
-#   polynomial through earlier values offers.
+#   order in the displacements, so that meshes see where their bodies are. It uses both ends of a step alike, so that a
+#   step back in time undoes a step forward and an undamped vibration on mesh springs neither grows nor decays, which
+#   no polynomial through earlier values offers.
 #
 # Sources: phi_k as in exponential integrators (Hochbruck and Ostermann, Acta Numerica 19, 2010); Numerov's method and
 # its exponential fitting: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, III.10; time-symmetric

@@ -223,12 +223,10 @@ def _assemblies(residuals: ResidualProblem) -> list[tuple[tuple[str, int], ...]]
 # trace as well, or the points held out do not prove it. It is suspected if
 #
 # - it explains most of what is explained: what it leaves is a small share of what it takes away. Another cause that
-# goes
-#   with it in the best explanation, named or not, is in the model meanwhile, if that one takes little of it away; not
-#   with an error of a sensor, which would mend what something else leaves;
+#   goes with it in the best explanation, named or not, is in the model meanwhile, if that one takes little of it away;
+#   not with an error of a sensor, which would mend what something else leaves;
 # - every channel and every operating point asks for the same size of it. What is one-sided, local or grows otherwise
-# over
-#   the speed is something else that the effect is fitted to: a leak on one side is no leak on both;
+#   over the speed is something else that the effect is fitted to: a leak on one side is no leak on both;
 # - it shrinks the gap on the points held out, where these show it at all;
 # - it is large enough to matter, and within its bounds.
 
