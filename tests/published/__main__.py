@@ -5,6 +5,8 @@ Prints every row that is new, gone or has moved; read them, and say in the commi
 
 import time
 
+from threadpoolctl import threadpool_limits
+
 from rigdesign import load_case
 from rigdesign.run.main import run_case
 from rigdesign.validation import published_rows, validation_json
@@ -18,7 +20,8 @@ def main() -> None:
     rows = []
     for title, compute in topics(lambda name: run_case(load_case(CASES / name), "standard")).items():
         started = time.perf_counter()
-        rows += compute()
+        with threadpool_limits(limits=1):
+            rows += compute()
         print(f"{title}: {time.perf_counter() - started:.0f} s", flush=True)
     for line in moved(published_rows(), rows):
         print(line)
