@@ -1,7 +1,8 @@
 """Draw the contact pattern of the case's pinion at the torques of P1's Figure 7: contact_patterns.svg of the README.
 
-`python cases/strain_gauge_rig/contact_patterns.py [FILE]`; a minute, seconds once the influence numbers are stored.
-As in P1 the tip is on top; its right is the front end of the face, the one that comes into mesh first.
+`python -m cases.strain_gauge_rig.contact_patterns [FILE]` from the root of the source tree; a minute, seconds once the
+influence numbers are stored. As in P1 the tip is on top; its right is the front end of the face, the one that comes
+into mesh first.
 """
 
 import sys
@@ -10,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rigdesign.validation.p1_contact import cycle_at, elastic_contact, elastic_gears
 
 from dynamics.tooth.mesh_cycle import MeshCycle
 from rigdesign.case import load_case
@@ -18,6 +18,7 @@ from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.mesh_models import mesh_microgeometry
 from rigdesign.report.figures.drawing import STYLE, new_figure
 from rigdesign.rig.model import build_rig
+from tests.published.p1_contact import cycle_at, elastic_contact, elastic_gears
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,8 +4,8 @@ Printed: a 112.5 mm, m_n 6 mm, b 25 mm, tip shortening 2.5 mm, crownings and twi
 loop closes with z1 = z2 only), contact ratios 1.03 "load-free" and 1.24 at 238 N m, about 125 N/mm2 at gauge II at
 189 N m, the maxima of gauges I, II, IV and V between 0.3 and 0.4 rad of rolling angle, and where the pattern is blank.
 
-`python cases/strain_gauge_rig/search_gears.py` takes some twenty minutes, two when its influence numbers are in the
-store, and prints three tables in Markdown, those of the README:
+`python -m cases.strain_gauge_rig.search_gears` in the source tree takes some twenty minutes, two when its influence
+numbers are in the store, and prints three tables in Markdown, those of the README:
 
 1. Geometry alone: which helix angles a tooth number allows, and the contact ratios there.
 2. Loaded contact: every reading of the printed twist and tip shortening with every tooth number; the helix angle is the
@@ -23,18 +23,6 @@ from math import acos, degrees, radians
 
 import numpy as np
 from numpy.typing import NDArray
-from rigdesign.validation.p1_contact import (
-    Divided,
-    coarse,
-    corner_load,
-    cycle_at,
-    elastic_contact,
-    elastic_gears,
-    pinion_gauges,
-    ratio_without_load,
-    standard,
-    torque_of_ratio,
-)
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
@@ -54,6 +42,18 @@ from rigdesign.postprocessing.loaded_contact import ElasticGear
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.measuring_point import GaugeCurve
+from tests.published.p1_contact import (
+    Divided,
+    coarse,
+    corner_load,
+    cycle_at,
+    elastic_contact,
+    elastic_gears,
+    pinion_gauges,
+    ratio_without_load,
+    standard,
+    torque_of_ratio,
+)
 
 Array = NDArray[np.float64]
 

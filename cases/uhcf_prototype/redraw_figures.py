@@ -1,19 +1,18 @@
 """Draw P2's Figures 7 and 8 with ours: figures_7_8.svg of the README.
 
-`python cases/uhcf_prototype/redraw_figures.py [FILE]`; half a minute. Of P2's curves only what it prints in words
-is shown.
+`python -m cases.uhcf_prototype.redraw_figures [FILE]` from the root of the source tree; half a minute. Of P2's curves
+only what it prints in words is shown.
 """
 
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rigdesign.validation.decomposition import part_sweeps
-from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.speed_sweeps import MAIN, SUBCRITICAL, TOP_SPEED, SpeedSweep
-
 from rigdesign.case.shipped import case_folder
 from rigdesign.report.figures.drawing import STYLE, new_figure
+from tests.published.decomposition import part_sweeps
+from tests.published.prototype import Prototype
+from tests.published.speed_sweeps import MAIN, SUBCRITICAL, TOP_SPEED, SpeedSweep
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
