@@ -18,48 +18,31 @@
 backlash 112 um cold, 95 um hot
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+import lazy_loader
+
 if TYPE_CHECKING:
-    from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack
-    from dynamics.gear.flank import AxisMisalignment
-    from dynamics.gear.microgeometry import Microgeometry, Topography
-    from dynamics.gear.pair import GearPair
-    from dynamics.gear.pair_geometry import PairGeometry, TipShortening
-    from dynamics.gear.tooth_form import GearDetails, ToothForm
+    from dynamics.gear.cylindrical_gear import CylindricalGear as CylindricalGear
+    from dynamics.gear.cylindrical_gear import GearGeometryError as GearGeometryError
+    from dynamics.gear.cylindrical_gear import Rack as Rack
+    from dynamics.gear.flank import AxisMisalignment as AxisMisalignment
+    from dynamics.gear.microgeometry import Microgeometry as Microgeometry
+    from dynamics.gear.microgeometry import Topography as Topography
+    from dynamics.gear.pair import GearPair as GearPair
+    from dynamics.gear.pair_geometry import PairGeometry as PairGeometry
+    from dynamics.gear.pair_geometry import TipShortening as TipShortening
+    from dynamics.gear.tooth_form import GearDetails as GearDetails
+    from dynamics.gear.tooth_form import ToothForm as ToothForm
 
-__all__ = [
-    "AxisMisalignment",
-    "CylindricalGear",
-    "GearDetails",
-    "GearGeometryError",
-    "GearPair",
-    "Microgeometry",
-    "PairGeometry",
-    "Rack",
-    "TipShortening",
-    "ToothForm",
-    "Topography",
-]
-
-_HOMES = {
-    "AxisMisalignment": "flank",
-    "CylindricalGear": "cylindrical_gear",
-    "GearDetails": "tooth_form",
-    "GearGeometryError": "cylindrical_gear",
-    "GearPair": "pair",
-    "Microgeometry": "microgeometry",
-    "PairGeometry": "pair_geometry",
-    "Rack": "cylindrical_gear",
-    "TipShortening": "pair_geometry",
-    "ToothForm": "tooth_form",
-    "Topography": "microgeometry",
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a name on first use."""
-    if name in _HOMES:
-        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "cylindrical_gear": ["CylindricalGear", "GearGeometryError", "Rack"],
+        "flank": ["AxisMisalignment"],
+        "microgeometry": ["Microgeometry", "Topography"],
+        "pair": ["GearPair"],
+        "pair_geometry": ["PairGeometry", "TipShortening"],
+        "tooth_form": ["GearDetails", "ToothForm"],
+    },
+)

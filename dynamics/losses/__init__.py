@@ -10,54 +10,34 @@ Of the pinion of `dynamics.gear` at 2170 rpm, in air of 90 degC with a little oi
 2.0 W
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+import lazy_loader
+
 if TYPE_CHECKING:
-    from dynamics.losses.churning import churning_loss
-    from dynamics.losses.immersion import DippedGear, OilBath, RunningGear
-    from dynamics.losses.loss import Loss, mesh_loss
-    from dynamics.losses.oil_jet import OilJet, oil_acceleration
-    from dynamics.losses.seal_loss import gap_seal_loss, lip_seal_loss
-    from dynamics.losses.windage import GearRotor, Mist, gear_windage, mist_density
+    from dynamics.losses.churning import churning_loss as churning_loss
+    from dynamics.losses.immersion import DippedGear as DippedGear
+    from dynamics.losses.immersion import OilBath as OilBath
+    from dynamics.losses.immersion import RunningGear as RunningGear
+    from dynamics.losses.loss import Loss as Loss
+    from dynamics.losses.loss import mesh_loss as mesh_loss
+    from dynamics.losses.oil_jet import OilJet as OilJet
+    from dynamics.losses.oil_jet import oil_acceleration as oil_acceleration
+    from dynamics.losses.seal_loss import gap_seal_loss as gap_seal_loss
+    from dynamics.losses.seal_loss import lip_seal_loss as lip_seal_loss
+    from dynamics.losses.windage import GearRotor as GearRotor
+    from dynamics.losses.windage import Mist as Mist
+    from dynamics.losses.windage import gear_windage as gear_windage
+    from dynamics.losses.windage import mist_density as mist_density
 
-__all__ = [
-    "DippedGear",
-    "GearRotor",
-    "Loss",
-    "Mist",
-    "OilBath",
-    "OilJet",
-    "RunningGear",
-    "churning_loss",
-    "gap_seal_loss",
-    "gear_windage",
-    "lip_seal_loss",
-    "mesh_loss",
-    "mist_density",
-    "oil_acceleration",
-]
-
-_HOMES = {
-    "DippedGear": "immersion",
-    "GearRotor": "windage",
-    "Loss": "loss",
-    "Mist": "windage",
-    "OilBath": "immersion",
-    "OilJet": "oil_jet",
-    "RunningGear": "immersion",
-    "churning_loss": "churning",
-    "gap_seal_loss": "seal_loss",
-    "gear_windage": "windage",
-    "lip_seal_loss": "seal_loss",
-    "mesh_loss": "loss",
-    "mist_density": "windage",
-    "oil_acceleration": "oil_jet",
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a name on first use."""
-    if name in _HOMES:
-        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "churning": ["churning_loss"],
+        "immersion": ["DippedGear", "OilBath", "RunningGear"],
+        "loss": ["Loss", "mesh_loss"],
+        "oil_jet": ["OilJet", "oil_acceleration"],
+        "seal_loss": ["gap_seal_loss", "lip_seal_loss"],
+        "windage": ["GearRotor", "Mist", "gear_windage", "mist_density"],
+    },
+)

@@ -17,58 +17,37 @@ With the pair of `dynamics.gear`, under load stage 10 of the FZG test:
 transmission error 18 um
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+import lazy_loader
+
 if TYPE_CHECKING:
-    from dynamics.tooth.elastic_pair import influence_law
-    from dynamics.tooth.friction import friction_coefficient, tooth_loss_factor
-    from dynamics.tooth.law import MeshLaw
-    from dynamics.tooth.loaded_mesh import LoadedMesh
-    from dynamics.tooth.mesh_force import evaluate_mesh, static_cycle, tooth_forces
-    from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, MeshPosition, mesh_law
-    from dynamics.tooth.root_field import RootField
-    from dynamics.tooth.stiffness import PairStiffness, pair_stiffness
+    from dynamics.tooth.elastic_pair import influence_law as influence_law
+    from dynamics.tooth.friction import friction_coefficient as friction_coefficient
+    from dynamics.tooth.friction import tooth_loss_factor as tooth_loss_factor
+    from dynamics.tooth.law import MeshLaw as MeshLaw
+    from dynamics.tooth.loaded_mesh import LoadedMesh as LoadedMesh
+    from dynamics.tooth.mesh_force import evaluate_mesh as evaluate_mesh
+    from dynamics.tooth.mesh_force import static_cycle as static_cycle
+    from dynamics.tooth.mesh_force import tooth_forces as tooth_forces
+    from dynamics.tooth.mesh_laws import ContactDiscretisation as ContactDiscretisation
+    from dynamics.tooth.mesh_laws import MeshDissipation as MeshDissipation
+    from dynamics.tooth.mesh_laws import MeshPosition as MeshPosition
+    from dynamics.tooth.mesh_laws import mesh_law as mesh_law
+    from dynamics.tooth.root_field import RootField as RootField
+    from dynamics.tooth.stiffness import PairStiffness as PairStiffness
+    from dynamics.tooth.stiffness import pair_stiffness as pair_stiffness
 
-__all__ = [
-    "ContactDiscretisation",
-    "LoadedMesh",
-    "MeshDissipation",
-    "MeshLaw",
-    "MeshPosition",
-    "PairStiffness",
-    "RootField",
-    "evaluate_mesh",
-    "friction_coefficient",
-    "influence_law",
-    "mesh_law",
-    "pair_stiffness",
-    "static_cycle",
-    "tooth_forces",
-    "tooth_loss_factor",
-]
-
-_HOMES = {
-    "ContactDiscretisation": "mesh_laws",
-    "LoadedMesh": "loaded_mesh",
-    "MeshDissipation": "mesh_laws",
-    "MeshLaw": "law",
-    "MeshPosition": "mesh_laws",
-    "PairStiffness": "stiffness",
-    "RootField": "root_field",
-    "evaluate_mesh": "mesh_force",
-    "friction_coefficient": "friction",
-    "influence_law": "elastic_pair",
-    "mesh_law": "mesh_laws",
-    "pair_stiffness": "stiffness",
-    "static_cycle": "mesh_force",
-    "tooth_forces": "mesh_force",
-    "tooth_loss_factor": "friction",
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a name on first use."""
-    if name in _HOMES:
-        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "elastic_pair": ["influence_law"],
+        "friction": ["friction_coefficient", "tooth_loss_factor"],
+        "law": ["MeshLaw"],
+        "loaded_mesh": ["LoadedMesh"],
+        "mesh_force": ["evaluate_mesh", "static_cycle", "tooth_forces"],
+        "mesh_laws": ["ContactDiscretisation", "MeshDissipation", "MeshPosition", "mesh_law"],
+        "root_field": ["RootField"],
+        "stiffness": ["PairStiffness", "pair_stiffness"],
+    },
+)

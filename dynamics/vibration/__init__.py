@@ -11,49 +11,32 @@ The dynamic factor of both meshes of `dynamics.rotor` at three speeds of the pin
 ['1.04 1.06', '1.05 1.07', '1.06 1.05']
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+import lazy_loader
+
 if TYPE_CHECKING:
-    from dynamics.vibration.deviation_response import DeviationResponse
-    from dynamics.vibration.event_march import EventMarch
-    from dynamics.vibration.response_curve import CurvePoint, ResponseCurve
-    from dynamics.vibration.schedule import Schedule, Stage
-    from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
-    from dynamics.vibration.steady_motion import TimeSettings, periodic_by_time
-    from dynamics.vibration.time_response import run_schedule
+    from dynamics.vibration.deviation_response import DeviationResponse as DeviationResponse
+    from dynamics.vibration.event_march import EventMarch as EventMarch
+    from dynamics.vibration.response_curve import CurvePoint as CurvePoint
+    from dynamics.vibration.response_curve import ResponseCurve as ResponseCurve
+    from dynamics.vibration.schedule import Schedule as Schedule
+    from dynamics.vibration.schedule import Stage as Stage
+    from dynamics.vibration.speed_sweep import SweepSettings as SweepSettings
+    from dynamics.vibration.speed_sweep import periodic_response as periodic_response
+    from dynamics.vibration.steady_motion import TimeSettings as TimeSettings
+    from dynamics.vibration.steady_motion import periodic_by_time as periodic_by_time
+    from dynamics.vibration.time_response import run_schedule as run_schedule
 
-__all__ = [
-    "CurvePoint",
-    "DeviationResponse",
-    "EventMarch",
-    "ResponseCurve",
-    "Schedule",
-    "Stage",
-    "SweepSettings",
-    "TimeSettings",
-    "periodic_by_time",
-    "periodic_response",
-    "run_schedule",
-]
-
-_HOMES = {
-    "CurvePoint": "response_curve",
-    "DeviationResponse": "deviation_response",
-    "EventMarch": "event_march",
-    "ResponseCurve": "response_curve",
-    "Schedule": "schedule",
-    "Stage": "schedule",
-    "SweepSettings": "speed_sweep",
-    "TimeSettings": "steady_motion",
-    "periodic_by_time": "steady_motion",
-    "periodic_response": "speed_sweep",
-    "run_schedule": "time_response",
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a name on first use."""
-    if name in _HOMES:
-        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "deviation_response": ["DeviationResponse"],
+        "event_march": ["EventMarch"],
+        "response_curve": ["CurvePoint", "ResponseCurve"],
+        "schedule": ["Schedule", "Stage"],
+        "speed_sweep": ["SweepSettings", "periodic_response"],
+        "steady_motion": ["TimeSettings", "periodic_by_time"],
+        "time_response": ["run_schedule"],
+    },
+)
