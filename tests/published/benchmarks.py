@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from rigdesign.results.units import ZERO
 from tests.published.mapped_mesh import mapped, piecewise, split
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, compare
+from tests.published.thermal_stress import stress_at_nodes
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.expansion.elastic import ElasticSetup
-from thermal.expansion.stress import stress_at_nodes
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, FloatArray, NamedMesh, box_mesh
 from thermal.films.convection import constant

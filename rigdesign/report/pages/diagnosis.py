@@ -3,12 +3,12 @@
 import re
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.diagnosis.constants_page import meanings
 from rigdesign.diagnosis.decision.naming import display_scale
 from rigdesign.diagnosis.document.advice import VERDICTS
 from rigdesign.diagnosis.document.document import leading_sentences, sentences
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.rig_calibration.healthy_sets import RigCalibration
+from rigdesign.diagnosis.rig_calibration.meanings import meanings
 from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.report.numbers import number_text, unit_text
 

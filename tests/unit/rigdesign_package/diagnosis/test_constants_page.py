@@ -4,10 +4,10 @@ import ast
 from pathlib import Path
 
 import rigdesign.diagnosis
-from rigdesign.diagnosis.constant_sources import SOURCES
-from rigdesign.diagnosis.constants_page import constants, constants_page
 from rigdesign.diagnosis.decision.defaults import AMPLITUDES, DEFAULT, DRIFT
 from rigdesign.diagnosis.rig_calibration.estimate import with_values
+from tests.builders.constant_sources import SOURCES
+from tests.builders.constants_page import constants, constants_page
 from tests.builders.paths import CASES
 
 PACKAGE = Path(rigdesign.diagnosis.__file__).parent
@@ -19,7 +19,7 @@ NUMBERS_OF_EFFECTS = {"LOSSES"}
 def test_the_page_is_that_of_the_modules() -> None:
     written = (CASES / "diagnosis_constants.md").read_text(encoding="utf-8")
     assert written == constants_page(), (
-        "python -m rigdesign.diagnosis.constants_page > cases/diagnosis_constants.md"
+        "python -m tests.builders.constants_page > cases/diagnosis_constants.md"
     )
 
 
@@ -67,9 +67,7 @@ def test_every_numeric_constant_of_the_package_is_listed() -> None:
     missing = {
         name for name in written_constants() if name.rpartition(".")[2] not in NUMBERS_OF_EFFECTS
     } - listed
-    assert not missing, (
-        f"add {sorted(missing)} to rigdesign.diagnosis.constant_sources and write the page anew"
-    )
+    assert not missing, f"add {sorted(missing)} to tests.builders.constant_sources and write the page anew"
     assert len(written_constants()) > 70
 
 

@@ -1,24 +1,21 @@
 """The page of constants, made from the package: name, value, meaning, source, and what a user's rig replaces.
 
 Name and value are those of the modules, the meaning is the text below a constant or a field, units and sources are in
-`rigdesign.diagnosis.constant_sources`.
+`tests.builders.constant_sources`.
 """
 
-import ast
 import pkgutil
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
-from rigdesign.diagnosis.constant_sources import SOURCES, Source
 from rigdesign.diagnosis.decision.defaults import Thresholds
 from rigdesign.diagnosis.residual.baseline import Drift
+from rigdesign.diagnosis.rig_calibration.meanings import assigned_texts, field_texts, module_tree
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from tests.builders.constant_sources import SOURCES, Source
 
 PACKAGE = "rigdesign.diagnosis"
 
@@ -27,7 +24,7 @@ RECORDS = (Amplitudes, Drift, Thresholds)
 
 HEAD = """# Constants of the diagnosis
 
-Written by `python -m rigdesign.diagnosis.constants_page`; do not edit by hand.
+Written by `python -m tests.builders.constants_page`; do not edit by hand.
 
 Every number that a diagnosis depends on, apart from the bounds and healthy spreads of the effects
 ([effects.md](effects.md)) and from what a measurement states. Kinds of source: *fit* to sets of the virtual rig
@@ -57,7 +54,7 @@ def constants() -> list[Constant]:
 def constants_page() -> str:
     """The page in Markdown.
 
-    Raises KeyError for a constant without an entry in `rigdesign.diagnosis.constant_sources`.
+    Raises KeyError for a constant without an entry in `tests.builders.constant_sources`.
     """
     rows = constants()
     lines = [
@@ -82,13 +79,6 @@ def constants_page() -> str:
     return "\n".join(lines) + "\n"
 
 
-@cache
-def meanings() -> Mapping[str, str]:
-    """Name -> meaning of what a rig's own sets may replace: ``amplitudes.link``, ``drift.shaft``."""
-    fields = (("amplitudes", Amplitudes), ("drift", Drift))
-    return {f"{group}.{name}": text for group, record in fields for name, text in _fields(record).items()}
-
-
 def _modules() -> Iterator[str]:
     """Names of all modules below the package."""
     package = import_module(PACKAGE)
@@ -99,9 +89,7 @@ def _modules() -> Iterator[str]:
 
 def _of_module(name: str) -> Iterator[Constant]:
     module, short = import_module(name), name.removeprefix(f"{PACKAGE}.")
-    if module is sys.modules[__name__] or short == "constants_page":
-        return
-    for constant, text in _assigned(_tree(name).body).items():
+    for constant, text in assigned_texts(module_tree(name).body).items():
         value = getattr(module, constant)
         if constant.isupper() and _numeric(value):
             yield from _rows(f"{short}.{constant}", value, text)
@@ -110,7 +98,7 @@ def _of_module(name: str) -> Iterator[Constant]:
 def _rows(name: str, value: Any, text: str) -> Iterator[Constant]:
     """One row, or one for each field of a record and each entry of a table of numbers."""
     if isinstance(value, RECORDS):
-        for part, meaning in _fields(type(value)).items():
+        for part, meaning in field_texts(type(value)).items():
             yield from _rows(f"{name}.{part}", getattr(value, part), meaning)
     elif isinstance(value, Mapping) and all(isinstance(one, int | float) for one in value.values()):
         for key, one in value.items():
@@ -157,63 +145,6 @@ def _shown(value: Any) -> str:
     if isinstance(value, Mapping):
         return "; ".join(f"{key}: {_shown(one)}" for key, one in value.items())
     return ", ".join(_shown(one) for one in value)
-
-
-@cache
-def _tree(name: str) -> ast.Module:
-    spec = find_spec(name)
-    assert spec is not None and spec.origin is not None
-    return ast.parse(Path(spec.origin).read_text(encoding="utf-8"))
-
-
-def _assigned(body: Sequence[ast.stmt]) -> dict[str, str]:
-    """Names assigned in a block -> the text below, empty where there is none."""
-    found: dict[str, str] = {}
-    for place, statement in enumerate(body):
-        match statement:
-            case ast.Assign(targets=targets):
-                names = [part.id for one in targets for part in ast.walk(one) if isinstance(part, ast.Name)]
-            case ast.AnnAssign(target=ast.Name(id=name)):
-                names = [name]
-            case _:
-                continue
-        below = body[place + 1] if place + 1 < len(body) else None
-        found |= dict.fromkeys(names, _text(below))
-    return found
-
-
-def _text(statement: ast.stmt | None) -> str:
-    """Of a bare string, on one line; its first paragraph."""
-    match statement:
-        case ast.Expr(value=ast.Constant(value=str() as text)):
-            return " ".join(text.split("\n\n")[0].split())
-    return ""
-
-
-def _fields(record: type) -> Mapping[str, str]:
-    """Field of a record -> its meaning, from the text below it or from the list in the text of the record."""
-    [block] = [
-        node
-        for node in _tree(record.__module__).body
-        if isinstance(node, ast.ClassDef) and node.name == record.__name__
-    ]
-    listed = _listed(ast.get_docstring(block) or "")
-    own = {
-        node.target.id
-        for node in block.body
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
-    }
-    return {name: text or listed.get(name, "") for name, text in _assigned(block.body).items() if name in own}
-
-
-def _listed(docstring: str) -> dict[str, str]:
-    """Names -> texts of a list ``name, name : text; name : text``."""
-    found: dict[str, str] = {}
-    for entry in " ".join(docstring.partition("\n\n")[2].split()).split("; "):
-        names, colon, text = entry.partition(" : ")
-        if colon:
-            found |= dict.fromkeys((one.strip() for one in names.split(",")), text)
-    return found
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Where every constant of the diagnosis is from, and whether healthy sets of a user's rig replace it.
 
-Name, value and meaning stand where a constant is used; `rigdesign.diagnosis.constants_page` joins them with these
+Name, value and meaning stand where a constant is used; `tests.builders.constants_page` joins them with these
 entries to one table.
 """
 
