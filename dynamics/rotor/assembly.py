@@ -21,8 +21,7 @@ from dynamics.rotor.beam import (
     mass_matrices,
     stiffness_matrices,
 )
-from dynamics.rotor.freedoms import Freedoms, Place, number_freedoms
-from dynamics.rotor.joints import ElasticJoint, all_joints, port_rows
+from dynamics.rotor.freedoms import ElasticJoint, Freedoms, Place, all_joints, number_freedoms, port_rows
 from dynamics.rotor.location import RigidMotion, check_location, rigid_motions
 from dynamics.rotor.parts import Coupling
 from dynamics.rotor.rotor_model import CrossJoint, ElasticRig

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.assembly import ElasticModel, shaft_stiffness
-from dynamics.rotor.joints import ElasticJoint
+from dynamics.rotor.freedoms import ElasticJoint
 from dynamics.rotor.rotor_model import (
     SEAT_DIRECTIONS,
     AxisMisalignment,

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from dynamics.rotor.assembly import WAVES, CrossJointLoad, ElasticModel, cross_joint_loads
 from dynamics.rotor.beam import DIRECTIONS
 from dynamics.rotor.bearing_state import RunningState, line_loads
+from dynamics.rotor.freedoms import ElasticJoint
 from dynamics.rotor.graph import (
     SectionKind,
     TorqueSection,
@@ -27,7 +28,6 @@ from dynamics.rotor.graph import (
     section_of_elements,
     twist_rows,
 )
-from dynamics.rotor.joints import ElasticJoint
 from dynamics.rotor.linear_system import Coordinates, LinearSystem, MeshWrench
 from dynamics.rotor.parts import LoadOrder, PeriodicLoad, rotating_load
 from dynamics.rotor.reduction import ReducedElasticRig

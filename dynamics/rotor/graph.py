@@ -3,7 +3,7 @@
 Nodes of the graph are bodies that turn: stations of shafts, gear bodies on their splines, a motor rotor.
 Edges with springs (shaft elements, splines, couplings) join them to *shaft lines*; gear meshes join the
 lines and stay outside the matrices (`dynamics.tooth.law`). Any number of shafts, joints, meshes and loops is
-allowed; whether the loops can close is checked in `dynamics.rotor.power_loop`.
+allowed; whether the loops can close is checked in `dynamics.rotor.parts`.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -23,8 +23,9 @@ from dynamics.rotor.parts import (
     MeshConnection,
     Motor,
     PeriodicLoad,
+    check_loops,
+    speed_ratios,
 )
-from dynamics.rotor.power_loop import check_loops, speed_ratios
 from dynamics.rotor.shaft import DrivetrainError, Section, Shaft, ShaftChain, discretise
 
 Array = NDArray[np.float64]

@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.rotor.freedoms import Freedoms
-from dynamics.rotor.joints import ElasticJoint, port_rows
+from dynamics.rotor.freedoms import ElasticJoint, Freedoms, port_rows
 from dynamics.rotor.parts import MeshConnection
 from dynamics.rotor.rotor_model import SEAT_DIRECTIONS, ElasticRig
 from dynamics.rotor.shaft import DrivetrainError

@@ -22,7 +22,6 @@ from dynamics.rotor.bearing import (
     HeatStar,
 )
 from dynamics.rotor.rolling_catalogue import CatalogueBearing
-from dynamics.rotor.rolling_life import LifeConditions, check_axial, minimum_load, rating_life
 from dynamics.rotor.rolling_row import COMMON_GROOVE, BallGroove, RowOfElements, contact_law
 from dynamics.rotor.rolling_state import (
     LAWS,
@@ -32,11 +31,15 @@ from dynamics.rotor.rolling_state import (
     FrictionConditions,
     FrictionLaw,
     FrictionTorque,
+    LifeConditions,
     Lubrication,
     OilKind,
     RollingState,
+    check_axial,
     friction_torque,
     limit_warnings,
+    minimum_load,
+    rating_life,
 )
 from dynamics.rotor.rolling_stiffness import bearing_stiffness
 from dynamics.standards import iso281_2007

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from dynamics.rotor.beam import ShearRule, TorsionalInertia
 from dynamics.rotor.graph import Drivetrain
-from dynamics.rotor.parts import Coupling, GearBody, MeshConnection
-from dynamics.rotor.power_loop import DISTANCE_TOLERANCE, speed_ratios
+from dynamics.rotor.parts import DISTANCE_TOLERANCE, Coupling, GearBody, MeshConnection, speed_ratios
 from dynamics.rotor.shaft import DrivetrainError
 
 # What turns with a shaft and shakes it once a turn: unbalance, a bent shaft, flanges out of true.

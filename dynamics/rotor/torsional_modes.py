@@ -15,7 +15,7 @@ from scipy.optimize import linear_sum_assignment
 
 from dynamics.rotor.graph import Drivetrain, TorsionalJoint, assemble, joints
 from dynamics.rotor.linear_system import LinearSystem, modal_form
-from dynamics.rotor.power_loop import speed_ratios
+from dynamics.rotor.parts import speed_ratios
 from dynamics.rotor.shaft import free_frequencies
 from dynamics.tooth.law import MeshLaw
 

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from dynamics.tooth.mesh_laws import ContactDiscretisation as ContactDiscretisation
     from dynamics.tooth.mesh_laws import MeshDissipation as MeshDissipation
     from dynamics.tooth.mesh_laws import MeshPosition as MeshPosition
+    from dynamics.tooth.mesh_laws import PairStiffness as PairStiffness
     from dynamics.tooth.mesh_laws import mesh_law as mesh_law
+    from dynamics.tooth.mesh_laws import pair_stiffness as pair_stiffness
     from dynamics.tooth.root_field import RootField as RootField
-    from dynamics.tooth.stiffness import PairStiffness as PairStiffness
-    from dynamics.tooth.stiffness import pair_stiffness as pair_stiffness
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
@@ -46,8 +46,14 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "law": ["MeshLaw"],
         "loaded_mesh": ["LoadedMesh"],
         "mesh_force": ["evaluate_mesh", "static_cycle", "tooth_forces"],
-        "mesh_laws": ["ContactDiscretisation", "MeshDissipation", "MeshPosition", "mesh_law"],
+        "mesh_laws": [
+            "ContactDiscretisation",
+            "MeshDissipation",
+            "MeshPosition",
+            "PairStiffness",
+            "mesh_law",
+            "pair_stiffness",
+        ],
         "root_field": ["RootField"],
-        "stiffness": ["PairStiffness", "pair_stiffness"],
     },
 )

@@ -11,7 +11,7 @@ from dynamics.gear.tooth_form import ToothForm
 from dynamics.tooth.influence_numbers import STANDARD, GearBody, SectionDivision
 from dynamics.tooth.segment import GearSegment
 from thermal.fe.direct_factor import DirectFactor
-from thermal.fe.levels import Level
+from thermal.fe.elements import Level
 from thermal.fe.reference_elements import HEXAHEDRON_20
 
 Array = NDArray[np.float64]

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
+from dynamics.tooth.mesh_laws import Body, tooth_compliance
 from dynamics.tooth.points import FaceGrid
-from dynamics.tooth.stiffness import Body, tooth_compliance
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -17,14 +17,17 @@ from numpy.typing import NDArray
 from dynamics.errors import DynamicsNotConverged
 from dynamics.vibration.harmonic_balance import (
     STALL_LIMIT,
+    BalanceProblem,
     HarmonicEquations,
+    HarmonicGrid,
+    HarmonicSolution,
     HarmonicState,
     MeshHarmonics,
     Residual,
     mesh_inputs,
+    resample,
     state_of,
 )
-from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
 from dynamics.vibration.speed_continuation import HarmonicWalk
 
 Array = NDArray[np.float64]

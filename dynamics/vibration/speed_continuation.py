@@ -11,8 +11,13 @@ import numpy as np
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.rotor.linear_system import ModalForm
 from dynamics.rotor.static_loop import PortModel, SlowRotation, solve_static
-from dynamics.vibration.harmonic_balance import solve_periodic
-from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
+from dynamics.vibration.harmonic_balance import (
+    BalanceProblem,
+    HarmonicGrid,
+    HarmonicSolution,
+    resample,
+    solve_periodic,
+)
 from dynamics.vibration.steady_motion import Period
 
 LEAST_HARMONICS, MOST_HARMONICS = 24, 640

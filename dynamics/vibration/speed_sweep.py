@@ -17,8 +17,8 @@ from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.rotor.linear_system import DrivetrainOverSpeed
 from dynamics.rotor.static_loop import LoopLoad, port_model
 from dynamics.tooth.law import MeshLaw
+from dynamics.vibration.harmonic_balance import BalanceProblem, HarmonicSolution
 from dynamics.vibration.harmonic_branches import BranchSearch, HarmonicStates
-from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.vibration.initial_state import pinion_ratios
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from dynamics.vibration.response_curve import CurvePoint, Method, ResponseCurve, point_in_time, point_of

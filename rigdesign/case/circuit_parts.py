@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.gearbox import mesh_jet
-from rigdesign.case.oil_circuits import (
+from rigdesign.case.lubrication import (
     CoolerInput,
     HeaterInput,
     LineInput,
@@ -17,9 +17,10 @@ from rigdesign.case.oil_circuits import (
     TankCoolerInput,
     TankInput,
 )
-from rigdesign.oil_circuit.circuit import NO_PIPE, Circuit, SupplyLine
-from rigdesign.oil_circuit.parts import (
+from rigdesign.oil_circuit.circuit import (
+    NO_PIPE,
     Arrangement,
+    Circuit,
     Consumer,
     Coolant,
     Cooler,
@@ -27,6 +28,7 @@ from rigdesign.oil_circuit.parts import (
     Pipe,
     Pump,
     RatedPoint,
+    SupplyLine,
     Tank,
     TankCooler,
 )

@@ -18,7 +18,7 @@ from rigdesign.case.fields import Name, Part, Text, Title
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
-from rigdesign.case.oil_circuits import OilCircuit, with_setpoints
+from rigdesign.case.lubrication import OilCircuit, with_setpoints
 from rigdesign.case.paths import places
 from rigdesign.case.provenance import InputRow, Mark, input_rows, take_off
 from rigdesign.case.rig_heat import RigHeatInput

@@ -327,7 +327,7 @@ class RollingBearingInput(Part):
 
     def induced_axial_load(self, radial: float) -> float:
         """Axial force that a radial load produces inside the bearing [N]; 0 without a contact angle."""
-        from dynamics.rotor.rolling_life import induced_axial_load
+        from dynamics.rotor.rolling_state import induced_axial_load
 
         return induced_axial_load(self.data, radial)
 

@@ -24,7 +24,7 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_feed, gear_oil
 from rigdesign.rig.shaft_seals import ShaftSeal, shaft_seals
-from thermal.films.air import air
+from thermal.films.still import air
 
 DAMPER_SHARE = 0.1
 """Work of a mesh damper, as a share of the tooth friction, above which it warns."""

@@ -26,10 +26,11 @@ from dynamics.tooth.mesh_laws import (
     ContactDiscretisation,
     MeshDissipation,
     MeshPosition,
+    PairStiffness,
     default_slices,
     mesh_law,
+    pair_stiffness,
 )
-from dynamics.tooth.stiffness import PairStiffness, pair_stiffness
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
 from rigdesign.coupling.alignment import axes_in_mesh

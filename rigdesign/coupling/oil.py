@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.lubrication import FedOil, JetOil
+from rigdesign.case.lubrication import FedOil, JetOil, place_of
 from rigdesign.case.model import Case
-from rigdesign.case.oil_circuits import place_of
 from rigdesign.coupling.located_loss import PlacedLoss, heat_into_gear_oil
 from rigdesign.properties.oil import Portion, mixed, oil_outlet
 from rigdesign.rig.model import Rig

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 from rigdesign.base.errors import CaseError
 from rigdesign.base.units import celsius
+from rigdesign.case.lubrication import place_of
 from rigdesign.case.model import Case
-from rigdesign.case.oil_circuits import place_of
 from rigdesign.coupling.housing_context import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.located_loss import PlacedLoss

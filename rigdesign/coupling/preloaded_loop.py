@@ -14,7 +14,7 @@ from dynamics.rotor.static_loop import LoopLoad, StaticState
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.tooth.packed_laws import has_individual_teeth
-from dynamics.vibration.harmonic_problem import HarmonicSolution
+from dynamics.vibration.harmonic_balance import HarmonicSolution
 from dynamics.vibration.initial_state import pinion_ratios
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS

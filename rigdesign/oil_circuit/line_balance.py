@@ -15,8 +15,15 @@ from scipy.optimize import brentq
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.units import celsius
-from rigdesign.oil_circuit.circuit import Circuit, SupplyLine
-from rigdesign.oil_circuit.parts import REFERENCE, HeatContent, Pipe, enthalpy, temperature_at
+from rigdesign.oil_circuit.circuit import (
+    REFERENCE,
+    Circuit,
+    HeatContent,
+    Pipe,
+    SupplyLine,
+    enthalpy,
+    temperature_at,
+)
 from rigdesign.properties.oil import Oil
 
 HeatTaken = float | Callable[[float], float]

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.units import celsius, require_above
-from rigdesign.oil_circuit.circuit import Circuit
+from rigdesign.oil_circuit.circuit import Circuit, enthalpy
 from rigdesign.oil_circuit.line_balance import (
     RANGE,
     Contents,
@@ -29,7 +29,6 @@ from rigdesign.oil_circuit.line_balance import (
     pipe_content,
     tank_content,
 )
-from rigdesign.oil_circuit.parts import enthalpy
 from rigdesign.oil_circuit.steady import SteadyCircuit, require_heats
 
 # On-off thermostats of a tank: when they switch next, and what they force while they do not.

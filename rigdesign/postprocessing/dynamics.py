@@ -11,8 +11,7 @@ from dynamics.rotor.bracing import BracingDrift, LoopBracing, drift
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.rotor.torsional_modes import DampingRecord, LoopMode, damping_audit, loop_crossings
 from dynamics.tooth.root_field import PairForces
-from dynamics.vibration.envelopes import EnvelopeWindows, split_lift_off
-from dynamics.vibration.time_response import TimeResponse
+from dynamics.vibration.time_response import EnvelopeWindows, TimeResponse, split_lift_off
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.mesh_models import laws_of, mesh_models

@@ -22,13 +22,13 @@ from rigdesign.postprocessing.dynamic_root import dynamic_root
 from rigdesign.postprocessing.dynamics import DynamicRun, numbered, ramp_history
 from rigdesign.postprocessing.flank_rating import flank_ratings
 from rigdesign.postprocessing.loaded_contact import loaded_contact
-from rigdesign.postprocessing.run_torques import run_torques
+from rigdesign.postprocessing.run_torques import (
+    mesh_swing,
+    run_torques,
+)
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.postprocessing.spectra import held_spectra, waterfalls
 from rigdesign.postprocessing.tooth_history import bent_both_ways
-from rigdesign.postprocessing.torques_over_speed import (
-    mesh_swing,
-)
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import MeshLoads
 from rigdesign.results.serialisation import dynamics as rows

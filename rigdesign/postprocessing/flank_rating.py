@@ -4,9 +4,15 @@ import math
 from collections.abc import Iterator, Sequence
 
 from dynamics.errors import DynamicsInputError
-from dynamics.rating.flank_contact import FlankContact, FlankLoad, thermal_contact
+from dynamics.rating.flank_contact import (
+    FlankContact,
+    FlankLoad,
+    FlankMaterials,
+    Pitting,
+    pitting,
+    thermal_contact,
+)
 from dynamics.rating.micropitting import FilmRatios, Lubricant, film_ratios
-from dynamics.rating.pitting import FlankMaterials, Pitting, pitting
 from dynamics.rating.scuffing import (
     ContactTemperature,
     FlankFilmState,

@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from dynamics.gear.pair import GearPair
-from dynamics.rating import iso_rating, pitting
+from dynamics.rating import flank_contact as pitting
+from dynamics.rating import iso_rating
 from dynamics.rating.flank_contact import ContactFactors, FlankLoad
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from dynamics.standards.iso6336_3_2006 import LoadFactors

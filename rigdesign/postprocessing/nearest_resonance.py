@@ -22,7 +22,7 @@ from rigdesign.postprocessing.loop_states import (
     state_at,
 )
 from rigdesign.postprocessing.resonances import USUAL_MARGIN, DynamicShare, resonances
-from rigdesign.postprocessing.torques_over_speed import LoopOverSpeed, torques_over_speed
+from rigdesign.postprocessing.run_torques import LoopOverSpeed, torques_over_speed
 from rigdesign.results.loads import DynamicLoads, ModeCrossing
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import AvoidedResonance, CampbellCrossing, NearResonance, TorqueOverSpeed

@@ -13,7 +13,7 @@ from rigdesign.coupling.state import OperatingPoint
 from rigdesign.postprocessing.curves import curve_at, dense, response_solver, torque_key
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.loop_states import loop_states
-from rigdesign.postprocessing.torques_over_speed import LoopOverSpeed, torques_over_speed
+from rigdesign.postprocessing.run_torques import LoopOverSpeed, torques_over_speed
 from rigdesign.results.loads import PassingPeak, Quantity
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import PlaceKind, TorqueOverSpeed

@@ -19,7 +19,7 @@ from dynamics.rotor.damped_modes import (
     rig_modes,
     whirl_at,
 )
-from dynamics.rotor.power_loop import speed_ratios
+from dynamics.rotor.parts import speed_ratios
 from dynamics.standards.api617_2014 import TORSIONAL_SEPARATION, separation_above, separation_below
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -33,9 +33,8 @@ from rigdesign.postprocessing.curves import dense, response_solver
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.loop_states import LoopState, loop_states
 from rigdesign.postprocessing.nearest_resonance import NearDwell, near_dwells
-from rigdesign.postprocessing.run_torques import held_torques
+from rigdesign.postprocessing.run_torques import LoopOverSpeed, Solve, held_torques, torques_over_speed
 from rigdesign.postprocessing.start_torque import StartResponse, start_response
-from rigdesign.postprocessing.torques_over_speed import LoopOverSpeed, Solve, torques_over_speed
 from rigdesign.results.lateral import (
     BearingWhirl,
     LateralVibration,

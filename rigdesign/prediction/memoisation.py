@@ -20,7 +20,7 @@ from dynamics.rotor.mode_names import NamedMode
 from dynamics.rotor.static_loop import LoopLoad, StaticState, port_model
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_laws import alike_teeth
-from dynamics.vibration.harmonic_problem import HarmonicSolution
+from dynamics.vibration.harmonic_balance import HarmonicSolution
 from dynamics.vibration.response_curve import CurvePoint, quasi_static_point
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
 from rigdesign.coupling.alignment import axes_in_mesh

@@ -32,8 +32,7 @@ from rigdesign.prediction.model import (
     features_of,
     only_warming,
 )
-from rigdesign.prediction.order_motion import ideal_response, is_ideal
-from rigdesign.prediction.orders import shaft_orders
+from rigdesign.prediction.order_motion import ideal_response, is_ideal, shaft_orders
 from rigdesign.prediction.reduced_rig import FirstOrderModel, ReducedRig
 from rigdesign.prediction.static_tests import loaded_modes, standing_modes
 from rigdesign.rig.model import Rig

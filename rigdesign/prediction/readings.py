@@ -16,8 +16,7 @@ from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import LEAST_TORQUE
 from rigdesign.postprocessing.loaded_contact import HeldContact, held_flanks, kept_contact, stress_at
 from rigdesign.prediction.model import LATERAL_QUANTITIES, ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
-from rigdesign.prediction.order_motion import is_ideal
-from rigdesign.prediction.orders import shaft_orders
+from rigdesign.prediction.order_motion import is_ideal, shaft_orders
 from rigdesign.prediction.places import lateral_motion, place_weights
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig

@@ -27,9 +27,8 @@ from rigdesign.prediction.converged_point import ConvergedPoint, unrelaxed_vecto
 from rigdesign.prediction.housings import ReducedField
 from rigdesign.prediction.linearised_films import WAYS, Film, LinearisedFilms
 from rigdesign.prediction.model import ORDER_QUANTITIES
-from rigdesign.prediction.order_motion import is_ideal
-from rigdesign.prediction.orders import Orders, shaft_orders
-from rigdesign.prediction.orders import numbers as order_numbers
+from rigdesign.prediction.order_motion import Orders, is_ideal, shaft_orders
+from rigdesign.prediction.order_motion import numbers as order_numbers
 from rigdesign.prediction.readings import Readings, count_of
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray

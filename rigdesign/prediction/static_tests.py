@@ -3,7 +3,7 @@
 The loop stands braced with its first torque, its journals on the shells: no film, no friction of rotation. The teeth
 carry by that torque alone, so that the mesh is as stiff as the pairs it presses together, mean over the places where
 the teeth may have come to rest. Shafts that bend stand on what their bearings are at rest: a journal in the contact
-with its shell and the oil squeezed out of it, as `dynamics.rotor.journal_lateral` has it, rolling elements under
+with its shell and the oil squeezed out of it, as `dynamics.rotor.journal` has it, rolling elements under
 their load.
 
 A natural frequency is asked for by the number of its torsional mode, ``3`` or ``torsional 3``, or by the name of any

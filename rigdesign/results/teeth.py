@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.gear.flank import AxisMisalignment, Flank
-from dynamics.rating.flank_contact import ContactFactors
+from dynamics.rating.flank_contact import ContactFactors, Pitting
 from dynamics.rating.micropitting import FilmRatios
-from dynamics.rating.pitting import Pitting
 from dynamics.rating.root_stress import MeanRootStress, mean_stress_factor
 from dynamics.rating.scuffing import ContactTemperature
 from dynamics.tooth.mesh_cycle import MeshCycle

@@ -9,8 +9,16 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
-from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList
-from rigdesign.rexs.model import Attribute, AttributeValueError, Component, Relation, RexsModel, RoleReference
+from rigdesign.rexs.model import (
+    EXPORT_AGAIN,
+    Attribute,
+    AttributeValueError,
+    Component,
+    FaultList,
+    Relation,
+    RexsModel,
+    RoleReference,
+)
 
 DATA_SOURCE, REFERENCED = "data_source", "referenced_component_id"
 MOST_COMPONENTS = 100_000

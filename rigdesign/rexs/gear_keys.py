@@ -177,7 +177,7 @@ def _shift_sum(stage: GearStage, distance: float | None) -> float | None:
     if distance is None or gear.normal_module is None or teeth is None:
         return None
     from dynamics.gear.cylindrical_gear import GearGeometryError
-    from dynamics.gear.line_of_action import shift_sum
+    from dynamics.gear.pair_geometry import shift_sum
 
     angle, helix = gear.pressure_angle or STANDARD_ANGLE, abs(gear.helix_angle or 0.0)
     try:

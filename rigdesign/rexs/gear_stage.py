@@ -11,8 +11,8 @@ from typing import Literal
 
 from rigdesign.base.errors import UsageError
 from rigdesign.rexs.attribute_log import MappedAttribute
-from rigdesign.rexs.faults import printable
 from rigdesign.rexs.gear_unit import GearUnit, ShaftSection, UnitBearing, UnitGear, UnitMesh, UnitShaft
+from rigdesign.rexs.model import printable
 
 SIDES = ("front", "rear")
 ALIKE = ("shaft", "teeth", "normal_module", "pressure_angle", "face_width", "profile_shift")

@@ -11,8 +11,7 @@ from math import cos, fsum
 from typing import Literal
 
 from rigdesign.rexs.attribute_log import AttributeLog
-from rigdesign.rexs.model import AttributeValueError, Component, RexsModel
-from rigdesign.rexs.versions import before_1_1
+from rigdesign.rexs.model import AttributeValueError, Component, RexsModel, before_1_1
 
 Vector = tuple[float, float, float]
 

@@ -23,8 +23,7 @@ from rigdesign.rexs.gear_unit import (
     read_meshes,
     shaft_of,
 )
-from rigdesign.rexs.model import Component, RexsModel
-from rigdesign.rexs.versions import ROLLING_BEARINGS, Renaming, in_newest_names
+from rigdesign.rexs.model import ROLLING_BEARINGS, Component, Renaming, RexsModel, in_newest_names
 
 # Bearings and couplings: what they join, where, and what the file says of them.
 

@@ -7,10 +7,11 @@ from base64 import b64decode
 from collections.abc import Mapping
 from typing import Any, NoReturn, get_args
 
-from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList, check_model, check_version, printable
 from rigdesign.rexs.model import (
+    EXPORT_AGAIN,
     Attribute,
     Component,
+    FaultList,
     LoadCase,
     LoadSpectrum,
     Relation,
@@ -19,6 +20,9 @@ from rigdesign.rexs.model import (
     Scalar,
     Value,
     ValueKind,
+    check_model,
+    check_version,
+    printable,
 )
 
 _KINDS: Mapping[str, ValueKind] = {

@@ -10,17 +10,21 @@ from zipfile import BadZipFile, ZipFile, ZipInfo
 from rigdesign.base.errors import UsageError
 from rigdesign.base.files import foreign, read_regular
 from rigdesign.rexs.external_parts import with_external_parts
-from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList, check_model, check_version, printable
 from rigdesign.rexs.json_reader import CodedNumbersError, coded_array, coded_matrix, parse_json
 from rigdesign.rexs.model import (
+    EXPORT_AGAIN,
     Attribute,
     Component,
+    FaultList,
     LoadCase,
     LoadSpectrum,
     Relation,
     RexsModel,
     RoleReference,
     Value,
+    check_model,
+    check_version,
+    printable,
 )
 
 _WIDE_STARTS = (b"\xff\xfe", b"\xfe\xff")

@@ -11,9 +11,9 @@ from rigdesign.case.model import Case
 from rigdesign.case.source import CASE_FILE
 from rigdesign.rexs.attribute_log import ListedAttribute, MappedAttribute
 from rigdesign.rexs.case_tables import LIKE_THE_TEST, case_tables
-from rigdesign.rexs.faults import printable
 from rigdesign.rexs.gear_stage import CaseTable, Entry, chosen_stage, left_out, toml_text
 from rigdesign.rexs.gear_unit_import import LEFT_OVER, GearUnitImport, import_gear_unit
+from rigdesign.rexs.model import printable
 from rigdesign.rexs.reader import read_rexs
 
 OTHER_PART = "of another stage, or a value that the case works out itself"

@@ -17,7 +17,7 @@ from dynamics.rotor.assembly import ElasticModel, assemble_rig
 from dynamics.rotor.bearing_state import BearingCoefficients, isotropic_bearing
 from dynamics.rotor.craig_bampton import SeenRig, mesh_ports
 from dynamics.rotor.graph import Drivetrain
-from dynamics.rotor.power_loop import speed_ratios
+from dynamics.rotor.parts import speed_ratios
 from dynamics.rotor.reduction import ReducedElasticRig, port_rows_of, reduce_rig
 from dynamics.rotor.rotor_model import (
     AxialLocation,

@@ -87,7 +87,7 @@ def _pinion_shift(box: Gearbox, mesh: GearMesh) -> float | None:
     pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
     if pinion.profile_shift is not None or wheel.profile_shift is None:
         return pinion.profile_shift
-    from dynamics.gear.line_of_action import shift_sum
+    from dynamics.gear.pair_geometry import shift_sum
 
     total = shift_sum(
         mesh.normal_module,

@@ -10,9 +10,9 @@ from thermal.conditions.boundary import Film
 from thermal.conditions.contact import Contact
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
-from thermal.films.air import air
 from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
 from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw
+from thermal.films.still import air
 from thermal.housing.housing_surfaces import FOOT, SEAT
 
 FOOT_CONTACT = "foot_contact"

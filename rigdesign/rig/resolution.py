@@ -7,7 +7,7 @@ wave, are not followed. Of shafts that bend the modes above 1.25 times that freq
 effect at bearings, gears and couplings alone: it moves K_V by 1.6e-3 on the prototype, 2.6e-4 on the main rig
 (``tests/verification/test_elastic_resolution``). Slices are the rule of ``dynamics.tooth.mesh_laws.default_slices``.
 The case may state element length and slices; what either leaves open stands with the checks
-(`rigdesign.run.load_convergence`).
+(`rigdesign.run.mesh_convergence`).
 """
 
 import math
@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from dynamics.rotor import power_loop
+from dynamics.rotor import parts as power_loop
 from dynamics.rotor.graph import Drivetrain
 from dynamics.rotor.shaft import Shaft
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dynamics.losses.windage import Mist, disc_coefficient, shaft_windage
 from rigdesign.base.errors import CaseError
 from rigdesign.base.units import celsius, refuse, require_above, require_at_least, require_share, show
-from thermal.films.air import air
+from thermal.films.still import air
 
 # Loss of a machine over speed and torque of its output shaft: constant efficiency, or a measured map.
 

@@ -54,11 +54,11 @@ from rigdesign.results.serialisation.lateral import lateral_row
 from rigdesign.results.serialisation.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
-from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import (
     BackgroundMeshing,
     discretisation,
     law_spreads,
+    load_errors,
     looping_rig,
     on_mesh,
 )

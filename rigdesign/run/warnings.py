@@ -34,7 +34,7 @@ from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
-from rigdesign.run.load_convergence import missing_load_errors
+from rigdesign.run.mesh_convergence import missing_load_errors
 from thermal.conditions.boundary import Film, Radiation
 from thermal.conduction.condition_checks import assumed_difference, audit_conditions, radiation_too_small
 

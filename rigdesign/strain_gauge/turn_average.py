@@ -188,7 +188,8 @@ def _centroid(angle: Array, strain: Array) -> float:
 
 # Rolling angle over time: at constant speed, from a recorded speed, and the turns until the same teeth meet again.
 #
-# Index pulses, tooth-passing pulses and encoders: ``rigdesign.measurement.reading.tach``, whose ``TurnAngle.at`` is a
+# Index pulses, tooth-passing pulses and encoders: ``rigdesign.measurement.reading.signals``, whose ``TurnAngle.at`` is
+# a
 # `RollingAngle` as those of this module are.
 
 RollingAngle = Callable[[Array], Array]

@@ -17,10 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.vibration.command import DragCurve
-from dynamics.vibration.envelopes import EnvelopeWindows
 from dynamics.vibration.propagator import SectionEnvelopes
 from dynamics.vibration.response_curve import ResponseCurve
-from dynamics.vibration.time_response import TimeResponse
+from dynamics.vibration.time_response import EnvelopeWindows, TimeResponse
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.located_loss import drag_shafts
 from rigdesign.coupling.time_run import drag_curves, schedule_of, torque_limits

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from dynamics.rotor.graph import TorqueSection
-from dynamics.vibration.envelopes import EnvelopeWindows
 from dynamics.vibration.propagator import SectionEnvelopes
+from dynamics.vibration.time_response import EnvelopeWindows
 from rigdesign.coupling.time_run import schedule_of, stage_names
 from rigdesign.postprocessing.curves import Curves
 from rigdesign.postprocessing.dynamics import DynamicRun

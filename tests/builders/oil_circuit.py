@@ -3,8 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from rigdesign.oil_circuit.circuit import Circuit, SupplyLine
-from rigdesign.oil_circuit.parts import Consumer, Coolant, Cooler, RatedPoint, Tank
+from rigdesign.oil_circuit.circuit import Circuit, Consumer, Coolant, Cooler, RatedPoint, SupplyLine, Tank
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699, Oil
 from tests.builders.paths import CASES
 

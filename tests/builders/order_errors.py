@@ -1,7 +1,6 @@
 """Orders of torque by deviation response, held against all contacts followed over the hunting cycle."""
 
-from rigdesign.prediction.order_motion import CycleMotion, exact_motion, ideal_response
-from rigdesign.prediction.orders import PointOrders
+from rigdesign.prediction.order_motion import CycleMotion, PointOrders, exact_motion, ideal_response
 from tests.builders.order import BracedCase, changed, channels, settled
 
 TABLES = 3e-5

@@ -12,10 +12,9 @@ twist has it, and the pinion at its front end.
 
 from math import radians
 
-from dynamics.gear.line_of_action import shift_sum
 from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
+from dynamics.gear.pair_geometry import TipShortening, shift_sum
 
 TWIST = 160e-6
 PINION = Microgeometry(lead_crowning=3e-6, helix_slope=-10e-6)

@@ -16,8 +16,7 @@ from dynamics.rotor.graph import assemble
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import MeshLaw
-from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.tooth.stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law, pair_stiffness
 from dynamics.vibration.initial_state import wound_state
 from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.vibration.time_integration import TimeMarch

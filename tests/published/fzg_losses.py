@@ -20,7 +20,7 @@ from dynamics.tooth.friction import (
     ohlendorf_factor,
     tooth_loss_factor,
 )
-from dynamics.tooth.stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import pair_stiffness
 from tests.published.rows import Gate, Goal, PublishedQuantity, ValidationRow, compare
 
 GEARPIE = "GEARpie (C. Fernandes, University of Porto), printed report"

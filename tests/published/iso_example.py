@@ -11,9 +11,14 @@ from math import pi, radians
 
 from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
-from dynamics.rating.flank_contact import ContactFactors, FlankLoad
+from dynamics.rating.flank_contact import (
+    ContactFactors,
+    FlankLoad,
+    FlankMaterials,
+    pitting,
+    transverse_load_factor,
+)
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, mesh_data
-from dynamics.rating.pitting import FlankMaterials, pitting, transverse_load_factor
 from dynamics.standards import iso6336_3_2006
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, compare, compare_printed

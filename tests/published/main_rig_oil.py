@@ -9,7 +9,7 @@ of a single circuit and no pump.
 from collections.abc import Iterator
 
 from rigdesign.base.units import ZERO_CELSIUS
-from rigdesign.oil_circuit.parts import Pump
+from rigdesign.oil_circuit.circuit import Pump
 from rigdesign.properties.oil import MIL_PRF_23699
 from tests.published.rows import PublishedQuantity, ValidationRow, compare
 

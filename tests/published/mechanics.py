@@ -11,8 +11,7 @@ from dynamics.rotor.linear_system import LinearSystem, line_shapes, modal_form
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import PackedMeshes, evaluate_mesh, pack_meshes
-from dynamics.vibration.harmonic_balance import solve_periodic
-from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
+from dynamics.vibration.harmonic_balance import BalanceProblem, HarmonicGrid, HarmonicSolution, solve_periodic
 from dynamics.vibration.response_curve import waveform
 from dynamics.vibration.steady_motion import TimeSettings, periodic_by_time
 from rigdesign.rig.model import Rig

@@ -5,7 +5,7 @@ from skfem.helpers import eye, sym_grad
 
 from thermal.expansion.elastic import ElasticSetup
 from thermal.fe.arrays import FloatArray, IndexArray
-from thermal.fe.bases import VECTOR
+from thermal.fe.elements import VECTOR
 from thermal.fe.reference_elements import QuadratureRule
 from thermal.forms import lame, stress
 

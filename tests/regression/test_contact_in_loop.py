@@ -5,8 +5,8 @@ from functools import cache
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.run.load_convergence import TABLES_LEAVE_OUT
 from rigdesign.run.main import solve_case
+from rigdesign.run.mesh_convergence import TABLES_LEAVE_OUT
 from tests.builders.paths import CASES
 from tests.contact_in_loop.rig import LoopedContact, contact_in_loop
 

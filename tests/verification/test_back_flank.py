@@ -23,8 +23,8 @@ from dynamics.tooth.mesh_laws import (
     MeshPosition,
     alike_teeth,
     mesh_law,
+    pair_stiffness,
 )
-from dynamics.tooth.stiffness import pair_stiffness
 
 PAIR = GearPair.from_centre_distance(
     normal_module=4.5e-3,

@@ -15,9 +15,8 @@ from dynamics.errors import DynamicsNotConverged
 from dynamics.rotor.graph import assemble
 from dynamics.rotor.linear_system import modal_form
 from dynamics.rotor.static_loop import LoopLoad, port_model
-from dynamics.vibration.harmonic_balance import solve_periodic
+from dynamics.vibration.harmonic_balance import BalanceProblem, HarmonicGrid, HarmonicSolution, solve_periodic
 from dynamics.vibration.harmonic_branches import CRAWLING, BranchTrace, SpeedProblem, instability
-from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.vibration.response_curve import Method, ResponseCurve, waveform
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from dynamics.vibration.steady_motion import periodic_by_time

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.orders import PointOrders
+from rigdesign.prediction.order_motion import PointOrders
 from tests.builders.order import changed, channels, settled
 from tests.builders.order_errors import followed, order_errors
 

@@ -21,8 +21,7 @@ from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.contact_table import contact_tables
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh, evaluate_table
-from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.tooth.stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law, pair_stiffness
 from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from tests.builders.mesh import chain

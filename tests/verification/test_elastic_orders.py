@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from dynamics.vibration.section_torque import section_torques
+from dynamics.vibration.response_curve import section_torques
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.coupling.preloaded_loop import periodic_laws, respond, shifted_laws
 from rigdesign.prediction.full import like
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.orders import shaft_orders
+from rigdesign.prediction.order_motion import shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.builders.order import changed, channels, settled
 from tests.builders.order_errors import order_errors

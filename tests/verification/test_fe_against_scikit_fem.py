@@ -13,8 +13,7 @@ from scipy import sparse
 
 from thermal import forms
 from thermal.conduction.capacity import HeatCapacity, VariableConduction
-from thermal.fe.bases import LINEAR, VECTOR
-from thermal.fe.elements import FiniteElements
+from thermal.fe.elements import LINEAR, VECTOR, FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, named_mesh
 from thermal.films.law import STEFAN_BOLTZMANN
 

@@ -161,7 +161,7 @@ def test_vdi_exponent_is_not_the_one_of_the_library() -> None:
     """f2 lowers the Rayleigh number; ht 1.2.0 raises it, and gets 1.84 times the coefficient in air."""
     from ht.conv_free_immersed import Nu_horizontal_plate_VDI
 
-    from thermal.films.air import air
+    from thermal.films.still import air
 
     gas = air(AMBIENT + 50.0)
     length = 1.6 * 4.0 / 11.2
@@ -175,7 +175,7 @@ def test_vdi_exponent_is_not_the_one_of_the_library() -> None:
 
 def test_disc_mean_joins_laminar_and_turbulent() -> None:
     """By hand at 90 degC and Re = 1e6: x = 0.5, Nu = 0.36*1000*0.25 + 0.015*63096*(1 - 0.165) = 880."""
-    from thermal.films.air import air
+    from thermal.films.still import air
 
     gas = air(90.0 + ZERO)
     radius = 0.1

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.rating import micropitting, pitting, scuffing
+from dynamics.rating import flank_contact as pitting
+from dynamics.rating import micropitting, scuffing
 from dynamics.rating.flank_contact import ContactFactors, FlankContact, FlankLoad
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.standards import iso_ts_6336_20_2017 as ts20

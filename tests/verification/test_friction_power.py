@@ -9,8 +9,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.losses.loss import mesh_loss
 from dynamics.tooth.friction import GivenFriction, ToothPath, friction_coefficient
 from dynamics.tooth.mesh_force import evaluate_mesh, tooth_forces
-from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law
-from dynamics.tooth.stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law, pair_stiffness
 from tests.builders.p2_gears import helical_pair, spur_pair
 
 OMEGA = 12000 * math.pi / 30

@@ -17,8 +17,7 @@ from dynamics.tooth.elastic_pair import ElasticPair, influence_law
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_cycle import MeshCycle
 from dynamics.tooth.mesh_force import StaticCycle, static_cycle
-from dynamics.tooth.mesh_laws import ContactDiscretisation, mesh_law
-from dynamics.tooth.stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import ContactDiscretisation, mesh_law, pair_stiffness
 from tests.builders.elastic_pairs import coarse_gears, equal_helical_pair, loaded, plane_gears
 from tests.builders.loaded_mesh import gap_of
 from tests.reference.tooth_contact import tables

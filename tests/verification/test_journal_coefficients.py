@@ -13,14 +13,14 @@ import pytest
 
 from dynamics.kernels.journal import short_bearing_load
 from dynamics.rotor.bearing import LateralCoefficients, LateralOperation
-from dynamics.rotor.journal_feed import film_arcs
-from dynamics.rotor.journal_film import film_grid, short_bearing_attitude, solve_arc, solve_film
-from dynamics.rotor.journal_lateral import (
+from dynamics.rotor.journal import (
     RunningFilm,
     coefficient_table,
     film_coefficients,
     journal_lateral,
 )
+from dynamics.rotor.journal_feed import film_arcs
+from dynamics.rotor.journal_film import film_grid, short_bearing_attitude, solve_arc, solve_film
 from tests.builders.rotor_stability import rotor_stability, threshold_speed
 
 # J. W. Lund, K. K. Thomsen, A calculation method and data for the dynamic coefficients of oil-lubricated journal

@@ -5,7 +5,7 @@ import pytest
 
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.tooth.compliance import EdgeModel
-from dynamics.tooth.stiffness import pair_stiffness, single_pair_stiffness
+from dynamics.tooth.mesh_laws import pair_stiffness, single_pair_stiffness
 from tests.builders.loaded_mesh import equal_gears, fzg_c, sliced_mesh
 from tests.builders.p2_gears import helical_pair, spur_pair
 

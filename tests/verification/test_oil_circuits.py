@@ -10,9 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from rigdesign.oil_circuit.circuit import Circuit
+from rigdesign.oil_circuit.circuit import Circuit, Cooler, Heater, Pipe, Pump
 from rigdesign.oil_circuit.line_balance import consumer_return
-from rigdesign.oil_circuit.parts import Cooler, Heater, Pipe, Pump
 from rigdesign.oil_circuit.state import CircuitState
 from rigdesign.properties.oil import FVA_3
 from tests.builders.circuit_history import circuit_history

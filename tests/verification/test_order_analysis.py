@@ -13,8 +13,7 @@ import pytest
 from rigdesign.measurement.processing.features import gain
 from rigdesign.measurement.processing.recorded import signal_orders
 from rigdesign.measurement.reading.measurement_set import Tach, Transfer
-from rigdesign.measurement.reading.signals import Signal
-from rigdesign.measurement.reading.tach import TachError, pulse_counts, rising_edges, turn_angle
+from rigdesign.measurement.reading.signals import Signal, TachError, pulse_counts, rising_edges, turn_angle
 
 RATE = 20_000.0
 CYCLE = 25

@@ -8,8 +8,7 @@ to" the 390 kW. P2 names no oil, no flow of a single circuit and no pump.
 
 import pytest
 
-from rigdesign.oil_circuit.circuit import Circuit, SupplyLine
-from rigdesign.oil_circuit.parts import Consumer, Coolant, Cooler, Pump, Tank
+from rigdesign.oil_circuit.circuit import Circuit, Consumer, Coolant, Cooler, Pump, SupplyLine, Tank
 from rigdesign.oil_circuit.steady import SteadyCircuit, steady_circuit
 from rigdesign.properties.oil import MIL_PRF_23699, OILS
 from rigdesign.rig_heat.component import Room, room_balance

@@ -14,8 +14,7 @@ from tests.builders.expansion import IRON, STEEL, geometry
 from tests.builders.paths import CASES
 from thermal import forms
 from thermal.expansion.elastic import CondensedSeats, condense_seats
-from thermal.fe.bases import VECTOR
-from thermal.fe.elements import FiniteElements
+from thermal.fe.elements import VECTOR, FiniteElements
 from thermal.housing.gearbox import build_gearbox
 from thermal.housing.stations import GearboxModel
 

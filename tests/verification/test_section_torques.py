@@ -14,8 +14,7 @@ from dynamics.rotor.reduction import reduce_rig
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
-from dynamics.vibration.response_curve import CurvePoint
-from dynamics.vibration.section_torque import section_torques
+from dynamics.vibration.response_curve import CurvePoint, section_torques
 from dynamics.vibration.speed_sweep import periodic_response
 from dynamics.vibration.steady_motion import Motion
 from tests.builders.elastic_rig import bearings, prototype_rig, running

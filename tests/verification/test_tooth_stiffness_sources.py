@@ -14,7 +14,7 @@ from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
-from dynamics.tooth.stiffness import pair_stiffness, single_pair_stiffness
+from dynamics.tooth.mesh_laws import pair_stiffness, single_pair_stiffness
 
 UHCF = {
     "normal_module": 1e-3,

@@ -10,6 +10,7 @@ axis runs through the middle of the bores.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -20,11 +21,17 @@ from thermal.expansion.alignment import (
     SealExpansion,
     ShaftAxis,
     ShaftExpansion,
+    concentric_gap_change,
+    free_expansion,
+    length_mean,
+    misalignment,
+    roundness,
+    shaft_axis,
 )
-from thermal.expansion.deformed_geometry import DeformedGeometry
-from thermal.expansion.elastic import ElasticError, Known
-from thermal.expansion.setup import ExpansionSetup
+from thermal.expansion.elastic import ElasticError, Known, rigid_motion
+from thermal.expansion.setup import ROUND, CylinderMotion, ExpansionSetup, axial_range
 from thermal.fe.mesh import FloatArray
+from thermal.housing.stations import BearingStation, GearStation, Point, SealStation, ShaftStation
 
 __all__ = ["Expansion", "ExpansionSetup", "expand"]
 
@@ -190,3 +197,198 @@ def _patterns(rises: FloatArray, limit: float) -> tuple[FloatArray, float]:
         patterns = np.vstack([patterns, pattern])
         left -= np.outer(left @ pattern, pattern)
     return patterns, float(np.abs(left).max(initial=0.0))
+
+
+# The hot gearbox: shafts placed in their bearings, clearances read from the displacement field.
+
+
+class DeformedGeometry:
+    """Places the shafts and reads clearances from one displacement field."""
+
+    def __init__(
+        self, setup: ExpansionSetup, temperature: FloatArray, reference: float, displacement: FloatArray
+    ) -> None:
+        self.setup = setup
+        self.model = setup.model
+        self.points = setup.model.mesh.points
+        self.surfaces = setup.elements.surfaces
+        self.temperature = temperature
+        self.reference = reference
+        self.strain = setup.elastic.free_strain(temperature, reference)
+        self.displacement = displacement.copy()
+        self._place_housing()
+        self.bores = {b.name: self._motion(b.bore_surface, b.centre) for b in self.model.bearings}
+        self.axes = {shaft.name: self._axis(shaft.name) for shaft in self.model.shafts}
+        for shaft in self.model.shafts:
+            self._place_shaft(shaft)
+
+    def _motion(self, surface: str, centre: Point) -> CylinderMotion:
+        return self.setup.cylinder(surface, centre).motion(self.displacement, self.strain)
+
+    def _place_housing(self) -> None:
+        """Take out the mean shift and rotation of the foot; what stands in a foot joint follows its seat."""
+        centre, shift, rotation = self._rigid(self.model.foot_surface)
+        self._move(self.setup.housing, centre, -shift, -rotation)
+        joint, standing = self.model.joint, self.setup.standing
+        if joint is not None and standing is not None:
+            _, shift, rotation = self._rigid(joint.foot_surface)
+            centre, to, turn = self._rigid(joint.seat_surface)
+            self._move(standing, centre, to - shift, turn - rotation)
+
+    def _rigid(self, surface: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Centre, mean shift [m] and rotation [rad] of a surface."""
+        face = self.surfaces[surface]
+        at = face.at_points(self.points).reshape(-1, 3)
+        moved = face.at_points(self.displacement).reshape(-1, 3)
+        return rigid_motion(at, moved, face.weights.ravel())
+
+    def _move(self, piece: int, centre: FloatArray, shift: FloatArray, rotation: FloatArray) -> None:
+        """Add a small rigid motion about ``centre`` to one piece."""
+        nodes = np.flatnonzero(self.setup.elements.piece_of_node == piece)
+        self.displacement[nodes] += shift + np.cross(rotation, self.points[nodes] - centre)
+
+    def _bearings(self, shaft: str) -> list[BearingStation]:
+        return [b for b in self.model.bearings if b.shaft == shaft]
+
+    def _place_shaft(self, shaft: ShaftStation) -> None:
+        """Move a shaft and what shares its nodes until its axis passes through its bore centres."""
+        locating = self.setup.locating[shaft.name]
+        bearings = self._bearings(shaft.name)
+        gaps, turn = [], 0.0
+        for bearing in bearings:
+            journal = self._motion(bearing.journal_surface, bearing.centre)
+            gaps.append(np.subtract(self.bores[bearing.name].shift, journal.shift))
+            if bearing is locating:
+                turn = journal.turn
+        gap = shaft_axis(
+            shaft.name, [b.centre[0] for b in bearings], [(float(y), float(z)) for _, y, z in gaps]
+        )
+        shift = np.array([gaps[bearings.index(locating)][0], *gap.shift(locating.centre[0])])
+        rotation = np.array([-turn, -gap.slope[1], gap.slope[0]])
+        self._move(self.setup.piece[shaft.name], np.array(locating.centre), shift, rotation)
+
+    def bearing(self, station: BearingStation) -> BearingExpansion:
+        """Read one bearing."""
+        bore = self.bores[station.name]
+        journal = self._motion(station.journal_surface, station.centre)
+        first, last = axial_range(self.surfaces[station.bore_surface], self.points)
+        places = (first, 0.5 * (first + last), last)
+        return BearingExpansion(
+            name=station.name,
+            bore_shift=bore.shift,
+            bore_expansion=2.0 * bore.radius_expansion,
+            bore_ovality=bore.ovality,
+            bore_roundness=roundness(ROUND, self._radial(station.bore_surface, station.centre, *places)),
+            bore_tilt=bore.tilt,
+            misalignment=misalignment(self.axes[station.shaft], bore.tilt),
+            journal_expansion=2.0 * journal.radius_expansion,
+        )
+
+    def _radial(self, surface: str, centre: Point, *places: float) -> FloatArray:
+        """(len(places), n) radial displacement [m] of a cylinder at the angles `ROUND` in sections x [m]."""
+        sections = (self.setup.section(surface, centre, x) for x in places)
+        return np.array([section.radial(self.displacement, self.strain) for section in sections])
+
+    def seal(self, station: SealStation) -> SealExpansion:
+        """Read one seal: bore minus shaft at fixed angles in three sections."""
+        bore, shaft = self.surfaces[station.bore_surface], self.surfaces[station.shaft_surface]
+        ranges = np.array([axial_range(bore, self.points), axial_range(shaft, self.points)])
+        first, last = float(ranges[:, 0].max()), float(ranges[:, 1].min())
+        if last <= first:
+            raise ElasticError(
+                f"seal {station.name!r}: bore and shaft surface do not face each other along x"
+            )
+        places = (first, 0.5 * (first + last), last)
+        gaps = (
+            station.radial_gap
+            + self._radial(station.bore_surface, station.centre, *places)
+            - self._radial(station.shaft_surface, station.centre, *places)
+        )
+        axial = (
+            self._motion(station.shaft_surface, station.centre).shift[0]
+            - self._motion(station.bore_surface, station.centre).shift[0]
+        )
+        by_hand = concentric_gap_change(
+            0.5 * station.shaft_diameter,
+            (self.setup.expansion_of(station.bore_surface), bore.mean(self.temperature)),
+            (self.setup.expansion_of(station.shaft_surface), shaft.mean(self.temperature)),
+            self.reference,
+        )
+        return SealExpansion(
+            name=station.name,
+            undeformed_gap=station.radial_gap,
+            angles=ROUND,
+            gaps=gaps,
+            axial_shift=axial,
+            gap_by_hand=station.radial_gap + by_hand,
+        )
+
+    def shaft(self, station: ShaftStation) -> ShaftExpansion:
+        """Read the lengthening of one shaft."""
+        locating = self.setup.locating[station.name]
+        datum = self._motion(locating.journal_surface, locating.centre).shift[0]
+        others = [b for b in self._bearings(station.name) if b is not locating]
+        shaft = housing = 0.0
+        if others:
+            far = max(others, key=lambda b: abs(b.centre[0] - locating.centre[0]))
+            sign = np.sign(far.centre[0] - locating.centre[0])
+            shaft = float(sign * (self._motion(far.journal_surface, far.centre).shift[0] - datum))
+            housing = float(sign * (self.bores[far.name].shift[0] - self.bores[locating.name].shift[0]))
+        alpha = self.setup.elastic.elastic[station.body].expansion
+        by_hand = []
+        for end in (station.start, station.end):
+            mean = length_mean(self.setup.elements, self.temperature, station.body, locating.centre[0], end)
+            by_hand.append(free_expansion(alpha, abs(end - locating.centre[0]), mean, self.reference))
+        return ShaftExpansion(
+            name=station.name,
+            start=datum - self._axial(station.start_surface),
+            end=self._axial(station.end_surface) - datum,
+            datum=datum,
+            start_by_hand=by_hand[0],
+            end_by_hand=by_hand[1],
+            between_bearings=shaft,
+            housing_between_bearings=housing,
+        )
+
+    def gear(self, station: GearStation) -> GearExpansion:
+        """Read one gear body."""
+        return GearExpansion(
+            name=station.name,
+            bulk_temperature=self.setup.elements.body_mean(self.temperature, station.body),
+            rim_expansion=self._motion(station.rim_surface, station.centre).radius_expansion,
+        )
+
+    def centre_distances(self) -> tuple[CentreDistance, ...]:
+        """Read the axes of all pairs of gears that face each other."""
+        found = []
+        for a, b in combinations(self.model.gears, 2):
+            overlap = 0.5 * (a.face_width + b.face_width) - abs(a.centre[0] - b.centre[0])
+            if a.shaft != b.shaft and overlap > 0.0:
+                found.append(self._centre_distance(a, b))
+        return tuple(found)
+
+    def _centre_distance(self, a: GearStation, b: GearStation) -> CentreDistance:
+        plane = 0.5 * (a.centre[0] + b.centre[0])
+        axis_a, axis_b = self.axes[a.shaft], self.axes[b.shaft]
+        undeformed = np.subtract(b.centre, a.centre)[1:]
+        distance = float(np.hypot(*undeformed))
+        along = undeformed / distance
+        opening = np.subtract(axis_b.slope, axis_a.slope)
+        apart = np.subtract(axis_b.shift(plane), axis_a.shift(plane))
+        return CentreDistance(
+            gear_a=a.name,
+            gear_b=b.name,
+            undeformed=distance,
+            hot=float(np.hypot(*(undeformed + apart))),
+            inclination=float(opening @ along),
+            skew=float(along[0] * opening[1] - along[1] * opening[0]),
+        )
+
+    def _axis(self, shaft: str) -> ShaftAxis:
+        """Hot axis of a shaft, from its bore centres."""
+        bearings = self._bearings(shaft)
+        shifts = [self.bores[b.name].shift for b in bearings]
+        return shaft_axis(shaft, [b.centre[0] for b in bearings], [(y, z) for _, y, z in shifts])
+
+    def _axial(self, surface: str) -> float:
+        return self.surfaces[surface].mean(self.displacement[:, 0])

@@ -6,7 +6,7 @@ expansion 3 ms and 0.28 s; on 370,000 nodes the geometry of all surfaces takes 0
 
 Each row of the matrix gathers from the cells around its node, so rows are independent of each other, every
 sum has one order, and the result does not depend on the number of threads (NUMBA_NUM_THREADS). Everything
-here takes numbers and arrays; names and checks live in thermal.fe.levels and thermal.fe.elements.
+here takes numbers and arrays; names and checks live in thermal.fe.elements and thermal.fe.elements.
 
 Index names: row = node, e = cell, a b = local nodes, q = quadrature point, i j k = directions.
 """

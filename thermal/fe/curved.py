@@ -11,8 +11,7 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe.arrays import FloatArray, IndexArray
-from thermal.fe.elements import FiniteElements
-from thermal.fe.levels import Level
+from thermal.fe.elements import FiniteElements, Level
 
 BENT = 0.5
 """Distance of a node from the middle of its corners, relative to the thickness of its cell, above which the

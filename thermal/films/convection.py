@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from thermal.films.air import Air, air
 from thermal.films.law import (
     Correlation,
     FilmCoefficient,
@@ -22,6 +21,8 @@ from thermal.films.law import (
 )
 from thermal.films.still import (
     GRAVITY,
+    Air,
+    air,
     horizontal_cylinder_churchill_chu,
     horizontal_plate_mcadams,
     horizontal_plate_rohsenow,
@@ -251,7 +252,7 @@ def forced_air_plate(velocity: float, length: float, height: float) -> FilmLaw:
             Nu_horizontal_plate_turbulent_Schlichting,
         )
 
-        from thermal.films.air import air
+        from thermal.films.still import air
 
         still = free(wall, fluid)
         gas = air(0.5 * (wall + fluid))

@@ -51,16 +51,17 @@ from thermal.housing.housing_surfaces import (
     housing_faces,
     surface_names,
 )
-from thermal.housing.meshing import Component, mesh_component
 from thermal.housing.shaft_geometry import EndBearing, GearDisc, GeometryError, ShaftGeometry
 from thermal.housing.shaft_surfaces import shaft_faces
 from thermal.housing.solids import (
+    Component,
     MeshSizes,
     bend_axes,
     draw_field,
     draw_housing,
     draw_shaft,
     housing_size,
+    mesh_component,
     shaft_size,
 )
 from thermal.housing.stations import (

@@ -6,18 +6,24 @@ second stands behind it: its shafts start at the coupling; that of the wheel goe
 
 import math
 
-from rigdesign.case.defaults.parts import (
+from rigdesign.case.defaults.rule import (
+    Filling,
+    RawTree,
+    RuleBook,
+    around,
+    assumed,
     bearing_bores,
     bearing_distance,
     bearings_on,
+    follows,
     gear_on,
+    millimetres,
     normal_module,
     only_mesh,
     shaft_diameter,
     shaft_of,
     shafts_of,
 )
-from rigdesign.case.defaults.rule import Filling, RawTree, RuleBook, around, assumed, follows, millimetres
 
 book = RuleBook()
 STEEL = 7850.0

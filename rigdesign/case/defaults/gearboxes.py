@@ -1,8 +1,15 @@
 """Defaults of gears, meshes, their oil, bearings and seals."""
 
-from rigdesign.case.defaults.parts import (
+from rigdesign.case.defaults.rule import (
+    Filling,
+    RawTree,
+    RuleBook,
+    around,
+    assumed,
     bearing_bore,
     bearing_width,
+    follows,
+    millimetres,
     normal_module,
     only_mesh,
     root_diameter,
@@ -12,7 +19,6 @@ from rigdesign.case.defaults.parts import (
     shafts_of,
     tabled,
 )
-from rigdesign.case.defaults.rule import Filling, RawTree, RuleBook, around, assumed, follows, millimetres
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 
 book = RuleBook()

@@ -3,23 +3,21 @@
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.case.defaults.parts import (
-    bearing_width,
-    bearings_on,
-    gear_on,
-    inner_length,
-    only_mesh,
-    shaft_diameter,
-    shafts_of,
-)
 from rigdesign.case.defaults.rule import (
     Filling,
     RawTree,
     RuleBook,
     around,
     assumed,
+    bearing_width,
+    bearings_on,
     follows,
+    gear_on,
+    inner_length,
     millimetres,
+    only_mesh,
+    shaft_diameter,
+    shafts_of,
     with_marks,
 )
 from rigdesign.case.films import matched

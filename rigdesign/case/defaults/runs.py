@@ -4,8 +4,16 @@ import math
 from dataclasses import dataclass
 
 from rigdesign.case.defaults.drivetrains import run_up_time
-from rigdesign.case.defaults.parts import bearing_bore
-from rigdesign.case.defaults.rule import Filling, Given, RawTree, RuleBook, around, assumed, follows
+from rigdesign.case.defaults.rule import (
+    Filling,
+    Given,
+    RawTree,
+    RuleBook,
+    around,
+    assumed,
+    bearing_bore,
+    follows,
+)
 from rigdesign.case.rotation import shaft_senses
 
 book = RuleBook()

@@ -240,7 +240,7 @@ def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") ->
             'write profile_shift for one of the two gears or for both, or profile_shift_split = "equal"',
         )  # fmt: skip
     from dynamics.gear.cylindrical_gear import GearGeometryError
-    from dynamics.gear.line_of_action import shift_sum
+    from dynamics.gear.pair_geometry import shift_sum
 
     try:
         total = shift_sum(

@@ -8,7 +8,7 @@ from rigdesign.base.units import show
 from rigdesign.case.circuit_parts import oil_circuit
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.geometry import pitch_diameters
-from rigdesign.case.oil_circuits import STREAM_KEYS
+from rigdesign.case.lubrication import STREAM_KEYS
 from rigdesign.properties.oil import OILS
 
 if TYPE_CHECKING:

@@ -52,7 +52,7 @@ def explain(
         found = explain_check(loaded, check, finished)
         print_json(asdict(found)) if json else print_check(found, case)
     elif path is not None:
-        from rigdesign.explanation.path import explain_path
+        from rigdesign.explanation.keys import explain_path
 
         key = explain_path(loaded, path)
         print_json(asdict(key)) if json else print_path(key)

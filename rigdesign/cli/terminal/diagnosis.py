@@ -27,7 +27,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     from rigdesign.diagnosis.decision.naming import formatted
     from rigdesign.diagnosis.document.advice import VERDICTS, certainty, headline, steps
     from rigdesign.diagnosis.document.document import sentences
-    from rigdesign.diagnosis.document.required import BEYOND, WITHIN, required_rows
+    from rigdesign.diagnosis.document.outcome import BEYOND, WITHIN, required_rows
 
     console = new_console()
     found, measurement = outcome.result.diagnosis, outcome.result.measurement

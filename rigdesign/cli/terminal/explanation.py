@@ -11,9 +11,8 @@ from rich.text import Text
 from rigdesign.cli.terminal.console import hanging, new_console
 from rigdesign.explanation.built_in import BuiltIn
 from rigdesign.explanation.check import CheckExplanation
-from rigdesign.explanation.keys import KeyEntry
+from rigdesign.explanation.keys import KeyEntry, PathExplanation, StatedValue
 from rigdesign.explanation.overview import Overview
-from rigdesign.explanation.path import PathExplanation, StatedValue
 from rigdesign.report.numbers import (
     cell_text,
     heading_text,

@@ -22,10 +22,8 @@ from rigdesign.diagnosis.decision.naming import Names, display_scale
 from rigdesign.diagnosis.statistics.columns import Array, numbered
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN
-from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence, release_of
+from rigdesign.diagnosis.statistics.evidence import JOIN, Evidence, Hypothesis, JointFit, release_of
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
-from rigdesign.diagnosis.statistics.intervals import JointFit
 
 # What single effects and sensor errors leave in the numbers, and which of them leave the same.
 

@@ -22,9 +22,8 @@ from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import SEEN, Detectability, aliases, detectabilities
-from rigdesign.diagnosis.statistics.evidence import Evidence, release_of
+from rigdesign.diagnosis.statistics.evidence import Evidence, JointFit, release_of
 from rigdesign.diagnosis.statistics.heldout import Gap
-from rigdesign.diagnosis.statistics.intervals import JointFit
 
 SURE = frozenset({"named", "alias_group"})
 """Verdicts that give names."""

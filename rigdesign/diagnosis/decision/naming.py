@@ -12,8 +12,7 @@ from math import atan2, exp, hypot, isfinite, log, pi
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
 from rigdesign.diagnosis.residual.hypotheses import UNKNOWN
 from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
-from rigdesign.diagnosis.statistics.evidence import Evidence
-from rigdesign.diagnosis.statistics.intervals import NORMAL_95, Size
+from rigdesign.diagnosis.statistics.evidence import NORMAL_95, Evidence, Size
 
 DIGITS = 6
 """Significant digits of a fitted size."""

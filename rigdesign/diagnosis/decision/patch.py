@@ -18,7 +18,7 @@ from rigdesign.case.provenance import is_marked
 from rigdesign.diagnosis.catalogue.effects import Changes, Effect
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.intervals import NORMAL_95
+from rigdesign.diagnosis.statistics.evidence import NORMAL_95
 from rigdesign.prediction.model import changed_case, written
 
 

@@ -22,8 +22,7 @@ from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.residual.sensors import SensorError
 from rigdesign.diagnosis.statistics.columns import Array, reference_scale
 from rigdesign.diagnosis.statistics.detectability import ALIAS, RequiredSize, ResidualMetric, straight
-from rigdesign.diagnosis.statistics.evidence import Evidence
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.next_measurement import (
     Foreseen,
     Proposal,

@@ -14,7 +14,7 @@ from rigdesign.diagnosis.decision.defaults import (
     Thresholds,
     WhitenedSquare,
 )
-from rigdesign.diagnosis.residual.healthy import relative_speed
+from rigdesign.diagnosis.residual.healthy import EXACT, Contest, Signature, relative_speed
 from rigdesign.diagnosis.residual.hypotheses import (
     ORDER_CAUSE,
     UNKNOWN,
@@ -24,19 +24,19 @@ from rigdesign.diagnosis.residual.hypotheses import (
     without_a_name,
 )
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
-from rigdesign.diagnosis.residual.signature import EXACT, Contest, Signature
 from rigdesign.diagnosis.statistics.columns import Array, Column, ModelError
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import ALIAS, REACHES, SEEN, Detectability, detectabilities
 from rigdesign.diagnosis.statistics.evidence import (
     JOIN,
     Evidence,
+    Hypothesis,
+    JointFit,
     evaluate_hypothesis,
     evaluate_pair,
+    fit_together,
     support,
 )
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
-from rigdesign.diagnosis.statistics.intervals import JointFit, fit_together
 from rigdesign.diagnosis.statistics.resonance import CloseModes
 
 # One evaluation of a residual: every explanation evaluated, the best of them joined in pairs, a verdict.

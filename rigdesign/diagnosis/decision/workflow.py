@@ -18,15 +18,14 @@ from rigdesign.diagnosis.decision.decision import mass_of_any, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration, Decision
 from rigdesign.diagnosis.decision.held_out_data import SURE, WORDS, Numbers, Suspicion, suspected
 from rigdesign.diagnosis.decision.search import Evaluation, Look, explanations_of, signature_of
-from rigdesign.diagnosis.residual.data_error import data_error
+from rigdesign.diagnosis.residual.healthy import Contest
+from rigdesign.diagnosis.residual.hypotheses import data_error
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, outliers_of
-from rigdesign.diagnosis.residual.signature import Contest
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import Detectability
-from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, JointFit, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import Gap, held_out
-from rigdesign.diagnosis.statistics.intervals import JointFit
 
 LEAST_RUNNING_POINTS = 3
 """Operating points below which nothing is named."""

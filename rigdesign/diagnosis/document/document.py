@@ -14,8 +14,7 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
-from rigdesign.diagnosis.document.outcome import Outcome
-from rigdesign.diagnosis.document.required import required_document
+from rigdesign.diagnosis.document.outcome import Outcome, required_document
 from rigdesign.diagnosis.residual.healthy import gauge_rows
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.detectability import Detectability

@@ -1,7 +1,7 @@
 """What is to be explained: readings less prediction, and the covariance of the residual of a healthy rig.
 
 What is left given a healthy set of the same rig is in `rigdesign.diagnosis.residual.baseline`. What the model answers
-wrongly to a right cause is evaluated with each cause (`rigdesign.diagnosis.residual.signature`).
+wrongly to a right cause is evaluated with each cause (`rigdesign.diagnosis.residual.healthy`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,7 +26,7 @@ from rigdesign.diagnosis.residual.sensors import (
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column, Turning, amplitudes_of, reference_scale
 from rigdesign.diagnosis.statistics.covariance import Covariance, Outlier, Whitened, reject
-from rigdesign.diagnosis.statistics.hypothesis import Curve
+from rigdesign.diagnosis.statistics.evidence import Curve
 from rigdesign.diagnosis.statistics.resonance import Resonances
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel, Feature

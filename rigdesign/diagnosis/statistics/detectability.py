@@ -9,8 +9,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
-from rigdesign.diagnosis.statistics.evidence import release_of
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, release_of
 
 SEEN = 3.3
 """Standard deviations at which a size is distinguished from nothing with 5 % error on both sides (1.645 + 1.645)."""

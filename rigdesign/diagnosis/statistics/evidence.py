@@ -11,15 +11,130 @@ Source: design of the workflow, step 6; the integrals are those of Bayesian mode
 J. Am. Stat. Assoc. 90, 1995, 773).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
+from scipy.interpolate import CubicSpline, PPoly
 from scipy.optimize import lsq_linear
 
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Release, Whitened
-from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
+
+# One explanation of a residual: what it claims, and how the numbers answer to its size.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """Answer of the numbers to one size, from runs of the model.
+
+    coordinates : (m,) sorted, zero among them; answers : (m, n) change of the features, whitened
+    """
+
+    coordinates: Array
+    answers: Array
+    bounds: tuple[float, float]
+
+    @classmethod
+    def of(
+        cls, coordinates: Array, answers: Array, bounds: tuple[float, float] = (-np.inf, np.inf)
+    ) -> "Curve":
+        """From runs in any order, (m,) and (m, n); it ends where its bounds or its runs end."""
+        order = np.argsort(coordinates)
+        ends = float(coordinates[order[0]]), float(coordinates[order[-1]])
+        return cls(
+            coordinates=coordinates[order],
+            answers=answers[order],
+            bounds=(max(bounds[0], ends[0]), min(bounds[1], ends[1])),
+        )
+
+    @property
+    def half(self) -> float:
+        """The wider side of the bounds."""
+        return max(abs(self.bounds[0]), abs(self.bounds[1]))
+
+    def at(self, coordinates: Array) -> Array:
+        """(k, n) answers between the runs."""
+        return np.asarray(self.shares(coordinates) @ self.answers)
+
+    def sensitivity(self, coordinate: float) -> Array:
+        """(n,) derivative by the coordinate."""
+        return np.asarray(self.slope_shares(coordinate) @ self.answers)
+
+    def shares(self, coordinates: Array) -> Array:
+        """(k, m) share of every run in the answers between them: a spline is linear in what it passes through."""
+        return np.asarray(_interpolation(tuple(self.coordinates.tolist()))(coordinates))
+
+    def slope_shares(self, coordinate: float) -> Array:
+        """(m,) the same of the derivative."""
+        step = 1e-3 * self.half
+        low, high = max(coordinate - step, self.bounds[0]), min(coordinate + step, self.bounds[1])
+        before, after = self.shares(np.array([low, high]))
+        return np.asarray((after - before) / (high - low))
+
+
+@lru_cache(maxsize=256)
+def _interpolation(coordinates: tuple[float, ...]) -> CubicSpline | PPoly:
+    """Coordinate (k,) -> (k, m) shares of the runs: a cubic spline, a straight line between two."""
+    if len(coordinates) > 2:
+        return CubicSpline(coordinates, np.eye(len(coordinates)))
+    low, high = coordinates
+    slopes = np.array([-1.0, 1.0]) / (high - low)
+    return PPoly(np.array([slopes, [1.0, 0.0]])[:, None, :], np.array([low, high]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hypothesis:
+    """One explanation of the residual.
+
+    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each; `residual`
+    replaces it for swaps and wrong units.
+    """
+
+    name: str
+    family: str
+    parts: tuple[str, ...]
+    """What it claims, effects by the name of their entry; unmodelled and input parts included."""
+    curve: Curve | None = None
+    columns: Array | None = None
+    half: float = 1.0
+    own: tuple[str, ...] = ()
+    """Effects whose own spread is released."""
+    residual: Array | None = field(default=None, repr=False)
+    """Whitened residual under the hypothesis, where the data themselves are wrong."""
+    unit: float = 1.0
+    """Whitened length that a coordinate of one stands for, of columns that are brought to a length of one."""
+    limits: tuple[Array, Array] | None = None
+    """Least and largest coordinates (k,), where columns have different ones."""
+
+    def at(self, size: Array) -> Array:
+        """(n,) whitened answer at a size (k,), of a curve at most at its ends."""
+        if self.curve is not None:
+            return np.asarray(self.curve.at(np.clip(size, *self.curve.bounds))[0])
+        assert self.columns is not None
+        return np.asarray(self.columns @ size)
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Least and largest coordinates (k,)."""
+        if self.limits is not None:
+            return self.limits
+        if self.curve is not None:
+            return np.array([self.curve.bounds[0]]), np.array([self.curve.bounds[1]])
+        bound = np.full(0 if self.columns is None else self.columns.shape[1], self.half)
+        return -bound, bound
+
+    @property
+    def intervals(self) -> list[tuple[float, float]]:
+        """The same, of one coordinate after the other."""
+        return [(float(low), float(high)) for low, high in zip(*self.bounds, strict=True)]
+
+    @property
+    def widest(self) -> float:
+        """The wider side of the bounds of its size."""
+        return self.half if self.curve is None else self.curve.half
+
 
 SPREADS = (0.6, 0.2, 0.06, 0.02, 0.006, 0.002)
 """Standard deviations of the mixture, relative to the bound."""
@@ -361,3 +476,147 @@ def _released(space: Whitened, own: Sequence[str]) -> Array:
         return space.precision
     reached = np.linalg.solve(space.covariance.lower.T, release.directions)
     return np.asarray(space.precision + reached @ release.weights @ reached.T)
+
+
+# How large an effect is, with an interval that admits what the model may answer wrongly.
+
+NORMAL_95 = 1.96
+"""Standard deviations of an interval that holds 95 % of a normal distribution."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Size:
+    """One coordinate of a named effect.
+
+    at_bound : the interval ends on a physical bound on at least one side: it is open there
+    """
+
+    effect: str
+    number: int
+    coordinate: float
+    interval: tuple[float, float]
+    at_bound: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointFit:
+    """All named effects fitted together, with a flat prior and the constants' priors kept.
+
+    answer : (n,) whitened; sizes : one per coordinate
+    """
+
+    sizes: tuple[Size, ...]
+    coordinates: tuple[tuple[float, ...], ...]
+    answer: Array
+
+    def with_other(self, other: "JointFit") -> "JointFit":
+        """With a fit to other numbers behind it."""
+        return JointFit(
+            sizes=(*self.sizes, *other.sizes),
+            coordinates=(*self.coordinates, *other.coordinates),
+            answer=np.concatenate([self.answer, other.answer]),
+        )
+
+
+def fit_together(
+    space: Whitened,
+    found: Sequence[Evidence],
+    widths: Mapping[str, float],
+    bounds: Sequence[Sequence[tuple[float, float]]],
+) -> JointFit:
+    """Gauss-Newton on the curves of all named effects, kept within bounds, and their intervals.
+
+    widths : family of an effect -> relative error of the model's answer to it, by which intervals become wider
+    bounds : of every coordinate of every effect
+    """
+    owns = [own for one in found for own in one.hypothesis.own]
+    release, residual = release_of(space, owns), space.freed(owns)
+    coordinates = [np.array(one.coordinates) for one in found]
+    for _ in range(20):
+        slopes = [_slope(one, size) for one, size in zip(found, coordinates, strict=True)]
+        columns = np.hstack(slopes)
+        left = residual - sum(
+            (_answer(one, size) for one, size in zip(found, coordinates, strict=True)), np.zeros(len(columns))
+        )
+        gram = release.product(columns, columns)
+        step = np.linalg.lstsq(gram, release.product(columns, left), rcond=None)[0]
+        moved = _clipped(np.concatenate(coordinates) + step, bounds)
+        change = float(np.abs(moved - np.concatenate(coordinates)).max())
+        coordinates = _split(moved, [len(size) for size in coordinates])
+        if change < 1e-9 * max(1.0, float(np.abs(moved).max())):
+            break
+    inverse = np.linalg.pinv(gram, hermitian=True)
+    deviations = np.sqrt(np.maximum(np.diagonal(inverse), 0.0))
+    sizes = []
+    number = 0
+    for one, size, limits in zip(found, coordinates, bounds, strict=True):
+        kind = one.hypothesis.parts[0].split(":")[0]
+        width = widths.get(kind, widths.get("", 0.25))
+        below, above = _misanswered(one, size, NORMAL_95 * width)
+        for place, value in enumerate(size):
+            low, high = limits[place]
+            first = float(value - np.hypot(NORMAL_95 * deviations[number], below))
+            last = float(value + np.hypot(NORMAL_95 * deviations[number], above))
+            sizes.append(
+                Size(
+                    effect=one.hypothesis.name,
+                    number=place,
+                    coordinate=float(value),
+                    interval=(max(first, low), min(last, high)),
+                    at_bound=first <= low or last >= high,
+                )
+            )
+            number += 1
+    answer = sum(
+        (_answer(one, size) for one, size in zip(found, coordinates, strict=True)),
+        np.zeros(len(space.residual)),
+    )
+    return JointFit(
+        sizes=tuple(sizes),
+        coordinates=tuple(tuple(float(value) for value in size) for size in coordinates),
+        answer=np.asarray(answer),
+    )
+
+
+def _misanswered(one: Evidence, size: Array, share: float) -> tuple[float, float]:
+    """How far below and above a coordinate the answer is smaller or larger by a share of itself.
+
+    A proportional answer is off by that share of the size; where the answer saturates a size is known much worse.
+    """
+    curve = one.hypothesis.curve
+    whole = float(np.linalg.norm(size))
+    if curve is None or whole == 0.0:
+        return share * whole, share * whole
+    value = float(size[0])
+    end = curve.bounds[1] if value > 0.0 else curve.bounds[0]
+    grid = np.linspace(0.0, end, FINE) if abs(end) > 0.0 else np.zeros(FINE)
+    here = curve.at(size)[0]
+    shares = np.maximum.accumulate(curve.at(grid) @ here / float(here @ here))
+    nearer = abs(value - float(np.interp(1.0 - share, shares, grid)))
+    farther = (
+        abs(float(np.interp(1.0 + share, shares, grid)) - value) if shares[-1] >= 1.0 + share else np.inf
+    )
+    return (nearer, farther) if value > 0.0 else (farther, nearer)
+
+
+FINE = 401
+"""Points at which a curve is searched for a larger or smaller answer."""
+
+
+def _slope(one: Evidence, size: Array) -> Array:
+    curve = one.hypothesis.curve
+    return one.columns if curve is None else curve.sensitivity(float(size[0]))[:, None]
+
+
+def _answer(one: Evidence, size: Array) -> Array:
+    curve = one.hypothesis.curve
+    return np.asarray(one.columns @ size) if curve is None else curve.at(size)[0]
+
+
+def _clipped(values: Array, bounds: Sequence[Sequence[tuple[float, float]]]) -> Array:
+    limits = np.array([limit for own in bounds for limit in own])
+    return np.clip(values, limits[:, 0], limits[:, 1])
+
+
+def _split(values: Array, counts: Sequence[int]) -> list[Array]:
+    return list(np.split(values, np.cumsum(counts)[:-1]))

@@ -29,8 +29,14 @@ from rigdesign.measurement.reading.measurement_set import (
     Weight,
 )
 from rigdesign.measurement.reading.rows import Rows
-from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
-from rigdesign.measurement.reading.tach import TachError, TurnAngle, turn_angle
+from rigdesign.measurement.reading.signals import (
+    Signal,
+    Signals,
+    TachError,
+    TurnAngle,
+    read_signals,
+    turn_angle,
+)
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature
 
 # Time-synchronous averaging: complex orders of a signal over whole hunting cycles.

@@ -22,8 +22,7 @@ from rigdesign.measurement.reading.measurement_set import (
     Tach,
     Weight,
 )
-from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
-from rigdesign.measurement.reading.tach import TachError, turn_angle
+from rigdesign.measurement.reading.signals import Signal, Signals, TachError, read_signals, turn_angle
 from rigdesign.prediction.model import Feature
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.strain_gauges import RootGauge

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from rigdesign.base import units
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import written
+from rigdesign.measurement.processing.impacts import Peak, resonance_peak
 from rigdesign.measurement.processing.recorded import FRACTION, SAMPLES_PER_PERIOD, SetPlan, unit_faults
-from rigdesign.measurement.processing.resonance_peak import Peak, resonance_peak
 from rigdesign.measurement.quality.checks import signal_findings, usable_signal
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, to_si
 from rigdesign.measurement.reading.measurement_set import (
@@ -28,8 +28,14 @@ from rigdesign.measurement.reading.measurement_set import (
     Sweep,
     Weight,
 )
-from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
-from rigdesign.measurement.reading.tach import TachError, TurnAngle, turn_angle
+from rigdesign.measurement.reading.signals import (
+    Signal,
+    Signals,
+    TachError,
+    TurnAngle,
+    read_signals,
+    turn_angle,
+)
 from rigdesign.prediction.model import ORDER_QUANTITIES, Feature, OperatingCondition
 
 # Orders over speed: the angle known, each window of whole turns is projected on every order with a Hann weight.

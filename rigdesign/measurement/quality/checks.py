@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from rigdesign.measurement.quantities import Measured, impossible, impossible_text, to_si
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredPoint, MeasurementSet
-from rigdesign.measurement.reading.signals import Signal
-from rigdesign.measurement.reading.tach import TurnAngle
+from rigdesign.measurement.reading.signals import Signal, TurnAngle
 from rigdesign.prediction.model import STANDING_QUANTITIES, Feature
 
 LEAST_POINTS = 3

@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from rigdesign.report import flips, reasons, views
+from rigdesign.report import reasons, views
+from rigdesign.report import reasons as flips
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 

@@ -10,8 +10,7 @@ from scipy.optimize import brentq
 from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.rating.root_stress import root_influence
 from dynamics.tooth.law import MeshLaw
-from dynamics.tooth.mesh_laws import ContactDiscretisation, mesh_law
-from dynamics.tooth.stiffness import pair_stiffness
+from dynamics.tooth.mesh_laws import ContactDiscretisation, mesh_law, pair_stiffness
 from tests.reference.tooth_contact.contact_cases import PAIRS, ContactCase
 
 

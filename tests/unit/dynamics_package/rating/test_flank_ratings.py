@@ -7,7 +7,8 @@ import pytest
 
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
-from dynamics.rating import micropitting, pitting, scuffing
+from dynamics.rating import flank_contact as pitting
+from dynamics.rating import micropitting, scuffing
 from dynamics.rating.flank_contact import ContactFactors, FlankContact, FlankLoad
 from dynamics.standards import iso6336_2_2006 as iso2
 from dynamics.standards import iso_ts_6336_20_2017 as ts20

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from dynamics.rotor.graph import Drivetrain, assemble, joints
-from dynamics.rotor.parts import Coupling, DragPlace, GearBody, MeshConnection, Motor
-from dynamics.rotor.power_loop import speed_ratios
+from dynamics.rotor.parts import Coupling, DragPlace, GearBody, MeshConnection, Motor, speed_ratios
 from dynamics.rotor.shaft import DrivetrainError, Section, Shaft
 from tests.builders.rig import CENTRE_DISTANCE, mesh, prototype
 

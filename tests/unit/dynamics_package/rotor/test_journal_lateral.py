@@ -20,8 +20,13 @@ from dynamics.rotor.bearing import (
     constant_coefficients,
     load_axes,
 )
-from dynamics.rotor.journal import JournalBearing, JournalState
-from dynamics.rotor.journal_lateral import RunningFilm, coefficient_table, journal_lateral
+from dynamics.rotor.journal import (
+    JournalBearing,
+    JournalState,
+    RunningFilm,
+    coefficient_table,
+    journal_lateral,
+)
 
 FILM = RunningFilm(diameter=40e-3, width=30e-3, diametral_clearance=80e-6, viscosity=8e-3, omega=1257.0)
 FORCE = (1200.0, -1600.0)

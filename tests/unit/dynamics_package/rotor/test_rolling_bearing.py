@@ -18,13 +18,15 @@ from dynamics.rotor.bearing import (
 from dynamics.rotor.journal import JournalBearing
 from dynamics.rotor.rolling import RollingBearing, SeatConductances, shaft_path
 from dynamics.rotor.rolling_catalogue import catalogue_bearing
-from dynamics.rotor.rolling_life import (
+from dynamics.rotor.rolling_state import (
+    LAWS,
+    FrictionLaw,
+    RollingState,
     equivalent_load,
     induced_axial_load,
     minimum_load,
     static_equivalent_load,
 )
-from dynamics.rotor.rolling_state import LAWS, FrictionLaw, RollingState
 
 RPM = math.pi / 30.0
 DENSITY, HEAT_CAPACITY, INLET = 860.0, 2000.0, 343.15

@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import brentq
 
 from dynamics.rotor.rolling_catalogue import catalogue_bearing
-from dynamics.rotor.rolling_life import equivalent_load, induced_axial_load
 from dynamics.rotor.rolling_row import RowOfElements, contact_law
+from dynamics.rotor.rolling_state import equivalent_load, induced_axial_load
 from dynamics.rotor.rolling_stiffness import bearing_stiffness, force_on_first, pair_axial_loads
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from dynamics.errors import DynamicsInputError
+from dynamics.tooth.mesh_laws import tooth_compliance
 from dynamics.tooth.points import FaceGrid
 from dynamics.tooth.slice_compliance import SliceCompliance
-from dynamics.tooth.stiffness import tooth_compliance
 from tests.builders.influence import hat_means, hat_weights
 from tests.builders.loaded_mesh import equal_gears, influence_of
 from tests.builders.p2_gears import helical_pair

@@ -12,9 +12,10 @@ from dynamics.tooth.mesh_laws import (
     ContactDiscretisation,
     MeshDissipation,
     MeshPosition,
+    PairStiffness,
     mesh_law,
+    pair_stiffness,
 )
-from dynamics.tooth.stiffness import PairStiffness, pair_stiffness
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 
 TEST_GEAR = spur_pair(**ALLOWANCES)

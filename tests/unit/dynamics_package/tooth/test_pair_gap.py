@@ -10,9 +10,8 @@ from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
 from dynamics.gear.flank import AxisMisalignment, FlankField, TeethInMesh
 from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
-from dynamics.tooth.mesh_laws import MeshPosition, mesh_law
+from dynamics.tooth.mesh_laws import MeshPosition, mesh_law, pair_stiffness
 from dynamics.tooth.pair_gap import PairGap, tip_separation
-from dynamics.tooth.stiffness import pair_stiffness
 from tests.builders.p1_gears import PINION, TWIST, WHEEL, p1_pair
 from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 

@@ -8,9 +8,9 @@ import pytest
 from scipy import sparse
 
 from dynamics.tooth.elastic_segment import solve_segment
+from dynamics.tooth.influence_model import SegmentReading, rows
 from dynamics.tooth.influence_numbers import TEETH
 from dynamics.tooth.segment import GearSegment, gear_section, turned
-from dynamics.tooth.segment_loads import SegmentReading, rows
 from tests.builders.influence import STEEL, small_model
 
 NU = STEEL.poisson

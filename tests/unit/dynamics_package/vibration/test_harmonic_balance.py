@@ -10,8 +10,13 @@ from dynamics.rotor.linear_system import LinearSystem, modal_form
 from dynamics.rotor.parts import Motor
 from dynamics.rotor.static_loop import LoopLoad, port_model
 from dynamics.tooth.law import MeshLaw
-from dynamics.vibration.harmonic_balance import HarmonicNewton, solve_periodic
-from dynamics.vibration.harmonic_problem import BalanceProblem, HarmonicGrid, resample
+from dynamics.vibration.harmonic_balance import (
+    BalanceProblem,
+    HarmonicGrid,
+    HarmonicNewton,
+    resample,
+    solve_periodic,
+)
 from dynamics.vibration.response_curve import ResponseCurve, waveform
 from dynamics.vibration.speed_continuation import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
 from dynamics.vibration.speed_sweep import DragTorques, SweepSettings, periodic_response

@@ -15,9 +15,8 @@ from dynamics.vibration.command import (
     Sampling,
     default_speed_control,
 )
-from dynamics.vibration.envelopes import WindowStatistics, split_lift_off
 from dynamics.vibration.march_inputs import SpeedControl
-from dynamics.vibration.time_response import TimeResponse, run_schedule
+from dynamics.vibration.time_response import TimeResponse, WindowStatistics, run_schedule, split_lift_off
 from tests.builders.mesh import spur_law
 from tests.builders.rig import prototype, prototype_laws
 

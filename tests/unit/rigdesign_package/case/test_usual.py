@@ -14,8 +14,8 @@ from rigdesign.case.model import Case
 from rigdesign.case.paths import slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.case.usual import unusual_inputs
+from rigdesign.explanation.keys import explain_path
 from rigdesign.explanation.overview import overview
-from rigdesign.explanation.path import explain_path
 from rigdesign.run.main import _doubts
 from tests.builders.paths import CASES
 

@@ -11,8 +11,7 @@ import pytest
 from rigdesign.case import Case, load_case
 from rigdesign.case.paths import known_paths
 from rigdesign.explanation.check import explain_check
-from rigdesign.explanation.keys import case_keys, entry_at, key_reference
-from rigdesign.explanation.path import explain_path
+from rigdesign.explanation.keys import case_keys, entry_at, explain_path, key_reference
 from tests.builders.commands import SMALL, Rigdesign, Write
 from tests.builders.paths import CASES
 

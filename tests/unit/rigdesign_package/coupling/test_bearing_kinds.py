@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState, LateralOperation, OilSupply
-from dynamics.rotor.journal import JournalState
+from dynamics.rotor.journal import JournalState, journal_lateral
 from dynamics.rotor.journal_feed import FEEDS
-from dynamics.rotor.journal_lateral import journal_lateral
 from rigdesign.case import load_case
 from rigdesign.case.bearings import JournalBearingInput
 from rigdesign.case.rolling_bearing import BearingPlace

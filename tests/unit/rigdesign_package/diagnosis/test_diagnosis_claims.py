@@ -17,9 +17,8 @@ from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome
 from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
 from rigdesign.prediction import MEASURED_AGAINST, Channel, OperatingCondition
 from rigdesign.prediction.model import changed_case
 from rigdesign.prediction.predict import predict

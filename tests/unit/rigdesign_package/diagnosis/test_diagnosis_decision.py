@@ -9,8 +9,7 @@ from rigdesign.diagnosis.decision.decision import changes_of_the_circuit, decide
 from rigdesign.diagnosis.decision.defaults import Candidates, Thresholds, WhitenedSquare
 from rigdesign.diagnosis.decision.naming import in_words
 from rigdesign.diagnosis.decision.search import _added
-from rigdesign.diagnosis.statistics.evidence import Evidence
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 
 COUNTS = {"physical": 50, "unmodelled": 100, "pair": 1000, "sensor": 20}
 

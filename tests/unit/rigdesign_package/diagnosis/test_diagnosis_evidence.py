@@ -10,13 +10,14 @@ from rigdesign.diagnosis.decision.search import Criteria, Earlier, Explanations,
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Release, Whitened
 from rigdesign.diagnosis.statistics.evidence import (
+    Curve,
+    Hypothesis,
     evaluate_hypothesis,
     evaluate_pair,
     graded,
     mixture_density,
     release_of,
 )
-from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
 
 N = 120
 USUAL = Criteria(thresholds=Thresholds())

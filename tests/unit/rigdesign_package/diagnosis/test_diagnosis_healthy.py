@@ -11,8 +11,7 @@ from rigdesign.diagnosis.residual import residual_problem as problems
 from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis, support
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis, support
 from rigdesign.prediction.model import Channel, OperatingCondition, features_of
 from tests.blind.covariance_inflation import INFLATE_ABOVE, LARGEST, inflate
 from tests.builders.diagnosis import DESIGN, story

@@ -13,10 +13,8 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes, Group, group_m
 from rigdesign.diagnosis.statistics.columns import Column, Turning
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened, reject
 from rigdesign.diagnosis.statistics.detectability import aliases, detectabilities
-from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, evaluate_hypothesis, fit_together
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
-from rigdesign.diagnosis.statistics.hypothesis import Curve, Hypothesis
-from rigdesign.diagnosis.statistics.intervals import fit_together
 from rigdesign.diagnosis.statistics.next_measurement import Foreseen, Proposal, Rival, ranked, smallest_set
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition, features_of
 

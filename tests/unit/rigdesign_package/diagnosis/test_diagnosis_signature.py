@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from scipy.special import logsumexp
 
-from rigdesign.diagnosis.residual.signature import SHARES, Contest, Signature
+from rigdesign.diagnosis.residual.healthy import SHARES, Contest, Signature
 from rigdesign.diagnosis.statistics.columns import Column, ModelError
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis, evaluate_pair
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis, evaluate_pair
 from rigdesign.diagnosis.statistics.resonance import CloseModes
 from rigdesign.prediction.model import Feature
 
@@ -80,7 +79,7 @@ def direct(
 @pytest.mark.parametrize("own", [0.0, 0.4])
 def test_low_rank_algebra_is_the_whole_covariance(own, alone, monkeypatch):
     """An explanation whose constant has its own healthy spread, and one without; orders off by themselves, or not."""
-    monkeypatch.setattr("rigdesign.diagnosis.residual.signature.SLIGHT", 0.0)
+    monkeypatch.setattr("rigdesign.diagnosis.residual.healthy.SLIGHT", 0.0)
     covariance = healthy(own)
     residual = 6.0 * trace() + np.random.default_rng(5).normal(size=len(FEATURES))
     space = Whitened.of(covariance, residual)

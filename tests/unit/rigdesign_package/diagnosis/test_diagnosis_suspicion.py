@@ -17,8 +17,7 @@ from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis
 from rigdesign.report.diagnosis_files import write_diagnosis
 from tests.builders.diagnosis import DESIGN, rerun, story
 from tests.unit.rigdesign_package.diagnosis.test_diagnosis_claims import SIZE, healthy, stored, with_added

@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.diagnosis import run
 from rigdesign.diagnosis.decision.workflow import diagnose
-from rigdesign.diagnosis.residual.data_error import data_error
+from rigdesign.diagnosis.residual.hypotheses import data_error
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.prediction.model import Channel, Feature
 from tests.builders.diagnosis import DESIGN, Rig, result_of, story, the_case, write_set

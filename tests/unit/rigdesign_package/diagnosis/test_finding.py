@@ -8,8 +8,7 @@ import pytest
 from rigdesign.diagnosis.decision.decision import posterior
 from rigdesign.diagnosis.decision.defaults import Thresholds
 from rigdesign.diagnosis.decision.workflow import _overruled
-from rigdesign.diagnosis.statistics.evidence import Evidence
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 
 CIRCUIT = frozenset({"mesh", "coupling"})
 

@@ -5,8 +5,7 @@ import pytest
 
 from rigdesign.diagnosis.decision.search import WIDE, Explanations, OtherDomain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import evaluate_hypothesis, evaluate_pair
-from rigdesign.diagnosis.statistics.hypothesis import Hypothesis
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis, evaluate_pair
 
 COUNT = 20
 RNG = np.random.default_rng(6)

@@ -15,8 +15,7 @@ from nptdms import ChannelObject, RootObject, TdmsWriter
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.measurement.reading.measurement_set import DataSection, Tach
-from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
-from rigdesign.measurement.reading.tach import TachError, turn_angle
+from rigdesign.measurement.reading.signals import Signal, Signals, TachError, read_signals, turn_angle
 
 RATE = 1000.0
 COUNT = 500

@@ -9,12 +9,10 @@ import pytest
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.measurement import features, load_measurement
-from rigdesign.measurement.processing.impacts import frequency_response
-from rigdesign.measurement.processing.resonance_peak import resonance_peak
+from rigdesign.measurement.processing.impacts import frequency_response, resonance_peak
 from rigdesign.measurement.processing.sweeps import order_curves
 from rigdesign.measurement.reading.measurement_set import MeasurementSet, Tach
-from rigdesign.measurement.reading.signals import Signal
-from rigdesign.measurement.reading.tach import turn_angle
+from rigdesign.measurement.reading.signals import Signal, turn_angle
 from rigdesign.prediction.model import Feature
 from tests.builders.measurement import replaced
 from tests.builders.order import shipped

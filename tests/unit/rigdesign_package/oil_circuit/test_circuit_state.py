@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rigdesign.base.errors import CaseError, NotConvergedError
+from rigdesign.oil_circuit.circuit import Heater, Pipe, Pump, TankCooler, enthalpy
 from rigdesign.oil_circuit.line_balance import consumer_return
-from rigdesign.oil_circuit.parts import Heater, Pipe, Pump, TankCooler, enthalpy
 from rigdesign.oil_circuit.state import CircuitState, Energies
 from rigdesign.oil_circuit.steady import steady_circuit
 from tests.builders.circuit_history import CircuitHistory, circuit_history

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rigdesign.base.errors import CaseError
-from rigdesign.oil_circuit.parts import (
+from rigdesign.oil_circuit.circuit import (
     Consumer,
     HeatContent,
     Heater,

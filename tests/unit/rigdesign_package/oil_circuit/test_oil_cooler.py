@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.oil_circuit.parts import Arrangement, Coolant, Cooler, RatedPoint
+from rigdesign.oil_circuit.circuit import Arrangement, Coolant, Cooler, RatedPoint
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699
 from tests.builders.oil_circuit import LITRE_A_MINUTE, WATER, ZERO, cooler
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rigdesign.base.errors import CaseError, NotConvergedError
-from rigdesign.oil_circuit.parts import Consumer, Coolant, Cooler, Heater, Pipe, Pump, Tank, TankCooler
+from rigdesign.oil_circuit.circuit import Consumer, Coolant, Cooler, Heater, Pipe, Pump, Tank, TankCooler
 from rigdesign.oil_circuit.steady import SetpointNotHeldError, steady_circuit
 from rigdesign.properties.oil import FVA_3, oil_outlet
 from tests.builders.oil_circuit import LITRE_A_MINUTE, ZERO, circuit, cooler, line

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.vibration.envelopes import EnvelopeWindows, LiftOff
+from dynamics.vibration.time_response import EnvelopeWindows, LiftOff
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.postprocessing import dynamics as time_run

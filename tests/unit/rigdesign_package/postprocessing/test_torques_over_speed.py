@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign.postprocessing import torques_over_speed as module
-from rigdesign.postprocessing.torques_over_speed import torques_over_speed
+from rigdesign.postprocessing import run_torques as module
+from rigdesign.postprocessing.run_torques import torques_over_speed
 from rigdesign.results.vibration import TorquePlace, TorqueSwing
 
 SHAFT, BROAD = TorquePlace(kind="shaft", part="a", start=0.0, end=0.1), TorquePlace(kind="coupling", part="b")

@@ -8,8 +8,7 @@ from dynamics.vibration.deviation_response import DeviationResponse, OrderTorque
 from dynamics.vibration.hill_system import Motion, excitation, pair_sensitivity, tooth_pattern
 from rigdesign.base.errors import UsageError
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.order_motion import ExactMotion, ideal_response
-from rigdesign.prediction.orders import PointOrders, shaft_orders
+from rigdesign.prediction.order_motion import ExactMotion, PointOrders, ideal_response, shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.builders.order import changed, channels, settled
 from tests.builders.undamped_shafts import undamped_shafts

@@ -24,7 +24,7 @@ from rigdesign.prediction.model import (
     Quantity,
     measured_against,
 )
-from rigdesign.prediction.orders import Orders, shaft_orders
+from rigdesign.prediction.order_motion import Orders, shaft_orders
 from rigdesign.prediction.predict import predict
 from rigdesign.rig.model import Rig
 from tests.builders.order import BracedCase, settled, shipped

@@ -9,7 +9,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from rigdesign.case import load_case
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.provenance import InputRow
-from rigdesign.report import flips, reasons
+from rigdesign.report import reasons
+from rigdesign.report import reasons as flips
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.figures.schematic import phone_schematic_figure, rig_plan, schematic_figure
 from rigdesign.report.input_sheets import (

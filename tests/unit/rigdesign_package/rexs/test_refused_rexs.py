@@ -3,7 +3,7 @@
 import pytest
 
 from rigdesign.base.errors import RexsError
-from rigdesign.rexs import faults as consistency
+from rigdesign.rexs import model as consistency
 from rigdesign.rexs import reader as xml_tree
 from rigdesign.rexs.reader import parse_rexs
 from tests.builders.rexs import changed, rexs_file

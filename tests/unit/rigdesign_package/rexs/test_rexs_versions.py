@@ -3,9 +3,8 @@ from dataclasses import replace
 import pytest
 
 from rigdesign.rexs.gear_unit_import import import_gear_unit
-from rigdesign.rexs.model import Relation, RexsModel, RoleReference
+from rigdesign.rexs.model import Relation, Renaming, RexsModel, RoleReference, in_newest_names, is_read
 from rigdesign.rexs.reader import parse_rexs, read_rexs
-from rigdesign.rexs.versions import Renaming, in_newest_names, is_read
 from tests.builders.rexs import SUFFIXES, changed, rexs_file
 
 OLD_ONLY_LACKS = {"quality_grade": None, "flank_roughness": None}

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from rigdesign.run import load_convergence as load_errors
+from rigdesign.run import mesh_convergence as load_errors
 from rigdesign.run.warnings import _load_errors
 
 

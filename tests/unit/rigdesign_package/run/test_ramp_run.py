@@ -7,9 +7,8 @@ from typing import cast
 import numpy as np
 import pytest
 
-from dynamics.vibration.envelopes import EnvelopeWindows, LiftOff
 from dynamics.vibration.march_inputs import DriveState
-from dynamics.vibration.time_response import TimeResponse
+from dynamics.vibration.time_response import EnvelopeWindows, LiftOff, TimeResponse
 from rigdesign.case import load_case
 from rigdesign.checks.registry import REGISTRY
 from rigdesign.coupling.time_run import (

@@ -8,7 +8,7 @@ import pytest
 from rigdesign import Case, load_case, run_case
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.report.flips import searched
+from rigdesign.report.reasons import searched
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import FlipSearch, RunResult
 from rigdesign.studies.verdict_sensitivity import Search, with_flips

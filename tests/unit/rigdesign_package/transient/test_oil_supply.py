@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.oil_circuit.circuit import Circuit
-from rigdesign.oil_circuit.parts import Heater, Tank
+from rigdesign.oil_circuit.circuit import Circuit, Heater, Tank
 from rigdesign.oil_circuit.state import CircuitState
 from rigdesign.properties.oil import FVA_3
 from rigdesign.transient.oil_supply import (

@@ -14,8 +14,7 @@ from thermal.expansion.alignment import (
     shaft_axis,
     shaft_pair,
 )
-from thermal.expansion.deformed_geometry import DeformedGeometry
-from thermal.expansion.expansion import Expansion, ExpansionSetup, expand
+from thermal.expansion.expansion import DeformedGeometry, Expansion, ExpansionSetup, expand
 from thermal.expansion.setup import ROUND
 from thermal.housing.gearbox import build_gearbox
 from thermal.housing.stations import GearboxModel

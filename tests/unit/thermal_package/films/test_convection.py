@@ -6,8 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from thermal.films import convection as films
-from thermal.films.air import AirRangeError, air
 from thermal.films.law import FilmLaw
+from thermal.films.still import AirRangeError, air
 
 WALL, FLUID = 360.0, 293.15
 LAWS: dict[str, Callable[[], FilmLaw]] = {

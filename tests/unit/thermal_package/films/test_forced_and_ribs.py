@@ -7,9 +7,9 @@ import pytest
 from scipy.linalg import solve_banded
 
 from thermal.films import convection
-from thermal.films.air import air
 from thermal.films.convection import RibArray
 from thermal.films.law import FilmError
+from thermal.films.still import air
 
 WALL, ROOM = 353.15, 293.15
 CAST_IRON = 50.0
