@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.rotor import assembly as cross_joints
+from dynamics.rotor import assembly
 from dynamics.rotor.assembly import bending_moment
 from dynamics.rotor.bearing_state import misalignment_load
 from dynamics.rotor.graph import Drivetrain
@@ -153,7 +153,7 @@ def standing_load(rig: Rig, coupling_state: CouplingState) -> Array:
     load = misalignment_load(elastic.model, axis_misalignments(rig, coupling_state))
     if elastic.rig.cross_joints:
         torques = coupling_torques(rig, coupling_state.mesh_torque)
-        load = load + cross_joints.standing_load(elastic.model, torques)
+        load = load + assembly.standing_load(elastic.model, torques)
     return elastic.reduced.rows(load)
 
 

@@ -9,9 +9,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from dynamics.gear.pair import GearPair
-from dynamics.rating import flank_contact as pitting
 from dynamics.rating import iso_rating
-from dynamics.rating.flank_contact import ContactFactors, FlankLoad
+from dynamics.rating.flank_contact import (
+    ContactFactors,
+    FlankLoad,
+    face_load_factor,
+    root_face_load_factor,
+    transverse_limits,
+    transverse_load_factor,
+)
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from dynamics.standards.iso6336_3_2006 import LoadFactors
 from rigdesign.coupling.loop import PointResult
@@ -109,8 +115,8 @@ def stated_factors(
     return SharingFactors(
         K_Fbeta=face_load,
         K_Falpha=iso_rating.transverse_load_factor(pair, standard, dynamic=dynamic, face_load=face_load),
-        K_Hbeta=pitting.face_load_factor(pair, face_load),
-        K_Halpha=pitting.transverse_load_factor(pair, standard, dynamic=dynamic, face_load=face_load),
+        K_Hbeta=face_load_factor(pair, face_load),
+        K_Halpha=transverse_load_factor(pair, standard, dynamic=dynamic, face_load=face_load),
         basis=STATED,
     )
 
@@ -123,9 +129,9 @@ def contact_factors(pair: GearPair, standard: DynamicFactor, contact: HeldContac
     """
     over_face = contact.cycle.face_load_factor
     over_pairs = contact.transverse_load_factor(1e-6 * standard.f_pb_eff)
-    flank_limit, root_limit = pitting.transverse_limits(pair)
+    flank_limit, root_limit = transverse_limits(pair)
     return SharingFactors(
-        K_Fbeta=pitting.root_face_load_factor(pair, over_face),
+        K_Fbeta=root_face_load_factor(pair, over_face),
         K_Falpha=min(over_pairs, root_limit),
         K_Hbeta=over_face,
         K_Halpha=min(over_pairs, flank_limit),

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from dynamics.rotor import parts as power_loop
+from dynamics.rotor import parts
 from dynamics.rotor.graph import Drivetrain
 from dynamics.rotor.shaft import Shaft
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
@@ -101,7 +101,7 @@ def speed_ratios(case: Case, drivetrain: Drivetrain | None) -> dict[str, float]:
     """
     if drivetrain is None or case.drivetrain is None:
         return _by_gearbox(case)
-    ratios = power_loop.speed_ratios(drivetrain)
+    ratios = parts.speed_ratios(drivetrain)
     reference = ratios[drivetrain.gear(case.drivetrain.torque_at).shaft]
     return {shaft: ratio / reference for shaft, ratio in ratios.items()}
 

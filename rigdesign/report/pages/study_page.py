@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from rigdesign.base.version import __version__
 from rigdesign.report.figures import study, study_samples
-from rigdesign.report.figures import study as study_map
 from rigdesign.report.figures.drawing import NumberedFigures
+from rigdesign.report.figures.study import region_figure
 from rigdesign.report.margins.passing_range import StudyAnswer, by_check, passing, slices
 from rigdesign.report.margins.regions import region_map
 from rigdesign.report.margins.table import MarginTable
@@ -118,7 +118,7 @@ def _maps(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, ans
         regions = region_map(pair, found.points, answer.deciding) if answer.rest.checks else None
         if regions is None:
             continue
-        figure = study_map.region_figure(pair, regions, answer.deciding, small=len(pairs) > 1)
+        figure = region_figure(pair, regions, answer.deciding, small=len(pairs) > 1)
         others = " and ".join(axis.name for axis in answer.axes if axis not in pair)
         caption = f"At the worst of the computed values of {others}." if others else MAP
         description = f"Limiting check over {pair[0].label} and {pair[1].label}"

@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from rigdesign.report import reasons, views
-from rigdesign.report import reasons as flips
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
@@ -36,9 +35,9 @@ def _decision(result: RunResult, draw: Draw) -> Values:
         "why": reasons.why(result),
         "nearest": nearest,
         "governing": governing,
-        "flips": flips.flips(result),
-        "searched": flips.searched(result),
-        "assumed_flips": flips.within_ranges(result),
+        "flips": reasons.flips(result),
+        "searched": reasons.searched(result),
+        "assumed_flips": reasons.within_ranges(result),
         "depends_on": len(specific),
         "with_range": sum(record.range is not None for record in specific),
         "named": specific[:NAMED],

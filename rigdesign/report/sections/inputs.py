@@ -3,8 +3,13 @@
 from collections import Counter
 
 from rigdesign.report import input_sheets
-from rigdesign.report import input_sheets as drivetrain_sheets
-from rigdesign.report.input_sheets import assumption_groups, most_influential
+from rigdesign.report.input_sheets import (
+    assumption_groups,
+    bearing_sheet,
+    joint_sheet,
+    most_influential,
+    shaft_sheet,
+)
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
@@ -22,9 +27,9 @@ def _inputs(result: RunResult, draw: Draw) -> Values:
 def _drivetrain(result: RunResult, draw: Draw) -> Values:
     sheets = (
         input_sheets.material_sheet(result),
-        drivetrain_sheets.shaft_sheet(result),
-        drivetrain_sheets.joint_sheet(result),
-        drivetrain_sheets.bearing_sheet(result),
+        shaft_sheet(result),
+        joint_sheet(result),
+        bearing_sheet(result),
     )
     return {"sheets": [sheet for sheet in sheets if sheet is not None]}
 
