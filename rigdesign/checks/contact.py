@@ -11,8 +11,7 @@ from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import meshes, meshes_of
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.postprocessing.flank_rating import flank_ratings
-from rigdesign.postprocessing.gear_loads import application_factor
+from rigdesign.postprocessing.gear_loads import application_factor, flank_ratings
 from rigdesign.postprocessing.loaded_contact import held_contact
 from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check

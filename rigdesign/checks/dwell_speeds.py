@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.postprocessing.loop_states import dwell_stages
+from rigdesign.postprocessing.curves import dwell_stages
 from rigdesign.postprocessing.nearest_resonance import SHAFT_SHARE
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check

@@ -10,7 +10,7 @@ from rigdesign.checks.places import gears_of, meshes, rig_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
 from rigdesign.checks.strength import OF_SAFETY, GearFamily, root_safety
-from rigdesign.postprocessing.flank_rating import flank_ratings
+from rigdesign.postprocessing.gear_loads import flank_ratings
 from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
 from rigdesign.results.teeth import FlankRating

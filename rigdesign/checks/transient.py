@@ -12,7 +12,7 @@ from rigdesign.checks.rules import Comparison, hold, not_evaluated
 from rigdesign.checks.temperatures import WALLS
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.serialisation.history import UNITS
+from rigdesign.results.serialisation.events import EXTREME_UNITS
 from rigdesign.results.thermal import Extreme
 from rigdesign.results.units import HOUR, DisplayUnit
 from rigdesign.transient.soak import Soak
@@ -36,7 +36,7 @@ def _family(
         title=title,
         procedure="Thermal history over warm-up, schedule, stops and soak-back (check --transient): the "
         f"{extreme} value at all places and moments of the planned course.",
-        unit=UNITS[quantity],
+        unit=EXTREME_UNITS[quantity],
         group=GROUP,
         source=source,
         comparison=comparison,

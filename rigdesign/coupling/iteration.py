@@ -7,7 +7,7 @@ from dynamics.rotor.bearing import BearingState
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.json_text import finite
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.bearing_seats import initial_seats
 from rigdesign.coupling.expansion import HousingExpansion, expand_housing, uniform_expansion
 from rigdesign.coupling.located_loss import PointLosses, drag_torques

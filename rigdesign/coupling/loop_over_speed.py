@@ -8,7 +8,7 @@ from itertools import pairwise
 from dynamics.errors import DynamicsNotConverged
 from dynamics.rotor.linear_system import DrivetrainOverSpeed, SpeedBands
 from dynamics.vibration.response_curve import CurvePoint
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.located_loss import PlacedLoss, PointLosses, drag_torques
 from rigdesign.coupling.loop import PointResult

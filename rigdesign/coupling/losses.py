@@ -14,7 +14,7 @@ from dynamics.rotor.bearing import BearingState
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet
-from rigdesign.coupling.bearing_films import constant_drag
+from rigdesign.coupling.bearing_loads import constant_drag
 from rigdesign.coupling.bearing_seats import body_shares
 from rigdesign.coupling.flank_heat import churning, mesh_split
 from rigdesign.coupling.located_loss import PlacedLoss, given_power

@@ -14,7 +14,7 @@ from dynamics.vibration.schedule import Kind, Schedule, Stage, StageCommand, s_f
 from dynamics.vibration.time_response import TimeResponse, run_schedule
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.located_loss import drag_shafts, drag_torques
 from rigdesign.coupling.loop_over_speed import loop_over_speed

@@ -23,9 +23,8 @@ from dynamics.rotor.torsional_modes import (
 )
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.postprocessing.curves import HARMONICS, LEAST_GAIN, own_ratio
+from rigdesign.postprocessing.curves import HARMONICS, LEAST_GAIN, LoopState, own_ratio
 from rigdesign.postprocessing.dynamics import HIGHEST_MODE
-from rigdesign.postprocessing.loop_states import LoopState
 from rigdesign.results.vibration import (
     CampbellCrossing,
     CampbellMode,

@@ -8,8 +8,8 @@ import numpy as np
 
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.schedule import StageValues
+from rigdesign.postprocessing.curves import dwell_stages, is_around
 from rigdesign.postprocessing.dynamics import DynamicRun
-from rigdesign.postprocessing.loop_states import dwell_stages, is_around
 from rigdesign.postprocessing.nearest_resonance import (
     SHAFT_SHARE,
     NearDwell,

@@ -24,9 +24,9 @@ from rigdesign.coupling.mesh_models import MeshModel, laws_of
 from rigdesign.coupling.preloaded_loop import periodic_laws, signed_torque
 from rigdesign.coupling.time_run import drags_at
 from rigdesign.postprocessing import root
+from rigdesign.postprocessing.curves import state_at
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.loaded_contact import ROOT
-from rigdesign.postprocessing.loop_states import state_at
 from rigdesign.results.dynamics import FROM_INFLUENCE, StressSource
 from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
 from rigdesign.rig.model import Rig

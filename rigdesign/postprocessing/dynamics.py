@@ -18,8 +18,15 @@ from rigdesign.coupling.mesh_models import laws_of, mesh_models
 from rigdesign.coupling.preloaded_loop import shifted_gear, signed_torque
 from rigdesign.coupling.time_run import LEAST_TORQUE, schedule_of, stage_names
 from rigdesign.postprocessing import root
-from rigdesign.postprocessing.curves import HARMONICS, LEAST_GAIN, Curves, own_ratio
-from rigdesign.postprocessing.loop_states import chosen, dwell_speeds, held_modes
+from rigdesign.postprocessing.curves import (
+    HARMONICS,
+    LEAST_GAIN,
+    Curves,
+    chosen,
+    dwell_speeds,
+    held_modes,
+    own_ratio,
+)
 from rigdesign.postprocessing.resonances import mesh_resonances
 from rigdesign.postprocessing.tooth_history import tooth_histories
 from rigdesign.results.check import Role

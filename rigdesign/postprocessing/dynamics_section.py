@@ -20,7 +20,7 @@ from rigdesign.postprocessing.curves import factor_points, iso_factor
 from rigdesign.postprocessing.dwell_speeds import dwell_record
 from rigdesign.postprocessing.dynamic_root import dynamic_root
 from rigdesign.postprocessing.dynamics import DynamicRun, numbered, ramp_history
-from rigdesign.postprocessing.flank_rating import flank_ratings
+from rigdesign.postprocessing.gear_loads import flank_ratings
 from rigdesign.postprocessing.loaded_contact import loaded_contact
 from rigdesign.postprocessing.run_torques import (
     mesh_swing,

@@ -32,8 +32,7 @@ from dynamics.vibration.initial_state import pinion_ratios
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from dynamics.vibration.steady_motion import TimeSettings
 from rigdesign.case.events import EmergencyStop, Event, Overspeed, ToothLoss
-from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.bearing_loads import bearing_loads, solve_bearings
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_system import bearing_coefficients, loop_system, running_state, twist_rows_of
@@ -48,9 +47,8 @@ from rigdesign.coupling.preloaded_loop import (
 )
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import DRAG_SHARES, drags_at
-from rigdesign.postprocessing.curves import LEAST_GAIN
+from rigdesign.postprocessing.curves import LEAST_GAIN, held_modes
 from rigdesign.postprocessing.dynamics import DynamicRun
-from rigdesign.postprocessing.loop_states import held_modes
 from rigdesign.postprocessing.passing_peaks import passing_peaks
 from rigdesign.postprocessing.run_torques import shear_stress
 from rigdesign.results.loads import EventCurve, EventPeak, EventRecord, Quantity, Reversal

@@ -5,25 +5,46 @@ from the case (`face_load_factor`) and ISO 6336-1. Root stress, pitting, scuffin
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.rating import iso_rating
 from dynamics.rating.flank_contact import (
     ContactFactors,
+    FlankContact,
     FlankLoad,
+    FlankMaterials,
+    Pitting,
     face_load_factor,
+    pitting,
     root_face_load_factor,
+    thermal_contact,
     transverse_limits,
     transverse_load_factor,
 )
+from dynamics.rating.micropitting import FilmRatios, Lubricant, film_ratios
+from dynamics.rating.scuffing import (
+    ContactTemperature,
+    FlankFilmState,
+    contact_temperature,
+    scuffing_safety,
+    scuffing_temperature,
+)
+from dynamics.standards import iso_ts_6336_22_2018
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from dynamics.standards.iso6336_3_2006 import LoadFactors
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.coupling.loop import PointResult
 from rigdesign.postprocessing.curves import iso_factor
+from rigdesign.postprocessing.housing import split_as_solved
 from rigdesign.postprocessing.loaded_contact import HeldContact, held_contact
+from rigdesign.properties.materials import Material
+from rigdesign.properties.oil import Oil
+from rigdesign.results.teeth import FlankRating
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import OilFeed, gear_feed
 
 COMPUTED = "load factors of the loaded contact"
 STATED = "load factors of face_load_factor and ISO 6336-1"
@@ -174,3 +195,156 @@ def rated_cycles(rig: Rig, mesh: int, index: int) -> float:
     """Load cycles that a gear has to endure: of one test as a specimen, of all specimens as a gear of the rig."""
     tests = 1 if rig.mesh(rig.mesh_names[mesh])[0].role == "specimen" else rig.case.test_plan.specimens
     return load_cycles(rig, rig.mesh_gear(mesh, index).shaft) * tests
+
+
+# Load capacity of the flanks at the held stages: pitting, scuffing, film over roughness, at our own temperatures.
+
+COEFFICIENT_AT = ZERO_CELSIUS + 80.0
+"""At which the pressure-viscosity coefficient of an oil is stated [K]."""
+TEST_OIL = ZERO_CELSIUS + 90.0
+"""Of the FZG test A/8.3/90 [K]."""
+LABELLED = ZERO_CELSIUS + 40.0
+"""At which ISO 6336-2 takes the viscosity [K]."""
+
+
+def flank_ratings(rig: Rig, points: Sequence[PointResult], mesh: int) -> Iterator[FlankRating]:
+    """Ratings of a mesh, by its number, at every held stage that turns under load."""
+    by_stage = {point.point.stage: point for point in points}
+    for load in rated_loads(rig, points, mesh):
+        if load.torque and load.speed > 0.0:
+            point = by_stage[load.stage]
+            drives = point.last.coupling_state.mesh_torque[rig.mesh_names[mesh]] > 0.0
+            rated = flank_load(rig, mesh, load, pinion_drives=drives)
+            yield _rating(rig, point, mesh, rated, load.sharing_basis)
+
+
+def _rating(rig: Rig, point: PointResult, mesh: int, load: FlankLoad, sharing_basis: str) -> FlankRating:
+    name = rig.mesh_names[mesh]
+    feed, (bulk, basis) = _feed(rig, point, name), bulk_temperature(rig, point, mesh)
+    state = _film_state(rig, mesh, feed, bulk)
+    rated, no_pitting = _pitting(rig, mesh, load, feed.oil)
+    contact, films, no_contact = _over_path(FlankContact(rig.pairs[name], load), state, feed.oil)
+    limit = _scuffing_limit(rig, mesh, feed.oil, state)
+    safety = None if limit is None or contact is None else scuffing_safety(contact, state, limit)
+    no_scuffing = no_contact
+    if limit is None:
+        no_scuffing = f"oil {feed.oil.name} states neither scuffing_load_stage nor scuffing_temperature"
+    return FlankRating(
+        stage=point.point.stage,
+        factors=load.factors,
+        sharing_basis=sharing_basis,
+        oil_temperature=feed.inlet,
+        bulk_temperature=bulk,
+        bulk_basis=basis,
+        pitting=rated,
+        no_pitting=no_pitting,
+        contact=contact,
+        films=films,
+        no_contact=no_contact,
+        scuffing_temperature=limit,
+        scuffing_safety=safety,
+        no_scuffing=no_scuffing,
+    )
+
+
+def _materials(rig: Rig, mesh: int) -> tuple[Material, Material]:
+    return rig.materials[rig.mesh_gear(mesh, 0).material], rig.materials[rig.mesh_gear(mesh, 1).material]
+
+
+def _feed(rig: Rig, point: PointResult, name: str) -> OilFeed:
+    box, state = name.split(".")[0], point.last.coupling_state
+    return gear_feed(rig, box, state.oil_outlet[f"{box}.gear_oil"], state.oil_supply)
+
+
+def _scuffing_limit(rig: Rig, mesh: int, oil: Oil, state: FlankFilmState) -> float | None:
+    """Scuffing temperature [K], as stated or from the load stage; None where neither is known."""
+    stated = rig.mesh(rig.mesh_names[mesh])[0].oil
+    if stated.scuffing_temperature is not None:
+        return stated.scuffing_temperature
+    stage = oil.scuffing_load_stage if stated.scuffing_load_stage is None else stated.scuffing_load_stage
+    if stage is None:
+        return None
+    factor = min(material.scuffing_factor for material in _materials(rig, mesh))
+    return scuffing_temperature(stage, state.oil_factor, oil.dynamic_viscosity(TEST_OIL), factor)
+
+
+def bulk_temperature(rig: Rig, point: PointResult, mesh: int) -> tuple[float, str]:
+    """Temperature of the teeth of a mesh, mean of both gears [K], and its basis in words.
+
+    From the temperature field of the housing: of the teeth where a flank film gives it, else of the gear bodies.
+    Without a housing nothing is solved: ISO/TS 6336-22, from the loss of the mesh.
+    """
+    name = rig.mesh_names[mesh]
+    box, own = name.split(".")
+    state, field = point.last.coupling_state, point.last.fields.get(box)
+    if field is None:
+        return _standard_bulk(rig, point, box, own), "ISO/TS 6336-22, no housing"
+    splits = split_as_solved(rig, point, field)
+    found = []
+    of_teeth = True
+    for gear in rig.mesh_gears(name):
+        split = splits.get(gear.split(".")[1])
+        tooth = None if split is None else split.tooth_temperature
+        of_teeth &= tooth is not None
+        found.append(state.gear_temperature[gear] if tooth is None else tooth)
+    return math.fsum(
+        found
+    ) / 2.0, "teeth of the temperature field" if of_teeth else "gears of the temperature field"
+
+
+def _standard_bulk(rig: Rig, point: PointResult, box: str, own: str) -> float:
+    pair = rig.pairs[f"{box}.{own}"]
+    loss = math.fsum(
+        placed.loss.power
+        for placed in point.last.losses
+        if (placed.gearbox, placed.part, placed.loss.kind) == (box, own, "mesh")
+    )
+    width = rig.case.gearboxes[box].meshes[own].sharing * pair.face_width
+    inlet = _feed(rig, point, f"{box}.{own}").inlet
+    supply = "dip" if rig.case.gearboxes[box].jets is None else "injection"
+    warm = iso_ts_6336_22_2018.theta_M(
+        inlet - ZERO_CELSIUS, 1e-3 * loss, 1e6 * pair.centre_distance * width, supply
+    )
+    return warm + ZERO_CELSIUS
+
+
+def _film_state(rig: Rig, mesh: int, feed: OilFeed, bulk: float) -> FlankFilmState:
+    factor = rig.case.losses.friction.lubricant_factor
+    first, second = (
+        thermal_contact(material.conductivity, material.density, material.heat_capacity)
+        for material in _materials(rig, mesh)
+    )
+    return FlankFilmState(
+        oil_temperature=feed.inlet,
+        bulk_temperature=bulk,
+        viscosity=feed.oil.dynamic_viscosity(feed.inlet),
+        oil_factor=feed.oil.lubricant_factor if factor is None else factor,
+        roughness=0.5 * math.fsum(rig.mesh_gear(mesh, index).flank_roughness for index in (0, 1)),
+        thermal_contact=(first, second),
+    )
+
+
+def _pitting(rig: Rig, mesh: int, load: FlankLoad, oil: Oil) -> tuple[tuple[Pitting, Pitting] | None, str]:
+    """Pitting of both gears, or why there is none."""
+    first, second = _materials(rig, mesh)
+    if first.flank_strength is None or second.flank_strength is None:
+        soft = first if first.flank_strength is None else second
+        return None, f"material {soft.title} has no flank strength"
+    materials = FlankMaterials(
+        strengths=(first.flank_strength, second.flank_strength),
+        treatments=(first.treatment, second.treatment),
+        cycles=(rated_cycles(rig, mesh, 0), rated_cycles(rig, mesh, 1)),
+        roughness=(rig.mesh_gear(mesh, 0).flank_roughness, rig.mesh_gear(mesh, 1).flank_roughness),
+    )
+    return pitting(rig.pairs[rig.mesh_names[mesh]], load, materials, oil.kinematic_viscosity(LABELLED)), ""
+
+
+def _over_path(
+    contact: FlankContact, state: FlankFilmState, oil: Oil
+) -> tuple[ContactTemperature | None, FilmRatios | None, str]:
+    """Contact temperature and film, or why the document does not give them."""
+    lubricant = Lubricant.known_at(oil.dynamic_viscosity, oil.pressure_viscosity, COEFFICIENT_AT)
+    try:
+        return contact_temperature(contact, state), film_ratios(contact, state, lubricant), ""
+    except DynamicsInputError as error:
+        return None, None, str(error)

@@ -10,17 +10,17 @@ from dynamics.rotor.torsional_modes import LoopMode
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.loop import PointResult
 from rigdesign.postprocessing.campbell import excitation_orders
-from rigdesign.postprocessing.curves import own_ratio
-from rigdesign.postprocessing.dynamics import DynamicRun, mode_crossings
-from rigdesign.postprocessing.loop_states import (
+from rigdesign.postprocessing.curves import (
     AROUND,
     dwell_speeds,
     dwell_stages,
     held_modes,
     is_around,
     modes_at,
+    own_ratio,
     state_at,
 )
+from rigdesign.postprocessing.dynamics import DynamicRun, mode_crossings
 from rigdesign.postprocessing.resonances import USUAL_MARGIN, DynamicShare, resonances
 from rigdesign.postprocessing.run_torques import LoopOverSpeed, torques_over_speed
 from rigdesign.results.loads import DynamicLoads, ModeCrossing

@@ -10,16 +10,15 @@ from collections.abc import Sequence
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.postprocessing.curves import curve_at, dense, response_solver, torque_key
+from rigdesign.postprocessing.curves import curve_at, dense, loop_states, response_solver, torque_key
 from rigdesign.postprocessing.dynamics import DynamicRun
-from rigdesign.postprocessing.loop_states import loop_states
 from rigdesign.postprocessing.run_torques import LoopOverSpeed, torques_over_speed
 from rigdesign.results.loads import PassingPeak, Quantity
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import PlaceKind, TorqueOverSpeed
 from rigdesign.rig.model import Rig
 
-QUANTITIES: dict[PlaceKind, Quantity] = {
+PEAK_QUANTITIES: dict[PlaceKind, Quantity] = {
     "coupling": "coupling torque", "shaft": "shaft torque", "spline": "seat torque", "mesh": "mesh torque"
 }  # fmt: skip
 
@@ -48,8 +47,8 @@ def passing_peaks(
         notes.append(f"resonances between its {len(points)} speeds are not captured")
     if failed:
         notes.append(f"{failed} speeds during run-down have no periodic response")
-    found = [_peak(rig, curve, points) for curve in curves if curve.place.kind in QUANTITIES]
-    order = list(QUANTITIES.values())
+    found = [_peak(rig, curve, points) for curve in curves if curve.place.kind in PEAK_QUANTITIES]
+    order = list(PEAK_QUANTITIES.values())
     return tuple(sorted(found, key=lambda peak: order.index(peak.quantity))), tuple(notes)
 
 
@@ -72,7 +71,7 @@ def _peak(rig: Rig, curve: TorqueOverSpeed, points: Sequence[CurvePoint]) -> Pas
     return PassingPeak(
         place=place.name if place.kind == "shaft" else part,
         part=part,
-        quantity=QUANTITIES[place.kind],
+        quantity=PEAK_QUANTITIES[place.kind],
         peak=peak,
         speed=points[at].speed / rig.pinion_speed(1.0),
         shear_stress=curve.shear_per_torque * peak if place.kind == "shaft" else None,

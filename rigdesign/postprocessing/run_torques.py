@@ -18,7 +18,7 @@ from rigdesign.coupling.loop_system import twist_rows_of
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.preloaded_loop import periodic_laws, shifted_laws
 from rigdesign.coupling.time_run import schedule_of, stage_names
-from rigdesign.postprocessing.loop_states import LoopState, dwell_speeds, is_around, nearest
+from rigdesign.postprocessing.curves import LoopState, dwell_speeds, is_around, nearest
 from rigdesign.results.loads import EventPeak, EventRecord, PassingPeak
 from rigdesign.results.vibration import (
     HeldTorque,

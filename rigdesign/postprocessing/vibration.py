@@ -22,16 +22,14 @@ from dynamics.rotor.damped_modes import (
 from dynamics.rotor.parts import speed_ratios
 from dynamics.standards.api617_2014 import TORSIONAL_SEPARATION, separation_above, separation_below
 from dynamics.vibration.response_curve import CurvePoint
-from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.bearing_loads import bearing_loads, solve_bearings
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.postprocessing.campbell import campbell
-from rigdesign.postprocessing.curves import dense, response_solver
+from rigdesign.postprocessing.curves import LoopState, dense, loop_states, response_solver
 from rigdesign.postprocessing.dynamics import DynamicRun
-from rigdesign.postprocessing.loop_states import LoopState, loop_states
 from rigdesign.postprocessing.nearest_resonance import NearDwell, near_dwells
 from rigdesign.postprocessing.run_torques import LoopOverSpeed, Solve, held_torques, torques_over_speed
 from rigdesign.postprocessing.start_torque import StartResponse, start_response

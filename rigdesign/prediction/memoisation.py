@@ -15,8 +15,8 @@ import numpy as np
 from dynamics.errors import DynamicsNotConverged
 from dynamics.losses.loss import ToothPath
 from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState
+from dynamics.rotor.damped_modes import NamedMode
 from dynamics.rotor.linear_system import LinearSystem
-from dynamics.rotor.mode_names import NamedMode
 from dynamics.rotor.static_loop import LoopLoad, StaticState, port_model
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_laws import alike_teeth
@@ -24,7 +24,7 @@ from dynamics.vibration.harmonic_balance import HarmonicSolution
 from dynamics.vibration.response_curve import CurvePoint, quasi_static_point
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
 from rigdesign.coupling.alignment import axes_in_mesh
-from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearing, solve_bearings
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult
 from rigdesign.coupling.loop_system import loop_system, running_state
 from rigdesign.coupling.mesh_models import (

@@ -103,7 +103,7 @@ class Channel:
         ``at`` gives coordinates; of ``warming_rate`` that of a temperature among the channels, whose change with
         time it is; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
         coupling; of ``angle`` a shaft; of ``natural_frequency``, rig at rest, the number of a torsional mode from 1
-        or the name of any mode (`dynamics.rotor.mode_names`); of ``backlash`` a mesh, ``test.main``; of
+        or the name of any mode (`dynamics.rotor.damped_modes`); of ``backlash`` a mesh, ``test.main``; of
         ``seal_gap`` a seal as results name it; of ``motor_power`` and ``drive_torque`` the motor; of ``root_strain`` a
         strain gauge, ``test.pinion.ii``; of ``acceleration`` a bearing, ``test.pinion_front``; of
         ``shaft_displacement`` a bearing, or a shaft with ``position``; of ``resonance_speed`` a mode as of

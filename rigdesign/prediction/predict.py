@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from dynamics.rotor.mode_names import NamedMode
+from dynamics.rotor.damped_modes import NamedMode
 from dynamics.rotor.torsional_modes import SEEN_GAIN
 from dynamics.vibration.deviation_response import linearised
 from dynamics.vibration.hill_system import MeshPeriodic

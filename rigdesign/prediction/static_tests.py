@@ -7,7 +7,7 @@ with its shell and the oil squeezed out of it, as `dynamics.rotor.journal` has i
 their load.
 
 A natural frequency is asked for by the number of its torsional mode, ``3`` or ``torsional 3``, or by the name of any
-mode, ``lateral test_pinion 1`` (`dynamics.rotor.mode_names`).
+mode, ``lateral test_pinion 1`` (`dynamics.rotor.damped_modes`).
 """
 
 from collections.abc import Callable, Sequence
@@ -16,9 +16,9 @@ from math import pi
 
 import numpy as np
 
+from dynamics.rotor.damped_modes import NamedMode, elastic_named_modes, torsional_modes
 from dynamics.rotor.graph import assemble
 from dynamics.rotor.linear_system import LinearSystem
-from dynamics.rotor.mode_names import NamedMode, elastic_named_modes, torsional_modes
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh

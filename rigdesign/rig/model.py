@@ -12,13 +12,12 @@ from dynamics.tooth.elastic_segment import FACE_POSITIONS
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.circuit_parts import oil_circuits
+from rigdesign.case.circuit_parts import HeatParts, heat_parts, oil_circuits
 from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
-from rigdesign.case.rig_heat_parts import HeatParts, heat_parts
 from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil

@@ -50,7 +50,7 @@ from rigdesign.results.serialisation.housing import (
     rolling_bearing_row,
     thermal_row,
 )
-from rigdesign.results.serialisation.lateral import lateral_row
+from rigdesign.results.serialisation.vibration import lateral_row
 from rigdesign.results.serialisation.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count

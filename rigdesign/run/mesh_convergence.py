@@ -29,7 +29,7 @@ from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks import mesh_checks
 from rigdesign.checks.dynamics import loaded_stages
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.expansion import HousingExpansion
 from rigdesign.coupling.fixed_point import Residual, next_state
 from rigdesign.coupling.iteration import HousingResult, IterationResult, solve_housings

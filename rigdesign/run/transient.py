@@ -13,7 +13,7 @@ from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, 
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check, Checks, overall
 from rigdesign.results.result import Finding, RunResult
-from rigdesign.results.serialisation.history import UNITS, worst_moment_row
+from rigdesign.results.serialisation.events import EXTREME_UNITS, worst_moment_row
 from rigdesign.results.thermal import (
     Extreme,
     HistoryExtremes,
@@ -257,7 +257,7 @@ def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurv
         },
         alignment={
             _with_unit(quantity): {
-                place: (UNITS[quantity].per_si * values).tolist() for place, values in places.items()
+                place: (EXTREME_UNITS[quantity].per_si * values).tolist() for place, values in places.items()
             }
             for quantity, places in misalignments(rig, branch, branches).items()
         },
@@ -266,7 +266,7 @@ def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurv
 
 def _with_unit(quantity: str) -> str:
     """Name of a curve of alignment."""
-    unit = UNITS[quantity].name
+    unit = EXTREME_UNITS[quantity].name
     return quantity if unit == "-" else f"{quantity}_{unit}"
 
 

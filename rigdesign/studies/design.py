@@ -7,8 +7,17 @@ from math import ceil, log2
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, UsageError
-from rigdesign.studies.grid import MAX_POINTS, Variation, combinations, parse_variation
-from rigdesign.studies.ranges import ASSUMED, InputRange, parse_ranges, require_number, tolerance_in
+from rigdesign.studies.grid import (
+    ASSUMED,
+    MAX_POINTS,
+    InputRange,
+    Variation,
+    combinations,
+    parse_ranges,
+    parse_variation,
+    require_number,
+    tolerance_in,
+)
 from rigdesign.studies.result import CheckSelection, Design, StudyPoint, check_ids, declared_ids
 from rigdesign.studies.statistics import CheckState, changes, check_states, ends, stated_values
 
@@ -262,7 +271,7 @@ def _listed(points: int, inputs: int) -> str:
 
 
 def _sampled(case: "Case", design: StudyDesign) -> Plan:
-    from rigdesign.studies.sampling import parse_sample, saltelli_points, unit_points
+    from rigdesign.studies.grid import parse_sample, saltelli_points, unit_points
 
     sample = parse_sample(design.sample or "")
     ranges = parse_ranges(case, design.vary)

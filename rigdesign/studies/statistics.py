@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import binomtest, sobol_indices
 
-from rigdesign.studies.grid import Variation
-from rigdesign.studies.ranges import InputRange
+from rigdesign.studies.grid import InputRange, Variation
 from rigdesign.studies.result import Crossing, PassProbability, Record, SobolIndex, StudyPoint, Swing
 
 if TYPE_CHECKING:

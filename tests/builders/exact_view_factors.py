@@ -3,7 +3,7 @@
 F_dA-polygon is exact for a flat polygon (Lambert's formula, the polygon cut at the horizon of dA); it is
 integrated over the emitting facet by a rule of degree 5. What stands between two facets is found by rays from
 the points of one facet to the centre of the other, against every facet named as an obstacle. The result is
-the mean over both directions and is not closed: see `thermal.conditions.enclosure.close_view_factors`.
+the mean over both directions and is not closed: see `thermal.conditions.view_factor_closure.close_view_factors`.
 
 Cost grows with the square of the number of facets, with occlusion with its third power: take a coarse mesh
 of the same surfaces; the result belongs to the names and not to the mesh.

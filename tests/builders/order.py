@@ -13,7 +13,7 @@ from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.reduction import reduce_rig
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import MeshModel, mesh_models

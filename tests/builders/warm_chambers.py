@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from rigdesign import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.losses import rotating_losses

@@ -26,9 +26,9 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.time_run import drags_at
+from rigdesign.postprocessing.curves import state_at
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.loaded_contact import held_contact
-from rigdesign.postprocessing.loop_states import state_at
 from rigdesign.rig.model import Rig
 from tests.contact_in_loop.loop import MeshInLoop
 from tests.contact_in_loop.response import LoopedProblem, LoopedResponse, looped_response

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.rotor.damped_modes import elastic_loop_modes
 from dynamics.rotor.linear_system import DrivetrainOverSpeed, SpeedBands
-from dynamics.rotor.mode_names import elastic_loop_modes
 from dynamics.rotor.static_loop import LoopLoad
 from dynamics.rotor.torsional_modes import LoopMode
 from dynamics.tooth.law import MeshLaw

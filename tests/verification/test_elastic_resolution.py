@@ -32,7 +32,7 @@ from dynamics.vibration.march_inputs import DriveLoads, MarchSettings
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from dynamics.vibration.time_integration import TimeMarch
 from rigdesign.case import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import laws_of, mesh_models

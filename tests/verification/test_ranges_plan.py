@@ -22,9 +22,16 @@ from rigdesign.case.loader import changed_together
 from rigdesign.case.paths import Slot, known_paths, slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.checks.assumptions import depends, with_assumptions
-from rigdesign.studies.assumed_ranges import LEAST_MOVE
+from rigdesign.studies.assumed_ranges import (
+    ALIKE,
+    LEAST_MOVE,
+    EndResult,
+    RangeEnd,
+    plan,
+    solve_end,
+    solve_stated,
+)
 from rigdesign.studies.modified_rig import PARTS, Part, parts_of
-from rigdesign.studies.range_plan import ALIKE, EndResult, RangeEnd, plan, solve_end, solve_stated
 from rigdesign.studies.reference_rig import Reference
 from tests.builders.checks import EXPECTED, check, limit_of
 from tests.builders.paths import CASES

@@ -15,7 +15,7 @@ import pytest
 
 from dynamics.rotor.bearing_state import RowSpring
 from rigdesign.case import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import laws_of, mesh_models

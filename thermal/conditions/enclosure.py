@@ -15,9 +15,9 @@ import numpy as np
 
 from thermal.conditions.boundary import ConditionError
 from thermal.conditions.view_factor_closure import close_view_factors
+from thermal.fe.arrays import FloatArray
 from thermal.fe.elements import FiniteElements, SurfaceElements
-from thermal.fe.low_rank import Column, combined
-from thermal.fe.mesh import FloatArray
+from thermal.fe.solver import Column, combined
 from thermal.films.law import STEFAN_BOLTZMANN
 
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from thermal.conditions.boundary import ConditionError
 from thermal.fe.elements import FiniteElements
-from thermal.fe.low_rank import DIFFERENCE
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import Operator
+from thermal.fe.solver import DIFFERENCE, Operator
 from thermal.forms import heat_capacity
 
 

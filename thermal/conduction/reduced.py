@@ -35,8 +35,8 @@ from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition, ConditionError
 from thermal.conduction.setup import ConductionSetup
 from thermal.errors import ThermalNotConverged
-from thermal.fe.low_rank import DIFFERENCE
 from thermal.fe.mesh import FloatArray
+from thermal.fe.solver import DIFFERENCE
 from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
 
 # Radiation between the surfaces of a chamber, projected on temperature shapes.

@@ -15,8 +15,8 @@ import numpy as np
 from thermal.conditions.boundary import ConditionError
 from thermal.conditions.streams import StreamNetwork, VolumeFilm, inlet_share, inlet_share_slope
 from thermal.fe.elements import FiniteElements, SurfaceElements
-from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of
 from thermal.fe.mesh import FloatArray
+from thermal.fe.solver import DIFFERENCE, Column, combined, mean_of
 from thermal.films.law import FilmLaw
 
 

@@ -39,9 +39,21 @@ from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.stream_terms import Elimination, VolumeTerms, checked_value, eliminate
 from thermal.fe.direct_factor import MOST_NODES, DirectFactor
 from thermal.fe.elements import FiniteElements, SurfaceElements
-from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of, stack
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import BoolArray, HeldMatrix, LowRank, Operator, Product, TwoLevelMultigrid, constrain
+from thermal.fe.solver import (
+    DIFFERENCE,
+    BoolArray,
+    Column,
+    HeldMatrix,
+    LowRank,
+    Operator,
+    Product,
+    TwoLevelMultigrid,
+    combined,
+    constrain,
+    mean_of,
+    stack,
+)
 from thermal.films.law import STEFAN_BOLTZMANN
 
 EXCHANGE_SHIFT = 1e-4

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import show
+from rigdesign.case.circuit_parts import heat_parts
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import RotatingCylinder, RotatingDisc
 from rigdesign.case.rig_heat import OIL_COOLER, WATER
-from rigdesign.case.rig_heat_parts import heat_parts
 
 if TYPE_CHECKING:
     from rigdesign.case.gearbox import Gearbox

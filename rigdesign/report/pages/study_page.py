@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.version import __version__
-from rigdesign.report.figures import study, study_samples
+from rigdesign.report.figures import study
 from rigdesign.report.figures.drawing import NumberedFigures
-from rigdesign.report.figures.study import region_figure
+from rigdesign.report.figures.study import indices_figure, region_figure, scatter_figure, tornado_figure
 from rigdesign.report.margins.passing_range import StudyAnswer, by_check, passing, slices
 from rigdesign.report.margins.regions import region_map
 from rigdesign.report.margins.table import MarginTable
@@ -75,8 +75,8 @@ def study_pictures(found: StudyResult, answer: StudyAnswer) -> StudyPictures:
             _maps(pictures, svg, found, answer)
         if not pictures.main:
             _scatter(pictures, svg, found, answer)
-    _draw_each(pictures.tornado, svg, by_check(answer, found.swings), study_samples.tornado_figure, TORNADO)
-    _draw_each(pictures.indices, svg, by_check(answer, found.indices), study_samples.indices_figure, INDICES)
+    _draw_each(pictures.tornado, svg, by_check(answer, found.swings), tornado_figure, TORNADO)
+    _draw_each(pictures.indices, svg, by_check(answer, found.indices), indices_figure, INDICES)
     return pictures
 
 
@@ -135,7 +135,7 @@ def _scatter(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, 
         _, margins = answer.deciding.limiting()
         axes.sort(key=lambda axis: -abs(_rank_correlation(positions[axis.path], margins)))
     for axis in axes[:MOST_SCATTER]:
-        figure = study_samples.scatter_figure(axis, positions[axis.path], answer.deciding)
+        figure = scatter_figure(axis, positions[axis.path], answer.deciding)
         pictures.main.append(Picture(svg(figure, f"Smallest margin over {axis.label}"), ""))
 
 

@@ -9,8 +9,8 @@ from dynamics.rotor.assembly import assemble_rig
 from dynamics.rotor.bearing_state import BearingCoefficients, RunningState
 from dynamics.rotor.bracing import LoopBracing, brace
 from dynamics.rotor.craig_bampton import Face, SeenRig, approach_row, mesh_ports
+from dynamics.rotor.damped_modes import elastic_loop_modes
 from dynamics.rotor.graph import assemble
-from dynamics.rotor.mode_names import elastic_loop_modes
 from dynamics.rotor.reduction import reduce_rig
 from dynamics.rotor.static_loop import LoopLoad, line_ratios
 from dynamics.vibration.initial_state import wound_state

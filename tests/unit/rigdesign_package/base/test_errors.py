@@ -7,7 +7,7 @@ import pytest
 from rigdesign.base import errors
 from rigdesign.base.errors import CaseError, Fault, RigdesignError
 from rigdesign.case import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig

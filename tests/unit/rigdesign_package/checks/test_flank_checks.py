@@ -12,8 +12,7 @@ from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks import flanks, strength
 from rigdesign.checks.assumptions import depends
-from rigdesign.postprocessing.flank_rating import flank_ratings
-from rigdesign.postprocessing.gear_loads import rated_cycles, rated_loads
+from rigdesign.postprocessing.gear_loads import flank_ratings, rated_cycles, rated_loads
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.serialisation.teeth import flank_rating_row

@@ -16,7 +16,7 @@ from rigdesign.case import load_case
 from rigdesign.case.bearings import JournalBearingInput
 from rigdesign.case.rolling_bearing import BearingPlace
 from rigdesign.checks import films, ramp
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import IterationParts, PointProblem, run_iteration
 from rigdesign.coupling.losses import bearing_ratings
 from tests.builders.paths import CASES

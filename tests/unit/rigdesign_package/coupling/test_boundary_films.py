@@ -7,7 +7,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.located_loss import PlacedLoss, PointLosses
 from rigdesign.coupling.losses import rotating_losses

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.located_loss import PlacedLoss, drag_shafts, drag_torques, given_power
 from rigdesign.coupling.losses import mesh_losses, rotating_losses

@@ -8,8 +8,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
-from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.bearing_loads import bearing_loads, solve_bearings
 from rigdesign.coupling.fixed_point import next_state
 from rigdesign.coupling.iteration import PointProblem, initial_state, run_iteration
 from rigdesign.coupling.located_loss import PointLosses

@@ -14,8 +14,7 @@ from dynamics.rotor.rolling_catalogue import catalogue_bearing
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.case.rolling_bearing import BearingSeats
-from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.bearing_loads import axial_force, bearing_loads, shaft_loads
+from rigdesign.coupling.bearing_loads import axial_force, bearing_loads, shaft_loads, solve_bearings
 from rigdesign.coupling.bearing_seats import conductances
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.located_loss import PointLosses

@@ -5,7 +5,7 @@ import pytest
 
 from dynamics.rotor.bearing_state import RunningState, isotropic_bearing
 from rigdesign import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import bearing_coefficients, mesh_placements
 from rigdesign.coupling.time_run import held_points

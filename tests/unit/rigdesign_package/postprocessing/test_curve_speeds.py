@@ -8,7 +8,7 @@ import pytest
 from dynamics.vibration.response_curve import ResponseCurve
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.postprocessing import curves
-from rigdesign.postprocessing.loop_states import dwell_speeds, is_around
+from rigdesign.postprocessing.curves import dwell_speeds, is_around
 from tests.builders.solved_loop import solved
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from rigdesign.case.rig_heat_parts import HeatParts
+from rigdesign.case.circuit_parts import HeatParts
 from rigdesign.coupling.loop import governing_point
 from rigdesign.postprocessing.housing import cooling_balance
 

@@ -10,14 +10,14 @@ import pytest
 from dynamics.rotor.damped_modes import rig_modes
 from dynamics.rotor.rotor_model import HousingSupport, isotropic_support
 from rigdesign.case.loader import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.vibration import lateral_vibration, seal_whirls, seat_stiffnesses
 from rigdesign.results.lateral import LateralVibration
-from rigdesign.results.serialisation.lateral import lateral_row
+from rigdesign.results.serialisation.vibration import lateral_row
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 from tests.builders.twisting import twisting_rig

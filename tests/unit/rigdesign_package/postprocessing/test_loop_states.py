@@ -9,14 +9,14 @@ import pytest
 
 from rigdesign.case.loader import load_case
 from rigdesign.case.schedule import StageValues
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_over_speed import loop_over_speed
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.preloaded_loop import signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing import curves
-from rigdesign.postprocessing.loop_states import dwell_speeds, dwell_stages, held_modes, modes_at, state_at
+from rigdesign.postprocessing.curves import dwell_speeds, dwell_stages, held_modes, modes_at, state_at
 from rigdesign.postprocessing.start_torque import response_under
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES

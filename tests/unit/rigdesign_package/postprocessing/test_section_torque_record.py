@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from rigdesign.coupling.loop_system import twist_rows_of
-from rigdesign.postprocessing.curves import Curves, curve_at
+from rigdesign.postprocessing.curves import Curves, chosen, curve_at
 from rigdesign.postprocessing.dynamics_section import section_torque_record
-from rigdesign.postprocessing.loop_states import chosen
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.vibration import SectionTorqueRecord
 from tests.builders.made_run import made_ramp, made_run

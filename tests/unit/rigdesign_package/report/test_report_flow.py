@@ -7,8 +7,7 @@ from itertools import pairwise
 import pytest
 
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
-from rigdesign.report.figures.flow import body_flow_figure, rig_flow_figure
-from rigdesign.report.figures.sankey import Flow, layout, spread
+from rigdesign.report.figures.flow import Flow, body_flow_figure, layout, rig_flow_figure, spread
 from tests.builders.report import make_result, thermal_and_expansion
 
 COLUMNS = [["a", "b", "c"], ["oil", "bodies"], ["cooler", "room"]]

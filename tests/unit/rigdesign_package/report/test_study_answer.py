@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rigdesign.base.errors import UsageError
 from rigdesign.report.figures.drawing import drawing_style
-from rigdesign.report.figures.study_samples import tornado_figure
+from rigdesign.report.figures.study import tornado_figure
 from rigdesign.report.margins.passing_range import slices, study_answer
 from rigdesign.report.margins.regions import region_map
 from rigdesign.report.margins.table import input_name, study_axis, value_shown

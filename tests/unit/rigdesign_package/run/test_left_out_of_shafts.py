@@ -4,7 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from rigdesign import load_case
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop_system import loop_system
 from rigdesign.coupling.mesh_models import mesh_models

@@ -11,8 +11,7 @@ from rigdesign.base.errors import CaseError, NotConvergedError, UsageError
 from rigdesign.case import load_case
 from rigdesign.studies import ledger
 from rigdesign.studies.design import StudyDesign, planned
-from rigdesign.studies.ranges import parse_ranges
-from rigdesign.studies.sampling import Sample, parse_sample, saltelli_points, unit_points
+from rigdesign.studies.grid import Sample, parse_ranges, parse_sample, saltelli_points, unit_points
 from tests.builders.commands import PROTOTYPE
 from tests.builders.study import InProcess, run_study
 from tests.builders.study_functions import CURVES, NumberCase, curves, result_of

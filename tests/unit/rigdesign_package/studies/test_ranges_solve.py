@@ -12,9 +12,8 @@ from rigdesign.case import Case
 from rigdesign.results.check import Check
 from rigdesign.run.main import run_case
 from rigdesign.studies import modified_rig
-from rigdesign.studies.assumed_ranges import with_ranges
+from rigdesign.studies.assumed_ranges import EndResult, RangeEnd, plan, solve_end, solve_stated, with_ranges
 from rigdesign.studies.modified_rig import PARTS, Part, parts_of
-from rigdesign.studies.range_plan import EndResult, RangeEnd, plan, solve_end, solve_stated
 from rigdesign.studies.reference_rig import Reference
 from tests.builders.paths import CASES
 

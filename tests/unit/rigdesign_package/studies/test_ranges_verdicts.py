@@ -9,9 +9,8 @@ from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
-from rigdesign.studies.assumed_ranges import joined
+from rigdesign.studies.assumed_ranges import CheckAtEnd, EndResult, RangeEnd, joined
 from rigdesign.studies.modified_rig import PARTS, parts_of
-from rigdesign.studies.range_plan import CheckAtEnd, EndResult, RangeEnd
 from tests.builders.report import make_check, make_result
 
 GAP, OIL = "gearboxes.test.seals.gap", "gearboxes.test.oil.flow"

@@ -6,8 +6,7 @@ from scipy import sparse
 from scipy.linalg import LinAlgError
 from scipy.sparse.linalg import splu
 
-from thermal.fe.direct_factor import DirectFactor
-from thermal.fe.nested_dissection import LEAF, nested_dissection
+from thermal.fe.direct_factor import LEAF, DirectFactor, nested_dissection
 
 
 def lattice(shape: tuple[int, int, int], unknowns: int, seed: int = 0) -> tuple[sparse.csr_array, np.ndarray]:
