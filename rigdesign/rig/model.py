@@ -208,13 +208,13 @@ class Rig:
             return tuple(self.models[name].mesh.surfaces)
         return tuple(surface_names(self.geometries[name]))
 
-    def meshed(self, fidelity: Fidelity) -> dict[str, GearboxModel]:
-        """The housings meshed at one fidelity, with the sizes the case gives for its zones."""
+    def meshed(self, fidelity: Fidelity, coarser: float = 1.0) -> dict[str, GearboxModel]:
+        """The housings meshed at one fidelity, or so many times coarser, with the sizes that the case gives for zones."""
         models = {}
         for name, geometry in self.geometries.items():
             housing = self.case.gearboxes[name].housing
             assert housing is not None
-            sizes = mesh_sizes(geometry, fidelity, housing.mesh.sizes())
+            sizes = mesh_sizes(geometry, fidelity, housing.mesh.sizes()).times(coarser)
             if housing.part_file is not None:
                 models[name] = user_model(name, self.case.gearboxes[name], geometry, self.case.path, sizes)
                 continue

@@ -1,10 +1,9 @@
 """How far the numbers the checks use are from those of an infinitely fine mesh.
 
-The converged point is solved once more, same losses, films and oil, on meshes of another fidelity: quick for
-standard; quick and standard for reference. From three meshes the error follows by Richardson extrapolation
-with the order observed, from two with the order of a field at re-entrant edges. At quick there is nothing
-coarser, only the energy norm of the recovered gradient is given. The values of the checks are taken on every
-mesh as they are, the worst place of all; a verdict that depends on the mesh says so
+The converged point is solved once more, same losses, films and oil, on other meshes: one of elements half as large
+again for quick; quick for standard; quick and standard for reference. From three meshes the error follows by
+Richardson extrapolation with the order observed, from two with the order of a field at re-entrant edges. The values
+of the checks are taken on every mesh as they are, the worst place of all; a verdict that depends on the mesh says so
 (`rigdesign.checks.rules.with_error`).
 Sources: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123; Celik et al., J. Fluids Eng. 130 (2008) 078001 for meshes
 without a constant ratio; Strang, Fix, An Analysis of the Finite Element Method, ch. 8: at an edge of 270 degrees
@@ -261,10 +260,12 @@ def _observed(quotient: float, first: float, second: float) -> float | None:
 # At reference the loop runs on the standard mesh and this iteration on the final one ends it. The same iteration on
 # coarser meshes tells how far the result depends on the mesh (`rigdesign.run.mesh_convergence`).
 
-COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
-    "quick": (),
-    "standard": ("quick",),
-    "reference": ("quick", "standard"),
+MeshOf = tuple[Fidelity, float]
+"""A mesh: that of a fidelity, or so many times coarser."""
+COARSER: dict[Fidelity, tuple[MeshOf, ...]] = {
+    "quick": (("quick", 1.5),),
+    "standard": (("quick", 1.0),),
+    "reference": (("quick", 1.0), ("standard", 1.0)),
 }
 """Meshes from which the errors of a fidelity follow, in addition to its own, from coarse to fine."""
 
@@ -281,10 +282,10 @@ class BackgroundMeshing:
     """
 
     def __init__(self, rig: Rig, source: Rig) -> None:
-        self._rig, self._source = rig, source
-        fidelities = (*COARSER[rig.fidelity], rig.fidelity)
-        self._others = tuple(f for f in fidelities if f != source.fidelity)
-        works = [partial(_meshed, source, f, needed=f == rig.fidelity) for f in self._others]
+        self._source = source
+        self._wanted: tuple[MeshOf, ...] = (*COARSER[rig.fidelity], (rig.fidelity, 1.0))
+        self._others = tuple(mesh for mesh in self._wanted if mesh != (source.fidelity, 1.0))
+        works = [partial(_meshed, source, mesh, needed=mesh == self._wanted[-1]) for mesh in self._others]
         self._works: BackgroundTasks[dict[str, GearboxModel] | None] = BackgroundTasks(works)
 
     def __enter__(self) -> Self:
@@ -301,18 +302,17 @@ class BackgroundMeshing:
         MeshError
             The last one cannot be meshed; a coarser one is left out then.
         """
-        made = {self._source.fidelity: self._source}
-        for fidelity, models in zip(self._others, self._works.results(), strict=True):
+        made = {(self._source.fidelity, 1.0): self._source}
+        for mesh, models in zip(self._others, self._works.results(), strict=True):
             if models is not None:
-                made[fidelity] = replace(self._source, fidelity=fidelity).with_models(models)
-        wanted = (*COARSER[self._rig.fidelity], self._rig.fidelity)
-        return tuple(made[fidelity] for fidelity in wanted if fidelity in made)
+                made[mesh] = replace(self._source, fidelity=mesh[0]).with_models(models)
+        return tuple(made[mesh] for mesh in self._wanted if mesh in made)
 
 
-def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxModel] | None:
-    """Housings at one fidelity; None where one cannot be meshed that is not needed."""
+def _meshed(rig: Rig, mesh: MeshOf, *, needed: bool) -> dict[str, GearboxModel] | None:
+    """Housings on one mesh; None where one cannot be meshed that is not needed."""
     try:
-        return rig.meshed(fidelity)
+        return rig.meshed(*mesh)
     except MeshError:
         if needed:
             raise

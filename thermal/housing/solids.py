@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,8 @@ TETRAHEDRON_10, TRIANGLE_6 = 11, 9
 """gmsh's numbers of the two element types."""
 TOLERANCE = 1e-6
 """Distance [m] within which a node lies on a named patch."""
+LEAST_CIRCLE = 6
+"""Elements round a bore or shaft at least."""
 
 SizeLaw = Callable[[float, float, float], float]
 """Target element size [m] at a corner of the geometry (x, y, z)."""
@@ -232,10 +234,20 @@ class MeshSizes:
             bounded = math.isfinite(value) or name in ("seal", "bearing", "gear")
             if not (bounded and value > 0.0):
                 raise GeometryError(f"mesh size {name} = {value} m must be greater than 0; give a length")
-        if self.circle < 6:
+        if self.circle < LEAST_CIRCLE:
             raise GeometryError(
-                f"mesh size circle = {self.circle} is below 6; give 6 elements a turn or more"
+                f"mesh size circle = {self.circle} is below {LEAST_CIRCLE}; give {LEAST_CIRCLE} elements a turn or more"
             )
+
+    def times(self, factor: float) -> Self:
+        """So many times these sizes, elements a turn no fewer than possible."""
+        if factor == 1.0:
+            return self
+        sizes = {
+            name: factor * getattr(self, name)
+            for name in ("wall", "field", "shaft", "seal", "bearing", "gear")
+        }
+        return replace(self, circle=max(LEAST_CIRCLE, round(self.circle / factor)), **sizes)
 
 
 def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
