@@ -209,7 +209,7 @@ class Rig:
         return tuple(surface_names(self.geometries[name]))
 
     def meshed(self, fidelity: Fidelity, coarser: float = 1.0) -> dict[str, GearboxModel]:
-        """The housings meshed at one fidelity, or so many times coarser, with the sizes that the case gives for zones."""
+        """The housings meshed at one fidelity, or so many times coarser; the case may give sizes for its zones."""
         models = {}
         for name, geometry in self.geometries.items():
             housing = self.case.gearboxes[name].housing
