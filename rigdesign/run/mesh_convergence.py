@@ -58,6 +58,9 @@ EDGE_ORDER = 4.0 / 3.0
 """Order of integrals of the field where its gradient is that of a re-entrant edge of 270 degrees."""
 ORDERS = (0.5, 4.0)
 """Orders that are believed; four is what second-order elements reach on smooth fields."""
+LEAST_RATIO = 1.1
+"""Of the element sizes of two meshes: with a housing from a file only the drawn parts differ, and the count of all
+nodes says less than that of their elements."""
 LAW_TEMPERATURE = 373.15
 """Temperature [K] at which a conductivity law weighs the energy."""
 
@@ -226,7 +229,7 @@ def richardson(nodes: Sequence[int], values: Sequence[float]) -> tuple[float, fl
     nodes : of the meshes, rising; the element size goes with their cube root
     """
     change = values[-1] - values[-2]
-    ratio = (nodes[-1] / nodes[-2]) ** (1.0 / 3.0)
+    ratio = max((nodes[-1] / nodes[-2]) ** (1.0 / 3.0), LEAST_RATIO)
     if len(values) == 2:
         return _extrapolated(change, ratio, EDGE_ORDER), EDGE_ORDER, "order 4/3 of re-entrant edges assumed"
     before = values[-2] - values[-3]

@@ -189,10 +189,10 @@ def parse_sample(text: str) -> Sample:
     """
     found = SAMPLE.fullmatch(text)
     if found is None:
-        raise UsageError(f"--sample {shortened(text)}: no such design; {EXAMPLE}")
+        raise UsageError(f"--sample {shortened(text)}: no such design; {SAMPLE_EXAMPLE}")
     size = int(found[2])
     if not 2 <= size <= MAX_POINTS:
-        raise UsageError(f"--sample {text}: {size} points, 2 to {MAX_POINTS} are possible; {EXAMPLE}")
+        raise UsageError(f"--sample {text}: {size} points, 2 to {MAX_POINTS} are possible; {SAMPLE_EXAMPLE}")
     if found[1] == "lhs":
         return Sample("lhs", size)
     if size & (size - 1):
@@ -310,7 +310,7 @@ def parse_ranges(case: "Case", texts: Sequence[str]) -> tuple[InputRange, ...]:
     if any(text.strip() == ASSUMED for text in texts):
         written += [entry for entry in assumed_ranges(case) if entry.path not in paths]
     if not written:
-        raise UsageError(f"a study varies nothing; {EXAMPLE}")
+        raise UsageError(f"a study varies nothing; {RANGE_EXAMPLE}")
     return tuple(written)
 
 
@@ -319,10 +319,10 @@ def parse_range(case: "Case", text: str) -> InputRange:
     path, equals, right = text.partition("=")
     path, text = path.strip(), shortened(text)
     if not equals or not path:
-        raise UsageError(f"--vary '{text}': a {'range' if path else 'path'} is missing; {EXAMPLE}")
+        raise UsageError(f"--vary '{text}': a {'range' if path else 'path'} is missing; {RANGE_EXAMPLE}")
     bounds = [number_match(part) for part in right.split(":")]
     if len(bounds) != 2 or not all(bounds):
-        raise UsageError(f"--vary '{text}': {_what_else(case, path, bounds)}; {EXAMPLE}")
+        raise UsageError(f"--vary '{text}': {_what_else(case, path, bounds)}; {RANGE_EXAMPLE}")
     (low, first), (high, unit) = ((float(part[1]), part[2]) for part in bounds if part)
     if first not in ("", unit):
         raise UsageError(
