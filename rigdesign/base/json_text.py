@@ -141,14 +141,10 @@ def _not_finite(value: Any, path: str) -> Iterator[tuple[str, complex]]:
             yield f"{path}[{', '.join(map(str, place))}]", value[tuple(place)].item()
     elif is_dataclass(value) and not isinstance(value, type):
         for item in fields(value):
-            yield from _not_finite(getattr(value, item.name), _joined(path, item.name))
+            yield from _not_finite(getattr(value, item.name), _join(path, item.name))
     elif isinstance(value, Mapping):
         for key, item in value.items():
-            yield from _not_finite(item, _joined(path, str(key)))
+            yield from _not_finite(item, _join(path, str(key)))
     elif isinstance(value, Sequence) and not isinstance(value, str | bytes):
         for index, item in enumerate(value):
             yield from _not_finite(item, f"{path}[{index}]")
-
-
-def _joined(path: str, key: str) -> str:
-    return f"{path}.{key}" if path else key

@@ -38,8 +38,8 @@ from thermal.fe.mesh import FloatArray
 #
 # Shafts that bend feel stiffness and damping of their bearings. What leaves the parts of the circuit alone (losses,
 # oil, flows) moves these by a per cent or less, and along few ways: the oil gets warmer, the clearance wider, the load
-# larger. The coefficients of a bearing near the point are written as a sum of these; the response to each is found once
-# (`rigdesign.prediction.sensitivities`).
+# larger. The coefficients of a bearing near the point are written as a sum of these; the response to each is computed
+# once.
 
 Film = tuple[str, str]
 """Bearing and what of it changes."""

@@ -343,7 +343,7 @@ def _with_flanks(model: RexsModel, log: AttributeLog, component: Component, gear
         for flank, value in zip(flanks[1:], values[1:], strict=False):
             if value is not None and values[0] is not None and abs(value - values[0]) > 1e-9:
                 log.refuse(flank, attribute, "not that of the left flank, which counts for both")
-    return replace(gear, pressure_angle=_first(angles), profile_shift=_first(shifts))
+    return replace(gear, pressure_angle=first_stated(angles), profile_shift=first_stated(shifts))
 
 
 def _profile_shift(log: AttributeLog, flank: Component, gear: UnitGear, here: str) -> float | None:
@@ -388,7 +388,7 @@ def _mesh(
         pinion=pinion.id,
         wheel=wheel.id,
         centre_distance=log.number(stage, "center_distance", "mm", f"{here}.centre_distance", above=0.0),
-        application_factor=_first(factors),
+        application_factor=first_stated(factors),
         face_load_factor=log.number(
             stage, "face_load_factor_contact_stress", "none", f"{here}.face_load_factor", above=0.0
         ),
@@ -400,7 +400,8 @@ def _material_of(model: RexsModel, part: int) -> int | None:
     return next((item.id for item in found if item.type == "material"), None)
 
 
-def _first(values: list[float | None]) -> float | None:
+def first_stated(values: list[float | None]) -> float | None:
+    """The first of some values that is there."""
     return next((value for value in values if value is not None), None)
 
 

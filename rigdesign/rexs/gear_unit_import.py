@@ -18,6 +18,7 @@ from rigdesign.rexs.gear_unit import (
     UnitLubricant,
     UnitMaterial,
     UnitShaft,
+    first_stated,
     place_of,
     read_gears,
     read_meshes,
@@ -411,9 +412,9 @@ def _state(model: RexsModel, log: AttributeLog, components: tuple[Component, ...
     return _State(
         speeds={number: speed for number, speed in speeds.items() if speed is not None},
         loads={load.id: load for load in loads},
-        lubricant_temperature=_first(temperatures),
-        time_share=_first(share),
-        duration=_first(duration),
+        lubricant_temperature=first_stated(temperatures),
+        time_share=first_stated(share),
+        duration=first_stated(duration),
     )
 
 
@@ -444,7 +445,3 @@ def _over(load: ShaftLoad, base: ShaftLoad) -> ShaftLoad:
 def _typed(model: RexsModel, part: Component) -> Component:
     """A component of a load case with the type that the model gives it."""
     return replace(part, type=model.component(part.id).type)
-
-
-def _first(values: list[float | None]) -> float | None:
-    return next((value for value in values if value is not None), None)

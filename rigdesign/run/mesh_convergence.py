@@ -261,7 +261,7 @@ def _observed(quotient: float, first: float, second: float) -> float | None:
 # A converged operating point on another mesh: one more iteration, with its loads and losses.
 #
 # At reference the loop runs on the standard mesh and this iteration on the final one ends it. The same iteration on
-# coarser meshes tells how far the result depends on the mesh (`rigdesign.run.mesh_convergence`).
+# coarser meshes tells how far the result depends on the mesh.
 
 MeshOf = tuple[Fidelity, float]
 """A mesh: that of a fidelity, or so many times coarser."""
@@ -279,7 +279,7 @@ def looping_rig(rig: Rig) -> Rig:
 
 
 class BackgroundMeshing:
-    """Meshes the rig at all other fidelities its errors need, on another core; `rigs` waits for them.
+    """Makes all other meshes that the errors of the rig need, on another core; `rigs` waits for them.
 
     rig : of which the errors are wanted; source : the one on which the loop runs
     """

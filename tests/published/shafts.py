@@ -13,18 +13,79 @@ Found by these rows:
    mesh.
 """
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from dynamics.rotor.torsional_modes import (
-    Crossing,
-    damping_audit,
-    order_crossings,
-    sampling_audit,
-    shaft_frequencies,
-)
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.rotor.graph import Drivetrain
+from dynamics.rotor.shaft import free_frequencies
+from dynamics.rotor.torsional_modes import damping_audit, sampling_audit
 from tests.published.prototype import RPM, Prototype
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
 from tests.published.speed_sweeps import TOP_SPEED, simulation_laws
+
+Array = NDArray[np.float64]
+
+
+def shaft_frequencies(drivetrain: Drivetrain, count: int = 3) -> dict[str, Array]:
+    """First free-free torsional frequencies [Hz] of every shaft with its discs and gear bodies.
+
+    A gear body counts as rigid with its shaft: the damper of a spline usually is far above its corner
+    frequency there (see ``damping_audit``), and a stiff spline without damper hardly differs.
+    """
+    bodies: dict[str, list[tuple[float, float]]] = {shaft.name: [] for shaft in drivetrain.shafts}
+    for gear in drivetrain.gears:
+        bodies[gear.shaft].append((gear.position, gear.inertia))
+    return {
+        shaft.name: free_frequencies(shaft, tuple(bodies[shaft.name]), count) for shaft in drivetrain.shafts
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """Speed at which a mesh order meets a natural frequency of a shaft.
+
+    mesh, shaft : names; mode : 1, 2, 3 ...; frequency [Hz]; harmonic of the mesh frequency
+    speed : of the pinion of that mesh [rad/s]
+    """
+
+    mesh: str
+    shaft: str
+    mode: int
+    frequency: float
+    harmonic: int
+    speed: float
+
+
+def order_crossings(
+    drivetrain: Drivetrain,
+    frequencies: Mapping[str, Array],
+    highest_speed: float,
+    harmonics: int = 3,
+) -> tuple[Crossing, ...]:
+    """All crossings up to a pinion speed [rad/s], by mesh, then by speed: 2 pi f / (z1 h).
+
+    A shaft is crossed by the meshes whose pinion or wheel sits on it.
+    """
+    found = []
+    for mesh in drivetrain.meshes:
+        for shaft in (drivetrain.gear(mesh.pinion).shaft, drivetrain.gear(mesh.wheel).shaft):
+            for mode, frequency in enumerate(frequencies[shaft], start=1):
+                for harmonic in range(1, harmonics + 1):
+                    speed = 2.0 * math.pi * float(frequency) / (mesh.teeth[0] * harmonic)
+                    if speed <= highest_speed:
+                        found.append(
+                            Crossing(
+                                mesh=mesh.name, shaft=shaft, mode=mode, frequency=float(frequency),
+                                harmonic=harmonic, speed=speed,
+                            )
+                        )  # fmt: skip
+    order = {mesh.name: i for i, mesh in enumerate(drivetrain.meshes)}
+    return tuple(sorted(found, key=lambda c: (order[c.mesh], c.speed, c.shaft)))
+
 
 TABLE_2 = {
     "test_pinion": (4022.7, 5657.2, 7776.4),

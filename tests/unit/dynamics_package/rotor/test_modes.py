@@ -8,11 +8,10 @@ from dynamics.rotor.torsional_modes import (
     damping_audit,
     damping_record,
     loop_modes,
-    order_crossings,
     sampling_audit,
-    shaft_frequencies,
 )
 from tests.builders.rig import SHAFTS, TABLE_2, prototype, prototype_laws
+from tests.published.shafts import order_crossings, shaft_frequencies
 
 RPM = math.pi / 30.0
 
