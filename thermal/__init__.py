@@ -45,44 +45,6 @@ A box of cast iron with two shafts, wetted by oil of 70 degC inside, in a room o
 96 degC, balance closed: True
 """
 
-from typing import TYPE_CHECKING
-
 import lazy_loader
 
-if TYPE_CHECKING:
-    from thermal.conditions.boundary import Adiabatic as Adiabatic
-    from thermal.conditions.boundary import Film as Film
-    from thermal.conditions.boundary import PrescribedTemperature as PrescribedTemperature
-    from thermal.conditions.boundary import Radiation as Radiation
-    from thermal.conditions.boundary import SurfaceSource as SurfaceSource
-    from thermal.conduction.setup import ConductionSetup as ConductionSetup
-    from thermal.conduction.steady import TemperatureSolution as TemperatureSolution
-    from thermal.conduction.steady import solve_steady as solve_steady
-    from thermal.expansion.expansion import expand as expand
-    from thermal.expansion.setup import ExpansionSetup as ExpansionSetup
-    from thermal.films.convection import oil_wetted as oil_wetted
-    from thermal.films.convection import rotating_disc as rotating_disc
-    from thermal.films.still import niemann_winter as niemann_winter
-    from thermal.films.still import recknagel_plate as recknagel_plate
-    from thermal.housing.gearbox import HousingGeometry as HousingGeometry
-    from thermal.housing.gearbox import build_gearbox as build_gearbox
-    from thermal.housing.shaft_geometry import EndBearing as EndBearing
-    from thermal.housing.shaft_geometry import GearDisc as GearDisc
-    from thermal.housing.shaft_geometry import ShaftGeometry as ShaftGeometry
-    from thermal.transient.history import solve_transient as solve_transient
-
-__getattr__, __dir__, __all__ = lazy_loader.attach(
-    __name__,
-    submod_attrs={
-        "conditions.boundary": ["Adiabatic", "Film", "PrescribedTemperature", "Radiation", "SurfaceSource"],
-        "conduction.setup": ["ConductionSetup"],
-        "conduction.steady": ["TemperatureSolution", "solve_steady"],
-        "expansion.expansion": ["expand"],
-        "expansion.setup": ["ExpansionSetup"],
-        "films.convection": ["oil_wetted", "rotating_disc"],
-        "films.still": ["niemann_winter", "recknagel_plate"],
-        "housing.gearbox": ["HousingGeometry", "build_gearbox"],
-        "housing.shaft_geometry": ["EndBearing", "GearDisc", "ShaftGeometry"],
-        "transient.history": ["solve_transient"],
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -18,31 +18,6 @@
 backlash 112 um cold, 95 um hot
 """
 
-from typing import TYPE_CHECKING
-
 import lazy_loader
 
-if TYPE_CHECKING:
-    from dynamics.gear.cylindrical_gear import CylindricalGear as CylindricalGear
-    from dynamics.gear.cylindrical_gear import GearGeometryError as GearGeometryError
-    from dynamics.gear.cylindrical_gear import Rack as Rack
-    from dynamics.gear.flank import AxisMisalignment as AxisMisalignment
-    from dynamics.gear.microgeometry import Microgeometry as Microgeometry
-    from dynamics.gear.microgeometry import Topography as Topography
-    from dynamics.gear.pair import GearPair as GearPair
-    from dynamics.gear.pair_geometry import PairGeometry as PairGeometry
-    from dynamics.gear.pair_geometry import TipShortening as TipShortening
-    from dynamics.gear.tooth_form import GearDetails as GearDetails
-    from dynamics.gear.tooth_form import ToothForm as ToothForm
-
-__getattr__, __dir__, __all__ = lazy_loader.attach(
-    __name__,
-    submod_attrs={
-        "cylindrical_gear": ["CylindricalGear", "GearGeometryError", "Rack"],
-        "flank": ["AxisMisalignment"],
-        "microgeometry": ["Microgeometry", "Topography"],
-        "pair": ["GearPair"],
-        "pair_geometry": ["PairGeometry", "TipShortening"],
-        "tooth_form": ["GearDetails", "ToothForm"],
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

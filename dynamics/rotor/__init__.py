@@ -32,36 +32,6 @@ Two gearboxes with the gears of `dynamics.gear` and `dynamics.tooth`, braced aga
 ['0 Hz', '500 Hz', '1488 Hz', '3740 Hz']
 """
 
-from typing import TYPE_CHECKING
-
 import lazy_loader
 
-if TYPE_CHECKING:
-    from dynamics.rotor.bearing import BearingOperation as BearingOperation
-    from dynamics.rotor.bearing import OilSupply as OilSupply
-    from dynamics.rotor.graph import Drivetrain as Drivetrain
-    from dynamics.rotor.graph import assemble as assemble
-    from dynamics.rotor.journal import JournalBearing as JournalBearing
-    from dynamics.rotor.parts import Coupling as Coupling
-    from dynamics.rotor.parts import GearBody as GearBody
-    from dynamics.rotor.parts import MeshConnection as MeshConnection
-    from dynamics.rotor.parts import Motor as Motor
-    from dynamics.rotor.rolling import RollingBearing as RollingBearing
-    from dynamics.rotor.shaft import Section as Section
-    from dynamics.rotor.shaft import Shaft as Shaft
-    from dynamics.rotor.static_loop import LoopLoad as LoopLoad
-    from dynamics.rotor.torsional_modes import loop_modes as loop_modes
-
-__getattr__, __dir__, __all__ = lazy_loader.attach(
-    __name__,
-    submod_attrs={
-        "bearing": ["BearingOperation", "OilSupply"],
-        "graph": ["Drivetrain", "assemble"],
-        "journal": ["JournalBearing"],
-        "parts": ["Coupling", "GearBody", "MeshConnection", "Motor"],
-        "rolling": ["RollingBearing"],
-        "shaft": ["Section", "Shaft"],
-        "static_loop": ["LoopLoad"],
-        "torsional_modes": ["loop_modes"],
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -17,43 +17,6 @@ With the pair of `dynamics.gear`, under load stage 10 of the FZG test:
 transmission error 18 um
 """
 
-from typing import TYPE_CHECKING
-
 import lazy_loader
 
-if TYPE_CHECKING:
-    from dynamics.tooth.elastic_pair import influence_law as influence_law
-    from dynamics.tooth.friction import friction_coefficient as friction_coefficient
-    from dynamics.tooth.friction import tooth_loss_factor as tooth_loss_factor
-    from dynamics.tooth.law import MeshLaw as MeshLaw
-    from dynamics.tooth.loaded_mesh import LoadedMesh as LoadedMesh
-    from dynamics.tooth.mesh_force import evaluate_mesh as evaluate_mesh
-    from dynamics.tooth.mesh_force import static_cycle as static_cycle
-    from dynamics.tooth.mesh_force import tooth_forces as tooth_forces
-    from dynamics.tooth.mesh_laws import ContactDiscretisation as ContactDiscretisation
-    from dynamics.tooth.mesh_laws import MeshDissipation as MeshDissipation
-    from dynamics.tooth.mesh_laws import MeshPosition as MeshPosition
-    from dynamics.tooth.mesh_laws import PairStiffness as PairStiffness
-    from dynamics.tooth.mesh_laws import mesh_law as mesh_law
-    from dynamics.tooth.mesh_laws import pair_stiffness as pair_stiffness
-    from dynamics.tooth.root_field import RootField as RootField
-
-__getattr__, __dir__, __all__ = lazy_loader.attach(
-    __name__,
-    submod_attrs={
-        "elastic_pair": ["influence_law"],
-        "friction": ["friction_coefficient", "tooth_loss_factor"],
-        "law": ["MeshLaw"],
-        "loaded_mesh": ["LoadedMesh"],
-        "mesh_force": ["evaluate_mesh", "static_cycle", "tooth_forces"],
-        "mesh_laws": [
-            "ContactDiscretisation",
-            "MeshDissipation",
-            "MeshPosition",
-            "PairStiffness",
-            "mesh_law",
-            "pair_stiffness",
-        ],
-        "root_field": ["RootField"],
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,11 @@
+from .cylindrical_gear import CylindricalGear as CylindricalGear
+from .cylindrical_gear import GearGeometryError as GearGeometryError
+from .cylindrical_gear import Rack as Rack
+from .flank import AxisMisalignment as AxisMisalignment
+from .microgeometry import Microgeometry as Microgeometry
+from .microgeometry import Topography as Topography
+from .pair import GearPair as GearPair
+from .pair_geometry import PairGeometry as PairGeometry
+from .pair_geometry import TipShortening as TipShortening
+from .tooth_form import GearDetails as GearDetails
+from .tooth_form import ToothForm as ToothForm

@@ -1,0 +1,14 @@
+from .churning import churning_loss as churning_loss
+from .immersion import DippedGear as DippedGear
+from .immersion import OilBath as OilBath
+from .immersion import RunningGear as RunningGear
+from .loss import Loss as Loss
+from .loss import mesh_loss as mesh_loss
+from .oil_jet import OilJet as OilJet
+from .oil_jet import oil_acceleration as oil_acceleration
+from .seal_loss import gap_seal_loss as gap_seal_loss
+from .seal_loss import lip_seal_loss as lip_seal_loss
+from .windage import GearRotor as GearRotor
+from .windage import Mist as Mist
+from .windage import gear_windage as gear_windage
+from .windage import mist_density as mist_density

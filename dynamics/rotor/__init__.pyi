@@ -1,0 +1,14 @@
+from .bearing import BearingOperation as BearingOperation
+from .bearing import OilSupply as OilSupply
+from .graph import Drivetrain as Drivetrain
+from .graph import assemble as assemble
+from .journal import JournalBearing as JournalBearing
+from .parts import Coupling as Coupling
+from .parts import GearBody as GearBody
+from .parts import MeshConnection as MeshConnection
+from .parts import Motor as Motor
+from .rolling import RollingBearing as RollingBearing
+from .shaft import Section as Section
+from .shaft import Shaft as Shaft
+from .static_loop import LoopLoad as LoopLoad
+from .torsional_modes import loop_modes as loop_modes

@@ -1,0 +1,15 @@
+from .elastic_pair import influence_law as influence_law
+from .friction import friction_coefficient as friction_coefficient
+from .friction import tooth_loss_factor as tooth_loss_factor
+from .law import MeshLaw as MeshLaw
+from .loaded_mesh import LoadedMesh as LoadedMesh
+from .mesh_force import evaluate_mesh as evaluate_mesh
+from .mesh_force import static_cycle as static_cycle
+from .mesh_force import tooth_forces as tooth_forces
+from .mesh_laws import ContactDiscretisation as ContactDiscretisation
+from .mesh_laws import MeshDissipation as MeshDissipation
+from .mesh_laws import MeshPosition as MeshPosition
+from .mesh_laws import PairStiffness as PairStiffness
+from .mesh_laws import mesh_law as mesh_law
+from .mesh_laws import pair_stiffness as pair_stiffness
+from .root_field import RootField as RootField

@@ -1,0 +1,11 @@
+from .deviation_response import DeviationResponse as DeviationResponse
+from .event_march import EventMarch as EventMarch
+from .response_curve import CurvePoint as CurvePoint
+from .response_curve import ResponseCurve as ResponseCurve
+from .schedule import Schedule as Schedule
+from .schedule import Stage as Stage
+from .speed_sweep import SweepSettings as SweepSettings
+from .speed_sweep import periodic_response as periodic_response
+from .steady_motion import TimeSettings as TimeSettings
+from .steady_motion import periodic_by_time as periodic_by_time
+from .time_response import run_schedule as run_schedule
