@@ -47,7 +47,7 @@ from thermal.conditions.boundary import (
 )
 from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 from thermal.conduction.steady import TemperatureSolution, solve_steady
 from thermal.films import convection
 from thermal.housing.shaft_geometry import SIDES

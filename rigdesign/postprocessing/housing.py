@@ -41,8 +41,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil
 from rigdesign.rig_heat.component import ComponentHeat, RoomBalance, room_balance
 from thermal.conditions.boundary import Film, SurfaceSource
-from thermal.conduction.condition_checks import Condition
-from thermal.conduction.setup import heat_flux
+from thermal.conduction.setup import Condition, heat_flux
 from thermal.conduction.steady import solve_steady
 from thermal.films.flank import fin_efficiency, tooth_excess
 

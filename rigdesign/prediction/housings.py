@@ -26,9 +26,8 @@ from thermal.conditions.boundary import (
 )
 from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
-from thermal.conduction.condition_checks import Condition
 from thermal.conduction.reduced import Factor, ReducedConduction, shapes_of
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.conduction.steady import TemperatureSolution, newton
 from thermal.conduction.terms import ConductionProblem, Preconditioner
 from thermal.expansion.expansion import read_expansion

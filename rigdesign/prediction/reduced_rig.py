@@ -30,7 +30,7 @@ from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import rate_rows, readings
 from rigdesign.prediction.sensitivities import PointSensitivities, SensitivityNumbers
 from rigdesign.rig.model import Rig
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 from thermal.fe.mesh import FloatArray
 
 STATES = 2

@@ -8,7 +8,7 @@ from rigdesign.case.housing import PressedJoint
 from rigdesign.rig.model import Rig
 from thermal.conditions.boundary import Film
 from thermal.conditions.contact import Contact
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 from thermal.films import convection
 from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
 from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw

@@ -36,7 +36,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
 from rigdesign.run.mesh_convergence import missing_load_errors
 from thermal.conditions.boundary import Film, Radiation
-from thermal.conduction.condition_checks import assumed_difference, audit_conditions, radiation_too_small
+from thermal.conduction.setup import assumed_difference, audit_conditions, radiation_too_small
 
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""

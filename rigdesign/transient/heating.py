@@ -20,7 +20,7 @@ from rigdesign.transient.oil_supply import SupplyHistory, WallAnswer
 from rigdesign.transient.phases import Phase
 from thermal.conditions.boundary import BodySource, Exchange, Film, SurfaceSource
 from thermal.conditions.streams import Stream, StreamNetwork
-from thermal.conduction.condition_checks import Condition, surfaces_of
+from thermal.conduction.setup import Condition, surfaces_of
 from thermal.films.law import FilmCoefficient, FilmLaw
 from thermal.transient.history import ThermalStage
 

@@ -32,7 +32,7 @@ from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, wall_flo
 from thermal.conditions.boundary import Film
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
 from thermal.conduction.capacity import StoredHeat
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 from thermal.films.law import FilmCoefficient, FilmLaw
 
 OIL_ONLY = ("oil_acceleration", "squeeze")

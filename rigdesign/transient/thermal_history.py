@@ -29,8 +29,14 @@ from rigdesign.transient.phases import SCHEDULE, Phase, event_phases, schedule_p
 from rigdesign.transient.soak import Branch, Clearances, Soak, clearances, first_broken, soak_of
 from thermal.expansion.alignment import ShaftAxis
 from thermal.expansion.expansion import ExpansionBasis
-from thermal.transient.history import InitialState, Observed, StepControl, TransientSolution, solve_transient
-from thermal.transient.probes import Probe
+from thermal.transient.history import (
+    InitialState,
+    Observed,
+    Probe,
+    StepControl,
+    TransientSolution,
+    solve_transient,
+)
 
 # Temperatures of one housing over one branch of the thermal history, marched with given supply temperatures.
 

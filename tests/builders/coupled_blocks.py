@@ -12,7 +12,7 @@ from thermal.conditions.boundary import (
 from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
 
 CONDUCTIVITY = {"base": 40.0, "lid": 15.0, "wall": 30.0}

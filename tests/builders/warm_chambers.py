@@ -13,7 +13,7 @@ from rigdesign.coupling.temperatures import HousingField, boundary_conditions, s
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.fzg_case import fzg_case
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 
 HOUSING = "gearboxes.test.housing"
 AIR = 'air = { surfaces = ["outer_*"], law = "niemann_winter" }'

@@ -11,8 +11,7 @@ from tests.published.mapped_mesh import mapped, piecewise, split
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, compare
 from tests.published.thermal_stress import stress_at_nodes
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
-from thermal.conduction.condition_checks import Condition
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.expansion.elastic import ElasticSetup
 from thermal.fe.elements import FiniteElements

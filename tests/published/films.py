@@ -20,7 +20,7 @@ from math import pi
 from rigdesign.properties.oil import OILS
 from rigdesign.results.units import ZERO
 from tests.published.rows import Basis, Gate, PublishedQuantity, ValidationRow, compare
-from thermal.conduction.condition_checks import least_radiation
+from thermal.conduction.setup import least_radiation
 from thermal.films import convection
 from thermal.films.law import FilmLaw
 

@@ -17,8 +17,8 @@ from tests.builders.fzg_case import HELD
 from tests.builders.warm_chambers import solved_chambers, stated_conditions
 from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import StreamNetwork
-from thermal.conduction.condition_checks import check_conditions
 from thermal.conduction.reduced import ReducedConduction, shapes_of
+from thermal.conduction.setup import check_conditions
 from thermal.conduction.steady import solve_steady
 from thermal.films.law import STEFAN_BOLTZMANN
 

@@ -10,8 +10,7 @@ from tests.builders.curved_blocks import cylinder_sector
 from tests.builders.two_blocks import law, renamed
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.contact import Contact
-from thermal.conduction.condition_checks import Condition
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, disjoint_union
 

@@ -12,8 +12,7 @@ from tests.builders.curved_blocks import cylinder_sector
 from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure
-from thermal.conduction.condition_checks import Condition
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, box_mesh, disjoint_union

@@ -17,13 +17,19 @@ from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, BodySource, Film, Radiation
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
 from thermal.conduction.capacity import HeatCapacity
-from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import Condition
 from thermal.conduction.steady import ConductionSetup
 from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
 from thermal.films.law import STEFAN_BOLTZMANN
-from thermal.transient.history import InitialState, Observed, StepControl, ThermalStage, solve_transient
-from thermal.transient.probes import Probe
+from thermal.transient.history import (
+    InitialState,
+    Observed,
+    Probe,
+    StepControl,
+    ThermalStage,
+    solve_transient,
+)
 from thermal.transient.time_steps import Stepper
 
 ZERO = 273.15

@@ -17,8 +17,7 @@ from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTem
 from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.ray_view_factors import ray_view_factors
 from thermal.conditions.view_factor_closure import EnclosureError, close_view_factors
-from thermal.conduction.condition_checks import Condition
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, disjoint_union
 from thermal.films.law import STEFAN_BOLTZMANN

@@ -24,8 +24,7 @@ from thermal.conditions.enclosure import Enclosure
 from thermal.conditions.streams import StreamNetwork, inlet_share
 from thermal.conditions.view_factor_closure import close_view_factors
 from thermal.conduction.capacity import StoredHeat
-from thermal.conduction.condition_checks import Condition
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.mesh import FloatArray
 from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient

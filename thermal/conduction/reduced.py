@@ -22,6 +22,7 @@ from scipy.linalg import lu_factor, lu_solve
 from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
+    ConditionError,
     Exchange,
     Film,
     PrescribedTemperature,
@@ -32,8 +33,7 @@ from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conduction.balance import HeatBalance, HeatFlow
 from thermal.conduction.capacity import StoredHeat
-from thermal.conduction.condition_checks import Condition, ConditionError
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import DIFFERENCE

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from thermal.conduction.balance import HeatBalance, heat_balance
-from thermal.conduction.condition_checks import Condition, check_conditions
+from thermal.conduction.setup import Condition, check_conditions
 from thermal.conduction.setup import ConductionSetup as ConductionSetup
 from thermal.conduction.terms import ConductionProblem, Linearisation, Preconditioner
 from thermal.errors import ThermalInputError, ThermalNotConverged

@@ -24,6 +24,7 @@ from scipy import sparse
 
 from thermal.conditions.boundary import (
     BodySource,
+    ConditionError,
     Exchange,
     Film,
     PrescribedTemperature,
@@ -34,8 +35,7 @@ from thermal.conditions.contact import Contact, SurfaceJoint
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conditions.streams import StreamNetwork, volume_links
 from thermal.conduction.capacity import Storage, StoredHeat
-from thermal.conduction.condition_checks import Condition, ConditionError, check_heat_paths
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup, check_heat_paths
 from thermal.conduction.stream_terms import Elimination, VolumeTerms, checked_value, eliminate
 from thermal.fe.direct_factor import MOST_NODES, DirectFactor
 from thermal.fe.elements import FiniteElements, SurfaceElements

@@ -123,7 +123,7 @@ def niemann_winter(height: float, place_factor: float = 1.0) -> FilmLaw:
     place_factor : f_k [-], 1 for a housing standing free in still air, less when enclosed, more in a draught
 
     The coefficient is of the size of free convection plus radiation together (thermal sheet a), so a surface
-    with this film should not radiate as well; `thermal.conduction.condition_checks.radiation_counted_twice` says
+    with this film should not radiate as well; `thermal.conduction.setup.radiation_counted_twice` says
     so. The book's own limits are not public: the range is that in which the formula agrees with other sources.
     """
     positive("housing height", height, "m")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.builders.two_blocks import law
-from thermal.conditions.boundary import Adiabatic, PrescribedTemperature
+from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTemperature
 from thermal.conditions.streams import (
     SMALL,
     Stream,
@@ -21,8 +21,7 @@ from thermal.conditions.streams import (
     inlet_share,
     inlet_share_slope,
 )
-from thermal.conduction.condition_checks import Condition, ConditionError
-from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.setup import Condition, ConductionSetup
 from thermal.conduction.steady import TemperatureSolution, solve_steady
 from thermal.fe.mesh import NamedMesh, box_mesh
 

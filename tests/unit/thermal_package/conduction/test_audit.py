@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermal.conditions.boundary import Adiabatic, Film, Radiation
-from thermal.conduction.condition_checks import (
+from thermal.conduction.setup import (
     assumed_difference,
     audit_conditions,
     least_radiation,

@@ -12,13 +12,13 @@ from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
     BoundaryCondition,
+    ConditionError,
     Exchange,
     Film,
     PrescribedTemperature,
     Radiation,
     SurfaceSource,
 )
-from thermal.conduction.condition_checks import ConditionError
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.conduction.terms import ConductionProblem
 from thermal.errors import ThermalNotConverged

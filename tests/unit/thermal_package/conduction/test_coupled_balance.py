@@ -16,13 +16,13 @@ from tests.builders.coupled_blocks import (
     network,
 )
 from tests.builders.two_blocks import law
-from thermal.conditions.boundary import Adiabatic, Film
+from thermal.conditions.boundary import Adiabatic, ConditionError, Film
 from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.balance import heat_balance
 from thermal.conduction.capacity import Conductivity
-from thermal.conduction.condition_checks import Condition, ConditionError
+from thermal.conduction.setup import Condition
 from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, newton, solve_steady
 from thermal.conduction.stream_terms import VolumeTerms
 from thermal.conduction.terms import ConductionProblem, ContactTerms

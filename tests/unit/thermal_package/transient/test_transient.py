@@ -9,11 +9,11 @@ from numpy.testing import assert_allclose
 
 from tests.builders.coupled_blocks import CAPACITY, CONDUCTIVITY, conditions, coupled_blocks, network
 from tests.builders.two_blocks import law, renamed
-from thermal.conditions.boundary import Adiabatic, BodySource, Film, PrescribedTemperature
+from thermal.conditions.boundary import Adiabatic, BodySource, ConditionError, Film, PrescribedTemperature
 from thermal.conditions.contact import Contact
 from thermal.conditions.streams import Stream, StreamNetwork
 from thermal.conduction.capacity import Conductivity, Storage
-from thermal.conduction.condition_checks import Condition, ConditionError
+from thermal.conduction.setup import Condition
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import box_mesh, disjoint_union
@@ -21,13 +21,13 @@ from thermal.films.law import FilmCoefficient
 from thermal.transient.history import (
     InitialState,
     Observed,
+    Probe,
     StepControl,
     ThermalStage,
     TransientSolution,
     settling_time,
     solve_transient,
 )
-from thermal.transient.probes import Probe
 
 VARIABLE: dict[str, Conductivity] = {
     **CONDUCTIVITY,
