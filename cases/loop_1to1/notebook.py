@@ -68,4 +68,4 @@ except rigdesign.CaseError as error:
     print(error)
 
 # %%
-result.save("out")
+rigdesign.save(result, "out")

@@ -2,7 +2,6 @@
 
 from dataclasses import asdict, dataclass, field
 from html import escape
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -25,8 +24,6 @@ from rigdesign.results.thermal import (
 )
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import pandas
 
 # Inputs that would turn failing checks: immutable records, named as they stand in results.json.
@@ -217,16 +214,6 @@ class RunResult:
             name: {header: np.asarray(values) for header, values in columns.items()}
             for name, columns in self.columns.items()
         }
-
-    def save(self, out: "str | Path") -> None:
-        """Write what ``rigdesign check --out`` writes to the folder ``out``, by `rigdesign.save`.
-
-        Raises
-        ------
-        OutputError
-            If the folder cannot be written.
-        """
-        import_module("rigdesign.api").save(self, out)
 
     def to_dataframe(self) -> "pandas.DataFrame":
         """The checks as a table, one row each, indexed by id.

@@ -101,8 +101,8 @@ def test_a_shipped_case_is_found_by_its_name_from_anywhere(
         rigdesign.load_case("uhcf_prototype")
 
 
-def test_a_result_saves_itself(tmp_path: Path) -> None:
-    make_result().save(tmp_path / "out")
+def test_a_result_is_saved(tmp_path: Path) -> None:
+    rigdesign.save(make_result(), tmp_path / "out")
     assert (tmp_path / "out" / "results.json").is_file()
 
 
@@ -112,7 +112,7 @@ def test_curves_are_arrays_by_quantity_and_unit(tmp_path: Path) -> None:
     ramp = result.curves["ramp"]
     assert isinstance(ramp["time [s]"], np.ndarray) and ramp["time [s]"].dtype == np.float64
     assert ramp["speed [rpm]"].shape == ramp["time [s]"].shape
-    result.save(tmp_path / "out")
+    rigdesign.save(result, tmp_path / "out")
     files = {path.stem for path in (tmp_path / "out" / "curves").iterdir()}
     assert set(result.curves) == files - {"checks", "losses", "oil", "heat"}
     with (tmp_path / "out" / "curves" / "ramp.csv").open(encoding="utf-8") as stream:
