@@ -26,8 +26,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
-from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
+from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.flank import FlankField
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening

@@ -1,7 +1,7 @@
 from .cylindrical_gear import CylindricalGear as CylindricalGear
-from .cylindrical_gear import GearGeometryError as GearGeometryError
 from .cylindrical_gear import Rack as Rack
 from .flank import AxisMisalignment as AxisMisalignment
+from .involute import GearGeometryError as GearGeometryError
 from .microgeometry import Microgeometry as Microgeometry
 from .microgeometry import Topography as Topography
 from .pair import GearPair as GearPair

@@ -2,33 +2,11 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, asin, atan, cos, degrees, hypot, inf, pi, sin, sqrt, tan
+from math import acos, asin, atan, cos, hypot, inf, pi, sin, sqrt, tan
 
 from scipy.optimize import brentq
 
-from dynamics.errors import DynamicsInputError
-
-
-class GearGeometryError(DynamicsInputError):
-    """A gear or gear pair that cannot be made or cannot mesh; the message names value, limit and remedy."""
-
-
-def involute(angle: float) -> float:
-    """Involute function tan(angle) - angle [rad]."""
-    return tan(angle) - angle
-
-
-def require_angles(pressure_angle: float, helix_angle: float) -> None:
-    """Raise GearGeometryError for tool angles [rad] outside 10 .. 35 deg (normal) and 0 .. 45 deg (helix)."""
-    for name, angle, low, high in (
-        ("pressure_angle", pressure_angle, 10.0, 35.0),
-        ("helix_angle", helix_angle, 0.0, 45.0),
-    ):
-        if not low <= degrees(angle) <= high:
-            raise GearGeometryError(
-                f"{name} = {degrees(angle):.3f} deg must lie in {low:.0f}..{high:.0f} deg; "
-                "give the amount of the angle without sign of hand"
-            )
+from dynamics.gear.involute import GearGeometryError, involute, require_angles
 
 
 @dataclass(frozen=True, kw_only=True)

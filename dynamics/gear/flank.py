@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.limits import NAMES
 from dynamics.gear.microgeometry import Microgeometry, Topography, check_microgeometry
 from dynamics.gear.pair_geometry import PairGeometry

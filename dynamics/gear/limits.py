@@ -1,6 +1,6 @@
 """What a gear pair must respect to be makeable and to mesh, and what is worth a warning."""
 
-from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.pair_geometry import PairGeometry
 
 NAMES = ("pinion", "wheel")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from dynamics.gear import limits
-from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.pair_geometry import PairGeometry
 
 

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import acos, atan, cos, pi, radians, tan
+from math import acos, cos, pi, radians, tan
 from typing import Literal, Self, TypedDict, Unpack
 
 from scipy.optimize import brentq
 
-from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute, require_angles
+from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
+from dynamics.gear.involute import GearGeometryError, involute, shift_sum
 from dynamics.gear.tooth_form import PLAIN, FlankEnds, GearDetails, ToothForm
 
 # Where two gears touch: path of contact, shift sum and tip cut for a centre distance (ISO 21771).
@@ -75,32 +76,6 @@ def path_between(
         tangent_1=-reach_1,
         tangent_2=reach_2,
     )
-
-
-def shift_sum(
-    normal_module: float,
-    pressure_angle: float,
-    helix_angle: float,
-    teeth: tuple[int, int],
-    centre_distance: float,
-) -> float:
-    """Sum of the profile shifts x1 + x2 [-] that mesh without backlash (ISO 21771:2007).
-
-    normal_module, centre_distance : [m]; pressure_angle (normal), helix_angle : [rad]; teeth : pinion, wheel
-
-    Raises GearGeometryError for angles out of range or a centre distance below the sum of the base radii.
-    """
-    require_angles(pressure_angle, helix_angle)
-    alpha_t = atan(tan(pressure_angle) / cos(helix_angle))
-    smallest = 0.5 * normal_module * sum(teeth) / cos(helix_angle) * cos(alpha_t)
-    if not centre_distance > smallest:
-        raise GearGeometryError(
-            f"centre_distance = {1e3 * centre_distance:.4f} mm gives no working pressure angle: it must "
-            f"exceed the sum of the base radii, {1e3 * smallest:.4f} mm; "
-            "increase it or reduce module, teeth or helix angle"
-        )
-    opening = involute(acos(smallest / centre_distance)) - involute(alpha_t)
-    return opening * sum(teeth) / (2.0 * tan(pressure_angle))
 
 
 def tip_cut_for_contact_ratio(

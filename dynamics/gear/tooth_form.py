@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError
+from dynamics.gear.cylindrical_gear import CylindricalGear
+from dynamics.gear.involute import GearGeometryError
 
 Array = NDArray[np.float64]
 

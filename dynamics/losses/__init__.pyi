@@ -3,7 +3,7 @@ from .immersion import DippedGear as DippedGear
 from .immersion import OilBath as OilBath
 from .immersion import RunningGear as RunningGear
 from .loss import Loss as Loss
-from .loss import mesh_loss as mesh_loss
+from .mesh_loss import mesh_loss as mesh_loss
 from .oil_jet import OilJet as OilJet
 from .oil_jet import oil_acceleration as oil_acceleration
 from .seal_loss import gap_seal_loss as gap_seal_loss

@@ -1,21 +1,8 @@
-"""Loss of a gear mesh by tooth sliding, P = mu F_N v_g, and the record of any loss at any place.
-
-`mesh_loss` is the steady loss from the integrated tooth-loss factor.
-"""
+"""The power lost at one place of the rig, of any kind."""
 
 from dataclasses import dataclass, field
 
 from dynamics.errors import DynamicsInputError
-from dynamics.tooth.friction import FrictionCoefficient, PairStiffness, ToothPath, tooth_loss_factor
-
-__all__ = [
-    "Loss",
-    "LossError",
-    "ToothPath",
-    "mesh_loss",
-    "squeeze_loss",
-    "tooth_loss_factor",
-]
 
 
 class LossError(DynamicsInputError):
@@ -39,49 +26,3 @@ class Loss:
     details: dict[str, float | str] = field(default_factory=dict)
     """Numbers behind it, SI, by field name, with the source under ``source``."""
     warnings: tuple[str, ...] = ()
-
-
-def mesh_loss(
-    place: str,
-    path: ToothPath,
-    torque_1: float,
-    omega_1: float,
-    friction: FrictionCoefficient,
-    stiffness: PairStiffness | None = None,
-) -> Loss:
-    """Sliding loss of a mesh at steady load P = mu H_V T_1 omega_1 [W].
-
-    torque_1 [N m] and omega_1 [rad/s] of the pinion; their signs do not matter.
-    """
-    factor = tooth_loss_factor(path, stiffness)
-    transmitted = abs(torque_1 * omega_1)
-    sharing = "even over the contact lines" if stiffness is None else "by tooth-pair stiffness"
-    return Loss(
-        place=place,
-        kind="mesh",
-        power=transmitted * friction.value * factor,
-        details={
-            "transmitted_power": transmitted,
-            "friction_coefficient": friction.value,
-            "friction_law": friction.law,
-            "tooth_loss_factor": factor,
-            "load_sharing": sharing,
-            "source": f"H_V integrated over the path of contact (Wimmer 2006); {friction.source}",
-        },
-        warnings=friction.warnings,
-    )
-
-
-def squeeze_loss(place: str, mesh: Loss, share: float) -> Loss:
-    """Oil squeezed out of the tooth spaces, taken as a share of the mesh loss [W].
-
-    share : 0 to 0.1 [-]; 0 if oil is injected behind the mesh. No formula at this size is trusted: an input.
-    """
-    if not 0.0 <= share <= 0.1:
-        raise LossError(f"{place}: squeeze share = {share}: must lie within 0 to 0.1; correct it")
-    return Loss(
-        place=place,
-        kind="squeeze",
-        power=share * mesh.power,
-        details={"share_of_mesh_loss": share, "source": "input of the case"},
-    )

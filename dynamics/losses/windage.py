@@ -15,10 +15,12 @@ and Loewenthal, on gears of 99 x 7 and 101 x 15 mm 1.1 and 0.9 times; on one of 
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-from dynamics.gear.pair import GearPair
 from dynamics.losses.loss import Loss, LossError
+
+if TYPE_CHECKING:
+    from dynamics.gear.pair import GearPair
 
 LAMINAR_LIMIT = 3e5
 """omega R^2 / nu at which the boundary layer of a free disc turns turbulent (Schlichting)."""
@@ -60,7 +62,7 @@ class GearRotor:
             raise LossError(f"windage: shielding = {self.shielding}: must lie within 0 to 1; it is a share")
 
     @classmethod
-    def of_pair(cls, pair: GearPair, index: int, free_faces: int = 2, shielding: float = 1.0) -> Self:
+    def of_pair(cls, pair: "GearPair", index: int, free_faces: int = 2, shielding: float = 1.0) -> Self:
         """Pinion (index 0) or wheel (1) of a gear pair; the pitch radius is the reference radius."""
         gear = pair.gears[index]
         return cls(

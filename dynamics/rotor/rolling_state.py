@@ -312,10 +312,6 @@ def _skf_drag(bearing: CatalogueBearing, conditions: FrictionConditions) -> floa
     return JET_DRAG_FACTOR * drag if jet else drag
 
 
-STABILISED_TEMPERATURE = 393.15
-"""Rings keep their size up to here (SKF: 120 degC) [K]."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class RollingState(BearingState):
     """Steady state of a rolling bearing; beyond the common fields its own, SI units.
@@ -409,7 +405,7 @@ def limit_warnings(state: RollingState, data: CatalogueBearing, *, drag_in_bath:
             f"viscosity ratio = {life.viscosity_ratio:.3f}: below 0.1, the modified life is not described; use a "
             "thicker oil or cool the bearing"
         )
-    if state.film_temperature > STABILISED_TEMPERATURE:
+    if state.film_temperature > skf.STABILISED_TEMPERATURE:
         yield (
             f"bearing temperature = {state.film_temperature - 273.15:.0f} degC: above 120 degC, rings change their "
             "size; order stabilised rings or cool the bearing"

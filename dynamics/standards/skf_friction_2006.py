@@ -11,6 +11,8 @@ import math
 from bisect import bisect_right
 from typing import NamedTuple
 
+STABILISED_TEMPERATURE = 393.15
+"""Rings keep their size up to here (120 degC) [K]."""
 MU_BL = 0.15
 """Sliding friction coefficient of mixed lubrication, by additive package (p. 100: about 0.15); also at the start."""
 MU_EHL = {"mineral": 0.05, "synthetic": 0.04, "transmission": 0.1}

@@ -206,8 +206,14 @@ class Gearbox(Part):
         """Face width of a gear with both its halves [m]."""
         return self.halves(gear) * self.gears[gear].face_width
 
+    # Oil jets of a gearbox as they reach the meshes: what is fed less leaks, through the nozzles that are open.
 
-# Oil jets of a gearbox as they reach the meshes: what is fed less leaks, through the nozzles that are open.
+    def bearing_positions(self, shaft: str) -> tuple[float, float] | None:
+        """Positions of the two bearings of a shaft [m]; None where they are not stated or not two."""
+        stations = [bearing.position for bearing in self.bearings.values() if bearing.shaft == shaft]
+        if len(stations) != 2 or stations[0] is None or stations[1] is None or stations[0] == stations[1]:
+            return None
+        return stations[0], stations[1]
 
 
 def injected_flow(box: Gearbox) -> float:

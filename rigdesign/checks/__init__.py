@@ -1,7 +1,9 @@
 """Design checks: every registered rule held against the solved rig."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -11,11 +13,12 @@ from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import REGISTRY, load_topics
 from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
-from rigdesign.postprocessing.hand_calculation import disagreeing
-from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Finding
-from rigdesign.rig.model import Rig
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
+    from rigdesign.rig.model import Rig
 
 __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_other_law"]
 
@@ -27,7 +30,7 @@ def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> lis
 
     hand : rows of `records.hand.hand_checks`
     """
-    causes, case = list(disagreeing(hand)), solved.case
+    causes, case = list(_disagreeing(hand)), solved.case
     checks = (_with_doubts(case, check, causes) for check in estimated_checks(solved))
     unusual = list(unusual_inputs(case))
     return [with_assumptions(case, _of_unusual(case, check, unusual)) for check in checks]
@@ -64,6 +67,16 @@ def _of_unusual(case: Case, check: Check, paths: Sequence[str]) -> Check:
     return with_doubt(check, f"unusual input: {', '.join(moving)}") if moving else check
 
 
+ENTERS = {
+    "sliding loss": ("temperature.*", "flank.scuffing_safety.*", "flank.film_ratio.*"),
+    "thermal expansion of": ("clearance.axial_play",),
+    "mean gap of seal": ("clearance.seal_gap",),
+    "hot diametral clearance of": ("clearance.bearing_clearance",),
+    "rise of the shaft at coupling": ("alignment.coupling_offset.*",),
+}
+"""Beginning of a quantity -> the checks whose value it enters."""
+DISAGREES = 0.25
+"""Deviation from which a calculation by hand is a cause to doubt the checks that its quantity enters."""
 LINE_LOAD_ERROR: Mapping[Fidelity, float] = {"quick": 0.12, "standard": 0.04, "reference": 0.04}
 """Share of the highest stress that the face positions of the influence numbers leave open
 (`dynamics.tooth.elastic_segment.NEAR_ENDS`)."""
@@ -108,3 +121,12 @@ def mesh_checks(solved: SolvedRig) -> list[Check]:
     """The checks that apply and whose values depend on the mesh of the housings, as bare values against limits."""
     topics = (topic for topic in REGISTRY.topics() if topic.of_housing_mesh)
     return [check for topic in topics for check in topic.checks(solved) if check.value is not None]
+
+
+def _disagreeing(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str]]:
+    """(patterns of check ids, cause of doubt) of every row whose two numbers do not agree."""
+    for row in rows:
+        patterns = next((ids for start, ids in ENTERS.items() if row["quantity"].startswith(start)), ())
+        if patterns and abs(row["computed"] - row["by_hand"]) > DISAGREES * abs(row["by_hand"]):
+            numbers = f"{row['computed']:.3g} {row['unit']}, by hand {row['by_hand']:.3g} {row['unit']}"
+            yield patterns, f"{row['quantity']}: {numbers}"

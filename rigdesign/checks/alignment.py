@@ -1,15 +1,20 @@
 """Checks of alignment: shafts in their bores, bores out of round, axes of the meshes, couplings as set and warm."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rigdesign.checks.clearances import NOT_EXPANDED
 from rigdesign.checks.omissions import HEAT, coupled_shafts
 from rigdesign.checks.places import couplings
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import MICROMETRE, MILLIMETRE, MILLIRADIAN, MM, NUMBER
 from rigdesign.results.warm_gearbox import CouplingAlignment, ShaftOffset
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "alignment"
 NO_END = "neither of its shafts is in a housing: nothing is known of its alignment"

@@ -5,19 +5,24 @@ its oil, so that backlash and tip clearance are those of the meshes that carry t
 rest is left out, and reported as such.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from rigdesign.checks.films import no_film
 from rigdesign.checks.omissions import EXPANSION, HEAT, of_gearboxes, sealed, unexpanded, with_play
 from rigdesign.checks.places import housed_seals
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Rule
-from rigdesign.coupling.mesh_models import MeshModel
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import MICROMETRE, MILLIMETRE
+
+if TYPE_CHECKING:
+    from rigdesign.coupling.mesh_models import MeshModel
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "clearances"
 NO_PLAY = "no shaft states an axial play between stops at both of its bearings"

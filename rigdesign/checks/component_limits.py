@@ -1,8 +1,10 @@
 """Limits of bought parts: a result at the part itself, or a given value, against what its maker allows."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,14 +16,15 @@ from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
 from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
-from rigdesign.coupling.time_run import schedule_of
-from rigdesign.postprocessing.run_torques import PartTorque
-from rigdesign.postprocessing.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
-from rigdesign.results.check import Check
+from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated, worst
+from rigdesign.results.check import NO_HOUSING, NO_LOADS, Check
 from rigdesign.results.loads import StageBracing
 from rigdesign.results.units import NUMBER
 from rigdesign.rig.shaft_seals import shaft_seals
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.run_torques import PartTorque
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 Found = tuple[float | None, str]
 """A result [SI] and where it occurs; None with the reason where there is none."""
@@ -233,7 +236,7 @@ def _saturated(solved: SolvedRig, check: Check) -> Omissions:
     if run is None or power is None:
         return
     controlled = np.array([stage.drive_torque is None for stage in solved.case.schedule.resolved()])
-    stage = schedule_of(solved.rig).at(run.ramp.time).stage
+    stage = solved.schedule.at(run.ramp.time).stage
     full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * power.motor.torque_limit
     share = float(np.mean(full & controlled[stage]))
     if share:

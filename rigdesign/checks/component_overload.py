@@ -1,17 +1,22 @@
 """Overload of bought couplings, torque flanges and shafts in the events of a case."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rigdesign.base.units import KINDS, display
 from rigdesign.case.limits import PASSED, BoughtPart
 from rigdesign.case.model import Case
 from rigdesign.checks.component_limits import GROUP, is_at
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.postprocessing.solved_rig import NO_LOADS, SolvedRig, worst
-from rigdesign.results.check import Check
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, worst
+from rigdesign.results.check import NO_LOADS, Check
 from rigdesign.results.units import NUMBER
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 KEY = "bought_part_event"
 

@@ -1,22 +1,23 @@
 """Checks of the loaded contact: pressure on the flanks, pressure at tip edges."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from dynamics.gear.flank import Flank
-from dynamics.tooth.mesh_cycle import MeshCycle
 from rigdesign.case.model import Case
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import meshes, meshes_of
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.postprocessing.gear_loads import application_factor, flank_ratings
-from rigdesign.postprocessing.loaded_contact import held_contact
-from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.results.check import Check
-from rigdesign.results.teeth import EdgeContact
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, worst
+from rigdesign.results.check import NO_LIMIT, NO_LOADS, Check
 from rigdesign.results.units import MEGAPASCAL, MPA
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.loaded_contact import HeldContact
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 ANALYTIC = "the teeth are analytic: no loaded contact"
 NO_TORQUE = "the mesh carries no torque at any held stage: no loaded contact"
@@ -86,8 +87,7 @@ class _Held:
     """Loaded contact of a mesh at a held stage; raised : root of K_A and simulated K_V, as of a line contact [-]."""
 
     stage: str
-    cycle: MeshCycle
-    flank: Flank
+    contact: HeldContact
     raised: float
     factors: str
     """In words."""
@@ -97,17 +97,16 @@ def _contacts(solved: SolvedRig, mesh: int) -> tuple[list[_Held], str]:
     """Loaded contact of a mesh at all held stages that load it, or why there is none."""
     if solved.loads is None:
         return [], NO_LOADS
-    application, found = application_factor(solved.rig, mesh), []
+    application, found = solved.application_factor(mesh), []
     for point in solved.points:
-        contact, response = held_contact(solved.rig, point, mesh), point.last.response
+        contact, response = solved.held_contact(point, mesh), point.last.response
         if contact is None or response is None:
             continue
         dynamic = float(response.dynamic_factor[mesh])
         found.append(
             _Held(
                 stage=point.point.stage,
-                cycle=contact.cycle,
-                flank=contact.flanks.flank,
+                contact=contact,
                 raised=math.sqrt(application * dynamic),
                 factors=f"K_A {application:.2f}, simulated K_V {dynamic:.3f}",
             )
@@ -129,8 +128,8 @@ def _pressure(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
         rule = replace(rule, advisory=True)
     pressure, how = worst(
         (
-            MPA * held.cycle.flank_pressure * held.raised,
-            f"quasi-static {MPA * held.cycle.flank_pressure:.0f} MPa, {held.factors}, stage {held.stage}",
+            MPA * held.contact.cycle.flank_pressure * held.raised,
+            f"quasi-static {MPA * held.contact.cycle.flank_pressure:.0f} MPa, {held.factors}, stage {held.stage}",
         )
         for held in contacts
     )
@@ -150,7 +149,7 @@ def _edge(solved: SolvedRig, rule: Rule, mesh: int) -> Check:
 
 def _edges(held: _Held) -> tuple[float, str]:
     """Pressure [MPa] at the tip edges at one stage and how it came about."""
-    edges = EdgeContact.of(held.cycle, held.flank)
+    edges = held.contact.edges
     return (
         MPA * edges.tip_pressure * held.raised,
         f"{edges.where}, up to {100.0 * edges.tip_share:.0f} % of the mesh force; quasi-static "
@@ -165,7 +164,7 @@ def _permissible(solved: SolvedRig, mesh: int) -> tuple[float, str] | None:
         return None
     strengths = [
         (MPA * rated.strength, solved.rig.mesh_gear_name(mesh, index))
-        for rating in flank_ratings(solved.rig, solved.points, mesh)
+        for rating in solved.flank_ratings(mesh)
         if rating.pitting is not None
         for index, rated in enumerate(rating.pitting)
     ]

@@ -4,16 +4,20 @@ At a held speed those of meshes are a check of their own; a stage that is not he
 to avoid and no limit missed.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.postprocessing.curves import dwell_stages
-from rigdesign.postprocessing.nearest_resonance import SHAFT_SHARE
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER, RPM
+from rigdesign.results.vibration import SHAFT_SHARE
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 OF_SHAFTS = ("shaft torque", "shaft order")
 DWELL = RuleFamily(
@@ -52,7 +56,7 @@ def _distances(solved: SolvedRig, *, held: bool = False) -> Iterator[tuple[float
     if solved.loads is None or rig.case.limits.dynamics.resonance_distance_minimum is None:
         return
     held_speeds = {stage.speed_end for stage in rig.case.schedule.held()}
-    dwells = sorted(dwell_stages(rig), key=lambda stage: stage.kind != "dwell")
+    dwells = sorted(solved.dwell_stages, key=lambda stage: stage.kind != "dwell")
     for stage in dwells:  # of stages at one speed the first is named
         speed, is_held = rig.pinion_speed(stage.speed_end), stage.speed_end in held_speeds
         if speed not in solved.near_dwells or (held and not is_held):

@@ -1,8 +1,11 @@
 """Checks of the dynamic loads: K_V, resonances, tooth contact and peaks on the ramp, mesh by mesh."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,15 +14,14 @@ from rigdesign.case.model import Case
 from rigdesign.checks.omissions import Omissions, long_periods
 from rigdesign.checks.places import meshes
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
-from rigdesign.checks.rules import Omission
-from rigdesign.coupling.preloaded_loop import signed_torque
-from rigdesign.postprocessing.curves import resolved, speed_ranges
-from rigdesign.postprocessing.nearest_resonance import at_torque, bounds_of, mesh_resonances, root_shares
-from rigdesign.postprocessing.resonances import NEAR
-from rigdesign.postprocessing.solved_rig import SolvedRig, worst
+from rigdesign.checks.rules import Omission, worst
 from rigdesign.results.check import Check
 from rigdesign.results.loads import MeshLoads, ModeCrossing, StageLoad
 from rigdesign.results.units import NUMBER, RPM
+from rigdesign.results.vibration import NEAR
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "dynamics"
 NOT_LOADED = "no stage turns under more than the start torque"
@@ -82,28 +84,23 @@ def _resonance_distance(solved: SolvedRig, mesh: int) -> Values:
 
 def _distances(solved: SolvedRig, mesh: int) -> Values:
     """Distance of every held speed from every dangerous resonance under its torque, and from the end of the search."""
-    assert solved.run is not None and solved.loads is not None
     rig, label = solved.rig, solved.label(mesh)
-    bounds = bounds_of(rig)
-    peaks = [
-        *mesh_resonances(rig, solved.run, solved.loads),
-        *bounds.resonances(root_shares(rig, solved.loads)),
-    ]
-    named = {round(torque, 6): name for name, (torque, _) in solved.run.curves.named.items()}
     shaft = rig.mesh_gear(mesh, 0).shaft
     for point in solved.points:
-        torque, held = round(signed_torque(rig, point.point), 6), point.point.speed
-        low, high = speed_ranges(rig)[torque]
+        curve, held = solved.searched(point), point.point.speed
+        low, high = curve.speeds
         searched = f"{low * RPM:.0f} to {high * RPM:.0f} rpm"
         yield (
             min(held - low, high - held) / held,
             f"none dangerous nearer in {searched}, held {held * RPM:.0f} rpm: at least this far",
         )
         own, first = rig.shaft_speed(shaft, held) * RPM, rig.pinion_speed(held)
-        places = {at_torque(label, named[torque]), *(f"{label} {gear}" for gear in ("pinion", "wheel"))}
-        here = [(abs(peak.speed - first), peak) for peak in peaks if peak.where in places]
+        places = {curve.place(label), *(f"{label} {gear}" for gear in ("pinion", "wheel"))}
+        here = [
+            (abs(peak.speed - first), peak) for peak in solved.dangerous_resonances if peak.where in places
+        ]
         for _, peak in sorted(here, key=lambda one: one[0]):  # of equals the first counts
-            distance = peak.distance(first, bounds.margin)
+            distance = peak.distance(first, solved.resonance_margin)
             inside = "" if distance else ", where the response itself is above the share"
             rpm = peak.speed * own / first
             yield distance, f"{rpm:.0f} rpm ({peak.mode or peak.kind}), held {own:.0f} rpm{inside}"
@@ -166,7 +163,7 @@ def _gaps(solved: SolvedRig, check: Check) -> Omissions:
     if solved.run is None or solved.loads is None:
         return
     label = check.id.split(".", 2)[2]
-    if not resolved(solved.rig):
+    if not solved.resolved:
         step = np.diff(solved.run.curves.response.speeds).max() * RPM
         mesh = next(i for i in range(len(solved.rig.mesh_names)) if solved.label(i) == label)
         near = near_crossings(solved, mesh, (check.limit or 0.0) + NEAR)

@@ -1,15 +1,20 @@
 """Checks of the events: torque of couplings and shafts, bearing force, trip, standstill, overspeed."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rigdesign.case.events import EmergencyStop, EventLoadLimits, Overspeed, ToothLoss
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import NOT_WITHIN, EventRecord, Quantity
 from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "events"
 NEWTON, SECOND = DisplayUnit("N"), DisplayUnit("s")

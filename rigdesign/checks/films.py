@@ -1,15 +1,20 @@
 """Checks of the films of the journal bearings, and what all values of a film leave out."""
 
-from collections.abc import Iterator
+from __future__ import annotations
 
-from dynamics.rotor.bearing import BearingState
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.omissions import Omissions, of_gearboxes, thrust, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.postprocessing.solved_rig import NO_HOUSING, SolvedRig
-from rigdesign.results.check import Check
+from rigdesign.results.check import NO_HOUSING, Check
 from rigdesign.results.units import MEGAPASCAL, MICROMETRE, UM
+
+if TYPE_CHECKING:
+    from dynamics.rotor.bearing import BearingState
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "bearings"
 

@@ -1,20 +1,24 @@
 """Checks of the flanks: pitting, scuffing, film over roughness, and flanks against the root of the specimens."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rigdesign.case.limits import FlankLimits
 from rigdesign.case.model import Case
 from rigdesign.checks.omissions import HEAT, Omissions, long_periods
 from rigdesign.checks.places import gears_of, meshes, rig_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated
+from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.checks.strength import OF_SAFETY, GearFamily, root_safety
-from rigdesign.postprocessing.gear_loads import flank_ratings
-from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.results.check import Check
-from rigdesign.results.teeth import FlankRating
+from rigdesign.results.check import NO_LIMIT, NO_LOADS, Check
 from rigdesign.results.units import MPA, NUMBER, UM, ZERO
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.teeth import FlankRating
 
 NO_SPECIMEN = "no specimen with a root strength is loaded"
 
@@ -103,13 +107,13 @@ FILM = RuleFamily(
     leaves_out=(_mean_of_gear, long_periods, *HEAT),
     moved_by=frozenset({"gear rating", "housing"}),
 )
-Ratings = Sequence[FlankRating]
+Ratings = Sequence["FlankRating"]
 
 
 def _ratings(solved: SolvedRig) -> Iterator[tuple[int, Ratings]]:
     """Ratings of every mesh at the held stages; none where losses are given."""
     for mesh in range(len(solved.rig.mesh_names)):
-        yield mesh, tuple(flank_ratings(solved.rig, solved.points, mesh))
+        yield mesh, solved.flank_ratings(mesh)
 
 
 def load_checks(solved: SolvedRig) -> list[Check]:

@@ -1,16 +1,20 @@
 """Checks of the toothing as drawn: from its geometry alone, before anything is solved and alike at every fidelity."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
-from dynamics.gear.limits import NAMES
-from dynamics.gear.pair import GearPair
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
-from rigdesign.rig.model import Rig
 
+if TYPE_CHECKING:
+    from dynamics.gear.pair import GearPair
+    from rigdesign.postprocessing.solved_rig import SolvedRig
+
+GEARS = ("pinion", "wheel")
 Numbers = Iterator[tuple[float, str]]
 """Of the gears of a pair, or of the pair, each with what is behind it."""
 
@@ -25,7 +29,7 @@ def _as_drawn(numbers: Callable[[GearPair], Numbers]) -> Callable[[SolvedRig], V
 
 
 def _tips(pair: GearPair) -> Numbers:
-    for name, gear in zip(NAMES, pair.gears, strict=True):
+    for name, gear in zip(GEARS, pair.gears, strict=True):
         yield (
             gear.tip_thickness / pair.normal_module,
             f"{name}: {1e3 * gear.tip_thickness:.3f} mm at the tip circle",
@@ -33,7 +37,7 @@ def _tips(pair: GearPair) -> Numbers:
 
 
 def _roots(pair: GearPair) -> Numbers:
-    for name, clearance in zip(NAMES, pair.tip_clearances, strict=True):
+    for name, clearance in zip(GEARS, pair.tip_clearances, strict=True):
         yield (
             clearance / pair.normal_module,
             f"{name}: {1e3 * clearance:.3f} mm from its tip to the root of its mate",
@@ -41,7 +45,7 @@ def _roots(pair: GearPair) -> Numbers:
 
 
 def _fillets(pair: GearPair) -> Numbers:
-    for name, distance, overlap in zip(NAMES, pair.fillet_distances, pair.fillet_overlaps, strict=True):
+    for name, distance, overlap in zip(GEARS, pair.fillet_distances, pair.fillet_overlaps, strict=True):
         side = "before" if distance >= 0.0 else "inside"
         text = f"{name}: its fillet ends {1e3 * abs(distance):.3f} mm {side} the path of contact"
         more = f" and stands {1e6 * overlap:.3g} um in the way of the mating tip" if overlap > 0.0 else ""
@@ -49,7 +53,7 @@ def _fillets(pair: GearPair) -> Numbers:
 
 
 def _undercut(pair: GearPair) -> Numbers:
-    for name, gear in zip(NAMES, pair.gears, strict=True):
+    for name, gear in zip(GEARS, pair.gears, strict=True):
         shift, least = gear.generating_profile_shift, gear.least_profile_shift
         yield shift - least, f"{name}: generated with x = {shift:.3f}, undercut below x_min = {least:.3f}"
 
@@ -134,9 +138,9 @@ def checks(solved: SolvedRig) -> list[Check]:
     return [rule.check(solved) for rule in RULES]
 
 
-def missed(rig: Rig) -> Iterator[str]:
-    """Limits of the toothing that a rig misses, in words, before it is solved."""
-    for check in checks(SolvedRig(rig=rig, points=())):
+def missed(unsolved: SolvedRig) -> Iterator[str]:
+    """Limits of the toothing that a rig without solved points misses, in words."""
+    for check in checks(unsolved):
         if check.verdict == "fail":
             yield f"missed before anything is solved: {check.title}: {check.value:.4g}, {check.reason}"
 

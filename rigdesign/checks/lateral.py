@@ -3,14 +3,19 @@
 Limits are those of API 617, written for compressors; a test rig has no standard of its own.
 """
 
+from __future__ import annotations
+
 from functools import partial
+from typing import TYPE_CHECKING
 
 from dynamics.standards.api617_2014 import AF_CRITICAL
 from rigdesign.checks.registry import REGISTRY, Need, RigRule, Topic, Values
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.lateral import SWAYING, LateralVibration, Separation, StageLateral, Torque
 from rigdesign.results.units import NUMBER, RPM
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "lateral vibration"
 BENDING = Need(

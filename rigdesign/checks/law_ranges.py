@@ -1,11 +1,16 @@
 """What left the range of its law, and which checks depend on it: oils, losses and films of the solved points."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from __future__ import annotations
 
-from rigdesign.coupling.located_loss import PlacedLoss
-from rigdesign.postprocessing.solved_rig import SolvedRig
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
 from rigdesign.results.result import Finding
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
+
+if TYPE_CHECKING:
+    from rigdesign.coupling.located_loss import PlacedLoss
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 HEAT = ("temperature.*", "clearance.*", "alignment.*", "bearing.*temperature", "bearing.*clearance", "oil.*")
 """Checks that rest on the heat of the rig."""

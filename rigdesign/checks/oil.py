@@ -1,15 +1,20 @@
 """Checks of the oil plant and the room: flow, cooler, heaters, heat to the room."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.omissions import HEAT, of_gearboxes, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.temperatures import OIL_EXCHANGE
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.units import KILOWATT, LITRE_PER_MINUTE
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.housing import CoolingBalance
 
 GROUP = "oil"
 FLOWS = ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow")

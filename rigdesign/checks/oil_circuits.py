@@ -1,15 +1,20 @@
 """Checks of the oil circuits: supply temperatures at the held stages, and how long they take over time."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rigdesign.case.model import Case
 from rigdesign.checks.omissions import Omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, hold
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import HOUR, DisplayUnit
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 KELVIN = DisplayUnit("K", 1.0)
 

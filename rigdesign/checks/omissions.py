@@ -7,18 +7,20 @@ Simplifications that all rigs share are listed in the report (`run.warnings.not_
 only add to the margin, as the heat that a housing would take from the cooler, are none.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
-from rigdesign.coupling.bearing_loads import tilt_counted
-from rigdesign.coupling.mesh_models import laws_of
-from rigdesign.coupling.preloaded_loop import averaged_gears, lines_left_out, loads_left_out
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 Omissions = Iterator[Omission]
 
@@ -67,7 +69,9 @@ def thrust(solved: SolvedRig, name: str, box: Gearbox) -> bool:
         for gear in (mesh.pinion, mesh.wheel)
     }
     return any(
-        bearing.shaft in pushed and bearing.radial_load is None and not tilt_counted(box, bearing.shaft)
+        bearing.shaft in pushed
+        and bearing.radial_load is None
+        and box.bearing_positions(bearing.shaft) is None
         for bearing in box.bearings.values()
     )
 
@@ -130,13 +134,12 @@ def long_periods(solved: SolvedRig, check: Check) -> Omissions:
     rig = solved.rig
     if rig.drivetrain is None or rig.system is None or not solved.points:
         return
-    last = solved.points[-1].last
-    laws = laws_of(last.models)
-    missing = [f"differences between the teeth of {gear}" for gear in averaged_gears(rig, laws)]
-    missing += [f"alternating torque of {name}" for name in loads_left_out(rig, laws, last.system)]
+    beyond = solved.beyond_period
+    missing = [f"differences between the teeth of {gear}" for gear in beyond.gears]
+    missing += [f"alternating torque of {name}" for name in beyond.loads]
     for what in missing:
         yield Omission(f"{what} (numerics.response_period = {rig.case.numerics.response_period})")
-    lines = lines_left_out(rig, laws, last.system)
+    lines = beyond.lines
     if lines and solved.lateral is not None and check.value is not None:
         shares = (mesh.share(lines) for stage in solved.lateral.of("held") for mesh in stage.meshes)
         share = max((one for one in shares if math.isfinite(one)), default=0.0)

@@ -1,6 +1,9 @@
 """Checks of the schedule: rules of the ramp, and the transition speed on which they depend."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from dynamics.vibration.schedule import RampLimits, ramp_rules
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
@@ -8,10 +11,11 @@ from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Comparison, hold, not_applicable
-from rigdesign.coupling.time_run import schedule_of
-from rigdesign.postprocessing.solved_rig import NO_LIMIT, SolvedRig
-from rigdesign.results.check import Check
+from rigdesign.results.check import NO_LIMIT, Check
 from rigdesign.results.units import NEWTON_METRE, REVOLUTION_PER_MINUTE
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 OF_SPEEDS = ("limits.ramp", "limits.bearing.start_torque_limit", *SPEEDS)
 
@@ -85,7 +89,7 @@ def ramp(solved: SolvedRig) -> Iterator[Check]:
     }
     rig = solved.rig
     rules = ramp_rules(
-        schedule_of(rig),
+        solved.schedule,
         RampLimits(
             standstill_torque=rig.torque_ratio * (limits.ramp.standstill_torque or 0.0),
             start_torque_limit=rig.torque_ratio * (start or 0.0),

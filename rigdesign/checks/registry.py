@@ -4,24 +4,29 @@ A check is added by one `RuleFamily` in a topic (or a topic of its own in a new 
 limit, the key of that limit in `case.limits`. Nothing else lists checks.
 """
 
+from __future__ import annotations
+
 import importlib
 import pkgutil
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rigdesign.case.limits import Limits
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import Influence
 from rigdesign.checks.places import whole_rig
-from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable, not_evaluated
-from rigdesign.postprocessing.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.results.check import Check
+from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable, not_evaluated, worst
+from rigdesign.results.check import NO_HOUSING, NO_LIMIT, NO_LOADS, Check
 from rigdesign.results.units import DisplayUnit
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 Values = Iterable[tuple[float, str]]
 """(value [SI], where it occurs)."""
-Finder = Callable[[SolvedRig, Check], Iterator[Omission]]
+Finder = Callable[["SolvedRig", Check], Iterator[Omission]]
 """What the value of a held check leaves out."""
 PATH = re.compile(r"[a-z_0-9]+(?:\.[a-z_0-9]+)+")
 """Paths of the case in the source of a rule."""

@@ -1,16 +1,21 @@
 """Check of the room that takes the heat of the rig: its temperature at the held stages."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rigdesign.case.model import Case
 from rigdesign.checks.oil import GROUP, ROOM_HEAT
 from rigdesign.checks.omissions import HEAT, Omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 
 def _rooms(case: Case) -> tuple[str, ...]:

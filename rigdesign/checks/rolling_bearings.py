@@ -1,18 +1,24 @@
 """Checks of the rolling bearings: life, static safety, speed, least load, temperature, clearance as they run."""
 
-import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from __future__ import annotations
 
-from dynamics.rotor.rolling_state import STABILISED_TEMPERATURE, RollingState, rolling_state
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from dynamics.standards.skf_friction_2006 import STABILISED_TEMPERATURE
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import HEAT, of_gearboxes
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, HOUR, MICROMETRE, NUMBER, DisplayUnit
+
+if TYPE_CHECKING:
+    from dynamics.rotor.rolling_state import RollingState
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "bearings"
 HOURS = DisplayUnit("h", 1.0 / HOUR)
@@ -35,15 +41,6 @@ SEAT_HEAT = of_gearboxes(
 )
 
 
-def rolling_states(solved: SolvedRig) -> Iterator[tuple[str, RollingState]]:
-    """(place and stage, state) of every rolling bearing at every held stage."""
-    for point in solved.points:
-        for name, found in point.last.bearings.items():
-            state = rolling_state(found)
-            if state is not None:
-                yield f"{name}, stage {point.point.stage}", state
-
-
 def _clearances(solved: SolvedRig) -> Values:
     return (
         (clearance, f"{name}, stage {point.point.stage}")
@@ -56,7 +53,7 @@ def _clearances(solved: SolvedRig) -> Values:
 def _of_states(value: Callable[[RollingState], float]) -> Callable[[SolvedRig], Values]:
     """A number of every rolling bearing; one without end is left out."""
     return lambda solved: (
-        (value(state), where) for where, state in rolling_states(solved) if math.isfinite(value(state))
+        (value(state), where) for where, state in solved.rolling_states() if math.isfinite(value(state))
     )
 
 

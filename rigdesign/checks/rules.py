@@ -13,7 +13,7 @@ of zero the unit of the check stands in its place, for a negative one its size; 
 nothing can be less, has all of it left.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -201,3 +201,17 @@ def with_doubt(check: Check, cause: str) -> Check:
     """A check with a cause to doubt its value, beside its verdict."""
     flags = check.flags if "doubt" in check.flags else (*check.flags, "doubt")
     return replace(check, flags=flags, reason=joined(check.reason, cause))
+
+
+def worst(items: Iterable[tuple[float, str]], *, smallest: bool = False) -> tuple[float, str]:
+    """The governing value and where it occurs; the first of equals.
+
+    items : (value, where)
+
+    Raises
+    ------
+    NonFiniteResultError
+        A value is NaN or infinite: it has no place in an order.
+    """
+    ordered = sorted(items, key=lambda item: finite(item[1], item[0]), reverse=not smallest)
+    return ordered[0]

@@ -1,15 +1,19 @@
 """Checks of shafts under torque and of the seats of gears: slip of press fits and splines, hot and at speed."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RigRule, Topic, Values
-from rigdesign.postprocessing.press_fits import FRICTION
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.loads import SplineStressKind
+from rigdesign.results.loads import SEAT_FRICTION, SplineStressKind
 from rigdesign.results.units import MEGAPASCAL, NUMBER
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 
 def _slip(solved: SolvedRig) -> Values:
@@ -68,7 +72,7 @@ PRESS_FIT = _RULE(
     title="least safety of the press fits of gears against slip",
     procedure=(
         "Pressure of the least interference by thick rings after Lame, less the interference lost by thermal and "
-        f"centrifugal expansion; slip torque at a friction coefficient of {FRICTION:g} over the "
+        f"centrifugal expansion; slip torque at a friction coefficient of {SEAT_FRICTION:g} over the "
         f"{TORQUE}. The lowest governs. Stages that are not held have the temperatures of the governing held stage."
     ),
     source="limits.strength.press_fit_safety_minimum; DIN 7190-1:2017, elastic fit",

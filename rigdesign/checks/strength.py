@@ -5,30 +5,25 @@ comprehensive calculation (method A) above method B; the check by ISO 6336-3 is 
 is advisory. Where it comes from the factors of ISO 6336-3 itself, both count.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from dynamics.rating.iso_rating import permissible_factors, root_stress
 from rigdesign.checks.influences import SPEEDS, Influence
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
-from rigdesign.postprocessing.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
-from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.postprocessing.tooth_history import (
-    GearInMesh,
-    ReversedBending,
-    by_standard,
-    gear_meshes,
-    of_history,
-)
-from rigdesign.results.check import Check
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, worst
+from rigdesign.results.check import NO_LIMIT, NO_LOADS, Check
 from rigdesign.results.dynamics import FROM_INFLUENCE
 from rigdesign.results.loads import RootStressPath
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
-from rigdesign.rig.model import Rig
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 
 @dataclass(frozen=True)
@@ -202,7 +197,7 @@ def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> t
     if method is ISO:
         return worst(_iso_stresses(solved, mesh, index))
     path = _path(solved, mesh, index)
-    application = application_factor(solved.rig, mesh)
+    application = solved.application_factor(mesh)
     raised = "" if application == 1.0 else f", times K_A {application:.2f}"
     dynamic, static = max(path.dynamic), max(path.quasi_static)
     return (
@@ -214,10 +209,7 @@ def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> t
 
 def _iso_stresses(solved: SolvedRig, mesh: int, index: int) -> Iterator[tuple[float, str]]:
     """sigma_F [MPa] of ISO 6336-3 at every held stage, with the simulated K_V in K_Falpha too."""
-    rig = solved.rig
-    pair, gear = rig.pairs[rig.mesh_names[mesh]], rig.mesh_gear(mesh, index)
-    for load in rated_loads(rig, solved.points, mesh):
-        stress = root_stress(pair, load.torque, index, load.root, grade=gear.quality_grade)
+    for load, stress in solved.standard_root_stresses(mesh, index):
         yield (
             stress.sigma_F,
             f"nominal {stress.sigma_F0:.0f} MPa, simulated K_V {stress.K_V:.3f}, K_Fbeta {stress.K_Fbeta:.2f}, "
@@ -233,8 +225,8 @@ def root_safety(
     if material.root_strength is None:
         return None
     stress, how = _stress(solved, mesh, index, method)
-    share, factors = _strength_share(solved.rig, mesh, index)
-    bending = _reversed_bending(solved, mesh, index, method, stress / MPA)
+    share, factors = _strength_share(solved, mesh, index)
+    bending = solved.reversed_bending(mesh, index, stress / MPA, over_path=method is PATH)
     words = f"sigma_F {stress:.0f} MPa"
     if bending is not None:
         stress, share = stress + MPA * bending.mean, share * bending.strength_factor
@@ -246,22 +238,9 @@ def root_safety(
     return strength / stress, f"{how}; {words} of {strength:.0f} MPa = sigma_FE {factors}"
 
 
-def _reversed_bending(
-    solved: SolvedRig, mesh: int, index: int, method: StressMethod, stress: float
-) -> ReversedBending | None:
-    """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3."""
-    gear, place = solved.rig.mesh_gears(solved.rig.mesh_names[mesh])[index], GearInMesh(mesh, index)
-    if method is PATH and solved.loads is not None and len(gear_meshes(solved.rig)[gear]) > 1:
-        history = solved.loads.teeth.get(gear)
-        if history is not None and solved.label(mesh) in history.meshes:
-            return of_history(solved.rig, place, history)
-    return by_standard(solved.rig, place, stress, solved.test.point.speed)
-
-
-def _strength_share(rig: Rig, mesh: int, index: int) -> tuple[float, str]:
+def _strength_share(solved: SolvedRig, mesh: int, index: int) -> tuple[float, str]:
     """Share of sigma_FE that the planned cycles, notch and size leave, and its factors."""
-    cycles = rated_cycles(rig, mesh, index)
-    factors = permissible_factors(rig.pairs[rig.mesh_names[mesh]], index, cycles)
+    cycles, factors = solved.strength_factors(mesh, index)
     share = math.prod(factors.values())
     words = " ".join(f"{symbol} {value:.3f}" for symbol, value in factors.items())
     return share, f"{words} at {cycles:.2e} cycles"
@@ -273,7 +252,7 @@ def _load_cycles(solved: SolvedRig) -> Check:
     rule = LOAD_CYCLES.rule(solved.case.limits.specimen.load_cycles_minimum)
     specimens = (
         (
-            load_cycles(solved.rig, gear.shaft),
+            solved.load_cycles(gear.shaft),
             f"{hours:.0f} h of {name}.{key} at {_gear_rpm(solved, gear.shaft):.0f} rpm",
         )
         for name, box in solved.case.gearboxes.items()

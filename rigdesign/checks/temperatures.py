@@ -1,15 +1,20 @@
 """Checks of temperatures: housing, bearing films, oil, gears."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT, films, no_film
 from rigdesign.checks.omissions import HEAT, Omissions, of_gearboxes, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, KELVIN, ZERO
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "temperatures"
 WALLS = of_gearboxes("walls of gearbox {box}: it has no housing", without_housing)

@@ -1,7 +1,10 @@
 """Checks of the thermal history: what is left or needed at the worst moment, and the soak."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rigdesign.checks.clearances import NOT_EXPANDED, PLAY_NOT_EXPANDED, SEALS_NOT_EXPANDED
 from rigdesign.checks.influences import Influence
@@ -10,12 +13,14 @@ from rigdesign.checks.places import couplings, housings
 from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic
 from rigdesign.checks.rules import Comparison, hold, not_evaluated
 from rigdesign.checks.temperatures import WALLS
-from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.serialisation.events import EXTREME_UNITS
 from rigdesign.results.thermal import Extreme
 from rigdesign.results.units import HOUR, DisplayUnit
-from rigdesign.transient.soak import Soak
+
+if TYPE_CHECKING:
+    from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.transient.soak import Soak
 
 GROUP = "transient"
 MOVED_BY: frozenset[Influence] = frozenset({"housing", "test time", "thermal history"})

@@ -161,7 +161,7 @@ def solved_bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, B
     tangential forces add and the separating ones cancel. Axial forces of a double-helical gear cancel. Those of the
     single-helical gears of a shaft go to its locating bearing, the first where none is; their tilting moment F_a r is
     carried by both bearings of the shaft as a couple over their distance; it is left out where the case does not state
-    both positions (`tilt_counted`).
+    both positions (`Gearbox.bearing_positions`).
 
     Where the radial load of a bearing induces an axial force, its partner takes that up as well (`pair_axial_loads`).
     The axial force of the gears presses the one that their hand and the stated arrangement say; where the case leaves
@@ -178,11 +178,6 @@ def solved_bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, B
             }
             loads |= own | _axial_loads(rig, name, own, acting)
     return {name: loads[name] for name, _, _ in rig.bearings()}
-
-
-def tilt_counted(box: Gearbox, shaft: str) -> bool:
-    """Whether the tilting moment of axial forces is in the radial loads of the bearings of a shaft."""
-    return _span(box, shaft) is not None
 
 
 def axial_force(acting: Sequence[ShaftLoad]) -> float:
@@ -264,24 +259,16 @@ def _place(rig: Rig, entry: BearingInput) -> float:
 
 def _couple(rig: Rig, box: Gearbox, entry: BearingInput, load: ShaftLoad) -> Array:
     """(2,) force on one of two bearings by the tilting moment of an axial force; none where positions are missing."""
-    stations = _span(box, entry.shaft)
+    stations = box.bearing_positions(entry.shaft)
     if stations is None or entry.position is None:
         return np.zeros(2)
     beyond = rig.axes[entry.shaft].direction * (sum(stations) - 2.0 * entry.position)
     return np.asarray(load.axial / beyond * load.arm)
 
 
-def _span(box: Gearbox, shaft: str) -> tuple[float, float] | None:
-    """Positions of the two bearings of a shaft [m]; None where they are not stated or not two."""
-    stations = [bearing.position for bearing in box.bearings.values() if bearing.shaft == shaft]
-    if len(stations) != 2 or stations[0] is None or stations[1] is None or stations[0] == stations[1]:
-        return None
-    return stations[0], stations[1]
-
-
 def _lever(box: Gearbox, entry: BearingInput, position: float | None) -> float:
     """Share of a force at a position that one of the two bearings of a shaft carries; negative beyond the other one."""
-    stations = _span(box, entry.shaft)
+    stations = box.bearing_positions(entry.shaft)
     if stations is None or entry.position is None or position is None:
         return 1.0 / sum(bearing.shaft == entry.shaft for bearing in box.bearings.values())
     other = sum(stations) - entry.position

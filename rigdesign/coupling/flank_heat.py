@@ -21,8 +21,9 @@ from dynamics.losses.immersion import (
     splash_flow,
     tooth_space_flow,
 )
-from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss, ToothPath
+from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss
 from dynamics.losses.oil_jet import JET_ANGLES
+from dynamics.tooth.friction import ToothPath
 from rigdesign.case.gearbox import Gearbox, jet_velocity
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.lubrication import DipOil, JetOil

@@ -6,11 +6,13 @@ from dataclasses import replace
 from typing import Protocol
 
 from dynamics.gear.pair import GearPair
-from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss, ToothPath, mesh_loss, squeeze_loss
+from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss
+from dynamics.losses.mesh_loss import mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.rotor.bearing import BearingState
+from dynamics.tooth.friction import ToothPath
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet

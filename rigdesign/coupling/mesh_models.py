@@ -9,7 +9,6 @@ import numpy as np
 from dynamics.gear.flank import AxisMisalignment
 from dynamics.gear.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.gear.pair import GearPair
-from dynamics.losses.loss import ToothPath
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.tooth.elastic_pair import ContactLines, ElasticPair, contact_lines, influence_law
 from dynamics.tooth.friction import (
@@ -19,6 +18,7 @@ from dynamics.tooth.friction import (
     GivenFriction,
     Michaelis,
     Schlenk,
+    ToothPath,
     friction_coefficient,
 )
 from dynamics.tooth.law import MeshLaw, in_parallel

@@ -11,7 +11,6 @@ from rigdesign.case.schedule import StageValues
 from rigdesign.postprocessing.curves import dwell_stages, is_around
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.nearest_resonance import (
-    SHAFT_SHARE,
     NearDwell,
     bounds_of,
     mesh_resonances,
@@ -32,6 +31,7 @@ from rigdesign.postprocessing.start_torque import (
 )
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import (
+    SHAFT_SHARE,
     AvoidedBand,
     AvoidedResonance,
     CampbellRecord,

@@ -1,7 +1,7 @@
 """Numbers an engineer can redo on paper, next to the key results."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -36,27 +36,6 @@ RISE = (
     "alpha_f h_f (T_f - T_0) + alpha h (T_h - T_0), T_f the mean of the field under the housing, T_h of the housing; "
     "end walls colder than that rise less, a field that bows towards its warm side lifts them"
 )
-
-
-ENTERS = {
-    "sliding loss": ("temperature.*", "flank.scuffing_safety.*", "flank.film_ratio.*"),
-    "thermal expansion of": ("clearance.axial_play",),
-    "mean gap of seal": ("clearance.seal_gap",),
-    "hot diametral clearance of": ("clearance.bearing_clearance",),
-    "rise of the shaft at coupling": ("alignment.coupling_offset.*",),
-}
-"""Beginning of a quantity -> the checks whose value it enters."""
-DISAGREES = 0.25
-"""Deviation from which a calculation by hand is a cause to doubt the checks that its quantity enters."""
-
-
-def disagreeing(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """(patterns of check ids, cause of doubt) of every row whose two numbers do not agree."""
-    for row in rows:
-        patterns = next((ids for start, ids in ENTERS.items() if row["quantity"].startswith(start)), ())
-        if patterns and abs(row["computed"] - row["by_hand"]) > DISAGREES * abs(row["by_hand"]):
-            numbers = f"{row['computed']:.3g} {row['unit']}, by hand {row['by_hand']:.3g} {row['unit']}"
-            yield patterns, f"{row['quantity']}: {numbers}"
 
 
 def hand_checks(solved: SolvedRig) -> list[dict[str, Any]]:

@@ -29,7 +29,7 @@ from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import mesh_microgeometry
 from rigdesign.coupling.state import LEAST_TORQUE
-from rigdesign.results.teeth import GaugeStress, LoadedContact
+from rigdesign.results.teeth import EdgeContact, GaugeStress, LoadedContact
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.rig.tooth_influence import ToothInfluence
@@ -202,6 +202,11 @@ class HeldContact:
     def cycle(self) -> MeshCycle:
         """Contact over one mesh cycle."""
         return self.mesh.cycle(self.force)
+
+    @property
+    def edges(self) -> EdgeContact:
+        """Contact at the tip edges and at the ends of the face."""
+        return EdgeContact.of(self.cycle, self.flanks.flank)
 
     @cached_property
     def unloaded_contact_ratio(self) -> float:

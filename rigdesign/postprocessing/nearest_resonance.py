@@ -25,12 +25,15 @@ from rigdesign.postprocessing.resonances import USUAL_MARGIN, DynamicShare, reso
 from rigdesign.postprocessing.run_torques import LoopOverSpeed, torques_over_speed
 from rigdesign.results.loads import DynamicLoads, ModeCrossing
 from rigdesign.results.units import RPM
-from rigdesign.results.vibration import AvoidedResonance, CampbellCrossing, NearResonance, TorqueOverSpeed
+from rigdesign.results.vibration import (
+    SHAFT_SHARE,
+    AvoidedResonance,
+    CampbellCrossing,
+    NearResonance,
+    TorqueOverSpeed,
+)
 from rigdesign.rig.model import Rig
 
-SHAFT_SHARE = 0.5
-"""Half peak-to-peak torque of a shaft or joint, over the mean of the loop, from which it counts as in resonance: below,
-its peak stays within what it carries under the highest K_V of a mesh."""
 LIVELY = 0.1
 """Damping ratio below which a mode counts where a shaft order meets it (amplification above 5)."""
 REACH = 1.5

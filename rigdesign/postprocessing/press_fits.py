@@ -21,12 +21,10 @@ from rigdesign.postprocessing.tooth_history import (
     shaft_bore,
     shaft_material,
 )
-from rigdesign.results.loads import PressFitCapacity, SplineStress, SplineStressKind
+from rigdesign.results.loads import SEAT_FRICTION, PressFitCapacity, SplineStress, SplineStressKind
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig
 
-FRICTION = 0.12
-"""Coefficient of a steel seat against slip along the circumference, joined with oil (DIN 7190-1, table of values)."""
 REFERENCE = ZERO + 20.0
 """Temperature at which the interference counts [K] (ISO 1)."""
 
@@ -92,8 +90,8 @@ def _capacity(rig: Rig, place: GearInMesh, fit: PressFit, seat: PartTorque) -> P
         shaft_temperature=cold,
         pressure_at_rest=seat_pressure(disc, 0.0, fit),
         pressure=pressure,
-        friction=FRICTION,
-        slip_torque=slip_torque(pressure, entry.bore_diameter, width, FRICTION),
+        friction=SEAT_FRICTION,
+        slip_torque=slip_torque(pressure, entry.bore_diameter, width, SEAT_FRICTION),
         peak_torque=seat.torque,
     )
 

@@ -15,14 +15,11 @@ from dynamics.vibration.response_curve import CurvePoint, ResponseCurve
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.curves import HARMONICS, LEAST_GAIN, Curves, own_ratio
 from rigdesign.results.loads import MeshResonance
-from rigdesign.results.vibration import AvoidedBand, AvoidedResonance, ResonanceKind
+from rigdesign.results.vibration import NEAR, AvoidedBand, AvoidedResonance, ResonanceKind
 from rigdesign.rig.model import Rig
 
 LEAST_PROMINENCE = 0.01
 """Prominence of a peak of the dynamic torque, as a share of the mean, from which it counts as a resonance."""
-NEAR = 0.2
-"""Distance of a mode, as a share of its frequency, within which it may still be called near: loaded teeth are stiffer
-or softer than the mean stiffness of the modes."""
 LEAST_ORDER = 0.1
 """Amplitude of an order, over that of the strongest one, from which it may name a resonance."""
 

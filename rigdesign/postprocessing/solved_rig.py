@@ -1,27 +1,59 @@
 """The solved rig: the case, the solved points and their SI records. Checks and rows of the result read nothing else."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
-from rigdesign.base.json_text import finite
+from dynamics.rating.iso_rating import permissible_factors, root_stress
+from dynamics.rotor.rolling_state import RollingState, rolling_state
+from dynamics.standards.iso6336_3_2006 import RootStress
+from dynamics.vibration.schedule import Schedule
 from rigdesign.case.model import Case
+from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.loop import PointResult, governing_point
+from rigdesign.coupling.mesh_models import laws_of
+from rigdesign.coupling.preloaded_loop import averaged_gears, lines_left_out, loads_left_out, signed_torque
 from rigdesign.coupling.temperatures import HousingField
+from rigdesign.coupling.time_run import schedule_of
+from rigdesign.postprocessing.curves import dwell_stages, resolved, speed_ranges, torque_key
 from rigdesign.postprocessing.dynamics import DynamicRun, SolvedLoads
+from rigdesign.postprocessing.gear_loads import (
+    RatedLoad,
+    application_factor,
+    flank_ratings,
+    load_cycles,
+    rated_cycles,
+    rated_loads,
+)
 from rigdesign.postprocessing.housing import cooling_balance
-from rigdesign.postprocessing.nearest_resonance import NearDwell
+from rigdesign.postprocessing.loaded_contact import HeldContact, held_contact
+from rigdesign.postprocessing.nearest_resonance import (
+    NearDwell,
+    at_torque,
+    bounds_of,
+    mesh_resonances,
+    root_shares,
+)
 from rigdesign.postprocessing.press_fits import press_fits, spline_stresses
 from rigdesign.postprocessing.run_torques import PartTorque, part_torques
+from rigdesign.postprocessing.tooth_history import (
+    GearInMesh,
+    ReversedBending,
+    by_standard,
+    gear_meshes,
+    of_history,
+)
 from rigdesign.postprocessing.vibration import LoopVibration
 from rigdesign.postprocessing.warm_gearbox import warm_gearbox
-from rigdesign.results.check import Role
+from rigdesign.results.check import NO_HOUSING, Role
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads, EventRecord, PressFitCapacity, SplineStress
 from rigdesign.results.result import DiscretisationRow, MeshShift
+from rigdesign.results.teeth import FlankRating
 from rigdesign.results.thermal import HistoryExtremes
-from rigdesign.results.vibration import HeldTorque
+from rigdesign.results.vibration import AvoidedResonance, HeldTorque
 from rigdesign.results.warm_gearbox import WarmGearbox
 from rigdesign.rig.model import Rig
 
@@ -35,6 +67,29 @@ class LawSpread:
 
     cause: str
     changes: Mapping[str, float]
+
+
+class SearchedSpeeds(NamedTuple):
+    """A curve over speed; torque : in words; speeds : stated ones between which it is wanted [rad/s]."""
+
+    torque: str
+    speeds: tuple[float, float]
+
+    def place(self, label: str) -> str:
+        """Of the resonances of a mesh on it."""
+        return at_torque(label, self.torque)
+
+
+class BeyondPeriod(NamedTuple):
+    """What the period of the response cannot hold.
+
+    gears : whose teeth differ and are taken with their mean; loads : part and order of oscillating torques
+    lines : shaft lines, by their first loaded shaft, of which unbalance, bow and run-out are left out
+    """
+
+    gears: tuple[str, ...]
+    loads: tuple[str, ...]
+    lines: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,6 +174,101 @@ class SolvedRig:
         """Discretisation error of the value of a check, by its id."""
         return {row.quantity: row.error for row in self.discretisation if not row.gearbox}
 
+    @cached_property
+    def schedule(self) -> Schedule:
+        """Stages of the time run."""
+        return schedule_of(self.rig)
+
+    @property
+    def dwell_stages(self) -> tuple[StageValues, ...]:
+        """Stages with a speed at which the rig dwells."""
+        return dwell_stages(self.rig)
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the curves over speed show every resonance."""
+        return resolved(self.rig)
+
+    @property
+    def resonance_margin(self) -> float:
+        """Share of its speed that a resonance keeps away from a held one."""
+        return bounds_of(self.rig).margin
+
+    @cached_property
+    def dangerous_resonances(self) -> tuple[AvoidedResonance, ...]:
+        """Of every mesh and root at every torque of the curves; empty without a dynamic run."""
+        if self.run is None or self.loads is None:
+            return ()
+        roots = bounds_of(self.rig).resonances(root_shares(self.rig, self.loads))
+        return (*mesh_resonances(self.rig, self.run, self.loads), *roots)
+
+    def searched(self, point: PointResult) -> SearchedSpeeds:
+        """The curve over speed under the torque of a held point of a dynamic run."""
+        assert self.run is not None
+        torque = torque_key(signed_torque(self.rig, point.point))
+        named = {torque_key(of): name for name, (of, _) in self.run.curves.named.items()}
+        return SearchedSpeeds(named[torque], speed_ranges(self.rig)[torque])
+
+    @cached_property
+    def beyond_period(self) -> BeyondPeriod:
+        """What does not fit into the period of the response of the last held point."""
+        last = self.points[-1].last
+        laws = laws_of(last.models)
+        return BeyondPeriod(
+            gears=tuple(averaged_gears(self.rig, laws)),
+            loads=tuple(loads_left_out(self.rig, laws, last.system)),
+            lines=tuple(lines_left_out(self.rig, laws, last.system)),
+        )
+
+    def rolling_states(self) -> Iterator[tuple[str, RollingState]]:
+        """(place and stage, state) of every rolling bearing at every held stage."""
+        for point in self.points:
+            for name, found in point.last.bearings.items():
+                state = rolling_state(found)
+                if state is not None:
+                    yield f"{name}, stage {point.point.stage}", state
+
+    def held_contact(self, point: PointResult, mesh: int) -> HeldContact | None:
+        """Loaded contact of one mesh, by its number, at a held point; None without load and of analytic teeth."""
+        return held_contact(self.rig, point, mesh)
+
+    def application_factor(self, mesh: int) -> float:
+        """K_A of a mesh, by its number."""
+        return application_factor(self.rig, mesh)
+
+    def flank_ratings(self, mesh: int) -> tuple[FlankRating, ...]:
+        """Ratings of a mesh, by its number, at every held stage that turns under load."""
+        return tuple(flank_ratings(self.rig, self.points, mesh))
+
+    def standard_root_stresses(self, mesh: int, index: int) -> Iterator[tuple[RatedLoad, RootStress]]:
+        """sigma_F of ISO 6336-3 of one gear of a mesh at every held stage, with the simulated K_V in K_Falpha too."""
+        pair, gear = self.rig.pairs[self.rig.mesh_names[mesh]], self.rig.mesh_gear(mesh, index)
+        for load in rated_loads(self.rig, self.points, mesh):
+            yield load, root_stress(pair, load.torque, index, load.root, grade=gear.quality_grade)
+
+    def strength_factors(self, mesh: int, index: int) -> tuple[float, Mapping[str, float]]:
+        """Load cycles that a gear has to endure, and the factors on sigma_FE by symbol."""
+        cycles = rated_cycles(self.rig, mesh, index)
+        return cycles, permissible_factors(self.rig.pairs[self.rig.mesh_names[mesh]], index, cycles)
+
+    def load_cycles(self, shaft: str) -> float:
+        """Turns of a shaft in the planned time at test speed."""
+        return load_cycles(self.rig, shaft)
+
+    def reversed_bending(
+        self, mesh: int, index: int, stress: float, *, over_path: bool
+    ) -> ReversedBending | None:
+        """Of an idler whose two flanks carry: by its stress history where that is computed, else by ISO 6336-3.
+
+        stress : root stress of the load of this mesh [Pa], computed ``over_path`` or by the standard
+        """
+        gear, place = self.rig.mesh_gears(self.rig.mesh_names[mesh])[index], GearInMesh(mesh, index)
+        if over_path and self.loads is not None and len(gear_meshes(self.rig)[gear]) > 1:
+            history = self.loads.teeth.get(gear)
+            if history is not None and self.label(mesh) in history.meshes:
+                return of_history(self.rig, place, history)
+        return by_standard(self.rig, place, stress, self.test.point.speed)
+
     @property
     def case(self) -> Case:
         """The case."""
@@ -190,22 +340,3 @@ def solved_rig(
 def housing_fields(points: Iterable[PointResult]) -> list[tuple[PointResult, HousingField]]:
     """Every field of every held point, with that point."""
     return [(point, field) for point in points for field in point.last.fields.values()]
-
-
-NO_LOADS = "losses are given (losses.basis = input): there are no dynamic loads"
-NO_LIMIT = "the case states no limit"
-NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances"
-
-
-def worst(items: Iterable[tuple[float, str]], *, smallest: bool = False) -> tuple[float, str]:
-    """The governing value and where it occurs; the first of equals.
-
-    items : (value, where)
-
-    Raises
-    ------
-    NonFiniteResultError
-        A value is NaN or infinite: it has no place in an order.
-    """
-    ordered = sorted(items, key=lambda item: finite(item[1], item[0]), reverse=not smallest)
-    return ordered[0]

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from dynamics.errors import DynamicsNotConverged
-from dynamics.losses.loss import ToothPath
 from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState
 from dynamics.rotor.damped_modes import NamedMode
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.static_loop import LoopLoad, StaticState, port_model
+from dynamics.tooth.friction import ToothPath
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.vibration.harmonic_balance import HarmonicSolution

@@ -15,6 +15,10 @@ Status = Literal["fail", "open", "advisory", "pass", "not applicable"]
 does not bind."""
 STATUSES: tuple[Status, ...] = get_args(Status)
 Role = Literal["specimen", "rig"]
+NO_LOADS = "losses are given (losses.basis = input): there are no dynamic loads"
+NO_LIMIT = "the case states no limit"
+NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances"
+"""Why a check has no value."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,11 +1,14 @@
 """Lateral vibration of the shafts: SI records. Amplitudes are half axes of ellipses."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from dynamics.rotor.damped_modes import RigMode
+if TYPE_CHECKING:
+    from dynamics.rotor.damped_modes import RigMode
 
 RIGID, SWAYING = 0.05, 0.1
 """Strain energy over kinetic energy, and frequency over that of the fastest shaft, below which a mode is no vibration

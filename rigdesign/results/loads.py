@@ -1,15 +1,19 @@
 """Dynamic loads of the meshes: SI records. Speeds are those of a mesh's own pinion, torques positive on the flank that
 carries."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
-from dynamics.rotor.bracing import BracingDrift
-from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
 from rigdesign.results.dynamics import FROM_FACTORS, StressSource
-from rigdesign.results.teeth import ToothHistory
+
+if TYPE_CHECKING:
+    from dynamics.rotor.bracing import BracingDrift
+    from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
+    from rigdesign.results.teeth import ToothHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,6 +205,10 @@ class DynamicLoads(Protocol):
 # Press fit and spline of a gear at the largest torque of a stage or event: SI records.
 
 SplineStressKind = Literal["flank pressure", "shear of the teeth", "shear of the shaft", "tension of the hub"]
+
+
+SEAT_FRICTION = 0.12
+"""Coefficient of a steel seat against slip along the circumference, joined with oil (DIN 7190-1, table of values)."""
 
 
 @dataclass(frozen=True, kw_only=True)

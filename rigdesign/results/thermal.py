@@ -1,13 +1,16 @@
 """Losses, oil, temperatures and thermal expansion of a run, as they stand in results.json."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.transient.soak import Soak
-from thermal.fe.mesh import NamedMesh
+if TYPE_CHECKING:
+    from rigdesign.transient.soak import Soak
+    from thermal.fe.mesh import NamedMesh
 
 
 @dataclass(frozen=True, kw_only=True)

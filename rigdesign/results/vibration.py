@@ -12,6 +12,12 @@ CIRCLING = 0.1
 PlaceKind = Literal["shaft", "spline", "coupling", "motor", "mesh"]
 Row = tuple[float, ...]
 ResonanceKind = Literal["dynamic factor", "root stress", "shaft torque", "shaft order"]
+SHAFT_SHARE = 0.5
+"""Half peak-to-peak torque of a shaft or joint, over the mean of the loop, from which it counts as in resonance: below,
+its peak stays within what it carries under the highest K_V of a mesh."""
+NEAR = 0.2
+"""Distance of a mode, as a share of its frequency, within which it may still be called near: loaded teeth are stiffer
+or softer than the mean stiffness of the modes."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from dynamics.gear.involute import GearGeometryError, shift_sum
 from rigdesign.rexs.gear_stage import (
     Entry,
     GearStage,
@@ -176,8 +177,6 @@ def _shift_sum(stage: GearStage, distance: float | None) -> float | None:
     gear, teeth = stage.pinion.gear, _teeth(stage)
     if distance is None or gear.normal_module is None or teeth is None:
         return None
-    from dynamics.gear.cylindrical_gear import GearGeometryError
-    from dynamics.gear.pair_geometry import shift_sum
 
     angle, helix = gear.pressure_angle or STANDARD_ANGLE, abs(gear.helix_angle or 0.0)
     try:

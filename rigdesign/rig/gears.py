@@ -7,6 +7,7 @@ import numpy as np
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
 from dynamics.gear.flank import require_whole_flanks
+from dynamics.gear.involute import shift_sum
 from dynamics.gear.microgeometry import Topography
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import GearBodies, TipShortening
@@ -87,7 +88,6 @@ def _pinion_shift(box: Gearbox, mesh: GearMesh) -> float | None:
     pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
     if pinion.profile_shift is not None or wheel.profile_shift is None:
         return pinion.profile_shift
-    from dynamics.gear.pair_geometry import shift_sum
 
     total = shift_sum(
         mesh.normal_module,

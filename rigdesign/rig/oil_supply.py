@@ -1,13 +1,18 @@
 """Oil of a gearbox as it is: its state, and what of it reaches meshes, walls and bearings."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.case.lubrication import JetOil
 from rigdesign.properties.oil import Oil
-from rigdesign.rig.model import Rig
 from thermal.films.flank import FilmOil
+
+if TYPE_CHECKING:
+    from rigdesign.rig.model import Rig
 
 
 def gear_oil(rig: Rig, name: str) -> Oil:
@@ -73,7 +78,7 @@ class ChamberOil:
     """As an oil circuit feeds it [K]; None for the inlet temperature of the case."""
 
     @classmethod
-    def of(cls, name: str, outlets: Mapping[str, float], supplies: Mapping[str, float]) -> "ChamberOil":
+    def of(cls, name: str, outlets: Mapping[str, float], supplies: Mapping[str, float]) -> ChamberOil:
         """That of the gearbox ``name``; outlets, supplies : by oil stream [K]."""
         stream = f"{name}.gear_oil"
         return cls(leaving=outlets[stream], supply=supplies.get(stream))

@@ -1,13 +1,18 @@
 """Seals that a shaft has: a gap in each wall of a chamber, and one seal wherever it leaves the gearbox."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rigdesign.case.drivetrain import DrivetrainInput, ShaftInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
-from rigdesign.rig.model import Rig
 from thermal.housing.shaft_geometry import SIDES
+
+if TYPE_CHECKING:
+    from rigdesign.rig.model import Rig
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -113,7 +113,7 @@ def solve_case(
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
-    for text in missed(wanted):
+    for text in missed(SolvedRig(rig=wanted, points=())):
         say(text)
     with BackgroundTasks(_compilation(wanted, say)) as compilation:
         if wanted.mesh_stiffness == "influence_numbers":

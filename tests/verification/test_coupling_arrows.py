@@ -16,8 +16,8 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.losses.loss import ToothPath
 from dynamics.rotor.rolling_state import RollingState
+from dynamics.tooth.friction import ToothPath
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case

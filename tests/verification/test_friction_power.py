@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.losses.loss import mesh_loss
+from dynamics.losses.mesh_loss import mesh_loss
 from dynamics.tooth.friction import GivenFriction, ToothPath, friction_coefficient
 from dynamics.tooth.mesh_force import evaluate_mesh, tooth_forces
 from dynamics.tooth.mesh_laws import ContactDiscretisation, MeshDissipation, mesh_law, pair_stiffness

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from dynamics.losses.loss import mesh_loss
+from dynamics.losses.mesh_loss import mesh_loss
 from dynamics.tooth.friction import (
     Schlenk,
     ToothPath,

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from dynamics.gear.involute import GearGeometryError, shift_sum
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import unknown
@@ -239,8 +240,6 @@ def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") ->
             at, "", "the centre distance fixes the sum of the profile shifts, one more statement their split",
             'write profile_shift for one of the two gears or for both, or profile_shift_split = "equal"',
         )  # fmt: skip
-    from dynamics.gear.cylindrical_gear import GearGeometryError
-    from dynamics.gear.pair_geometry import shift_sum
 
     try:
         total = shift_sum(

@@ -6,8 +6,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from dynamics.gear.cylindrical_gear import GearGeometryError
 from dynamics.gear.flank import require_whole_flanks
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.gear.tooth_form import GearDetails, TipEdge, ToothForm

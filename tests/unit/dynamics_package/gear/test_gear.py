@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
+from dynamics.gear.cylindrical_gear import CylindricalGear, Rack
+from dynamics.gear.involute import GearGeometryError, involute
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating import iso_rating

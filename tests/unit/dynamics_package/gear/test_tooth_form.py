@@ -5,7 +5,7 @@ from math import cos, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
-from dynamics.gear.cylindrical_gear import GearGeometryError
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.tooth_form import TipEdge, ToothForm
 from tests.builders.influence import drawn_gear
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from dynamics.errors import DynamicsInputError
-from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
+from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.flank import AxisMisalignment, FlankField, TeethInMesh
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.microgeometry import Microgeometry
 from dynamics.gear.pair import GearPair
 from dynamics.tooth.mesh_laws import MeshPosition, mesh_law, pair_stiffness

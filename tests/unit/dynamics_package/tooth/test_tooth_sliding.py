@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.losses.loss import LossError, mesh_loss, squeeze_loss
+from dynamics.losses.loss import LossError
+from dynamics.losses.mesh_loss import mesh_loss, squeeze_loss
 from dynamics.tooth.friction import (
     GivenFriction,
     Schlenk,

@@ -12,8 +12,8 @@ from rigdesign.case.paths import known_paths
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.registry import LOADS, REGISTRY, Registry, RigRule, RuleFamily, Topic
 from rigdesign.checks.rules import hold
-from rigdesign.postprocessing.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig
-from rigdesign.results.check import Check
+from rigdesign.postprocessing.solved_rig import SolvedRig
+from rigdesign.results.check import NO_HOUSING, NO_LIMIT, NO_LOADS, Check
 from rigdesign.results.units import KELVIN, MICROMETRE, DisplayUnit
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES

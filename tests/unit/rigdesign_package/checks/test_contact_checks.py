@@ -17,8 +17,7 @@ from rigdesign.checks import contact
 from rigdesign.checks.registry import RuleFamily
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.teeth import LoadedContact
-from rigdesign.rig.model import Rig
+from rigdesign.results.teeth import EdgeContact, LoadedContact
 from tests.builders.loaded_mesh import influence_of
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
@@ -78,12 +77,13 @@ def solved(case: Case) -> SolvedRig:
 def loaded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same loaded contact in every mesh at every held stage but the first, which carries nothing."""
 
-    def held(rig: Rig, point: Any, mesh: int) -> Any:
-        flanks = SimpleNamespace(flank="front")
-        idle = point.point.stage == "run-in"
-        return None if idle else SimpleNamespace(cycle=cycle(rig.mesh_names[mesh]), flanks=flanks)
+    def held(solved: SolvedRig, point: Any, mesh: int) -> Any:
+        if point.point.stage == "run-in":
+            return None
+        turned = cycle(solved.rig.mesh_names[mesh])
+        return SimpleNamespace(cycle=turned, edges=EdgeContact.of(turned, "front"))
 
-    monkeypatch.setattr(contact, "held_contact", held)
+    monkeypatch.setattr(SolvedRig, "held_contact", held)
 
 
 def checks(case: Case) -> dict[str, Check]:
@@ -118,7 +118,7 @@ def test_without_a_stated_limit_gears_of_the_rig_have_the_pitting_strength(
 ) -> None:
     """It is a strength at the pitch point: a broken rule warns."""
     rating = SimpleNamespace(pitting=(SimpleNamespace(strength=600e6), SimpleNamespace(strength=300e6)))
-    monkeypatch.setattr(contact, "flank_ratings", lambda rig, points, mesh: iter([rating]))
+    monkeypatch.setattr(SolvedRig, "flank_ratings", lambda solved, mesh: (rating,))
     found = checks(shipped())
     assert set(found) == {"flank.contact_pressure.reference"}
     check = found["flank.contact_pressure.reference"]

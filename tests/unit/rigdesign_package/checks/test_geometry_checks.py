@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from dynamics.gear.cylindrical_gear import GearGeometryError, Rack
+from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.flank import require_whole_flanks
+from dynamics.gear.involute import GearGeometryError
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from rigdesign.case import load_case
@@ -103,7 +104,7 @@ def test_undercut_of_the_path_of_contact_names_the_least_profile_shift() -> None
 
 def test_what_is_missed_is_said_before_the_rig_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     pairs = {**fzg().pairs, "test.main": GearPair.from_centre_distance(**TYPE_A)}
-    (text,) = geometry.missed(replace(fzg(), pairs=pairs))
+    (text,) = geometry.missed(SolvedRig(rig=replace(fzg(), pairs=pairs), points=()))
     assert text.startswith("missed before anything is solved: least tooth thickness at a tip circle")
     said: list[str] = []
 

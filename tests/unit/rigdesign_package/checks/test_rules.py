@@ -5,8 +5,7 @@ from typing import Literal
 import pytest
 
 from rigdesign.base.errors import NonFiniteResultError
-from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, with_error
-from rigdesign.postprocessing.solved_rig import worst
+from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, with_error, worst
 from rigdesign.results.check import overall
 
 

@@ -152,6 +152,20 @@ def test_a_case_error_loads_no_solver(write: Write) -> None:
     assert done.stdout.split() == ["2"], done.stderr
 
 
+@pytest.mark.parametrize("command", [("explain", str(PROTOTYPE)), ("list", "limits")])
+def test_what_is_said_without_solving_loads_no_solver(command: tuple[str, ...]) -> None:
+    """The list of checks is declared apart from the solved rig that their values are read from."""
+    code = (
+        "import sys\nfrom rigdesign.cli import main as cli\n"
+        f"sys.argv = ['rigdesign', *{command!r}]\n"
+        "try:\n    cli.main()\nexcept SystemExit as end:\n    assert not end.code\n"
+        "print(*[name for name in ('numba', 'skfem', 'scipy.sparse', 'scipy.optimize', 'gmsh') if name in sys.modules],"
+        " file=sys.stderr)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout and not done.stderr.strip()
+
+
 THREADS = (
     "import os\nfrom rigdesign.cli import main as cli\nfrom rigdesign.base.parallel import BLAS_THREADS\n"
     "cli.run = lambda _: print(*[os.environ.get(name) for name in BLAS_THREADS])\ncli.main()\n"
