@@ -118,15 +118,15 @@ def harmonic_loads(
     ratios : (n,) speed of each freedom per speed of the reference; turns : of the reference in the period; speed : of
     the reference [rad/s]. What does not fit the period is left out.
     """
-    found: dict[int, Complex] = {}
+    by_harmonic: dict[int, Complex] = {}
     for of_part in loads:
         ratio = float(ratios[of_part.dof])
         for part in of_part.parts:
             harmonic = waves_within(part.order, ratio, turns)
             if harmonic:
                 value = part.at_speed(ratio * speed) * np.exp(-1j * part.phase) * of_part.load
-                found[harmonic] = found.get(harmonic, 0.0) + value
-    return found
+                by_harmonic[harmonic] = by_harmonic.get(harmonic, 0.0) + value
+    return by_harmonic
 
 
 def left_out(loads: Sequence[PeriodicLoad], ratios: Array, turns: float) -> list[str]:
