@@ -125,9 +125,9 @@ def _averaged(
     points, shape = elements.mesh.points, elements.shape
     nodes = np.unique(local)
     values, weights = np.zeros((len(nodes), 3)), np.zeros(len(nodes))
-    own = np.searchsorted(nodes, patches.corners)
-    values[own] = patches.weight[:, None] * patches.polynomial[:, 0]
-    weights[own] = patches.weight
+    corners = np.searchsorted(nodes, patches.corners)
+    values[corners] = patches.weight[:, None] * patches.polynomial[:, 0]
+    weights[corners] = patches.weight
     poor = (patches.weight < 1.0)[patch]
     everyone = tuple(range(shape.n_corners))
     chosen = [
@@ -143,9 +143,9 @@ def _averaged(
         for parent in parents:
             mine = patch[cells, parent]
             weight = patches.weight[mine]
-            found = patches.at(mine, points[local[cells, node]] - points[patches.corners[mine]])
+            gradient = patches.at(mine, points[local[cells, node]] - points[patches.corners[mine]])
             for direction in range(3):
-                values[:, direction] += np.bincount(place, weight * found[:, direction], len(nodes))
+                values[:, direction] += np.bincount(place, weight * gradient[:, direction], len(nodes))
             weights += np.bincount(place, weight, len(nodes))
     return nodes.astype(np.int32), values / weights[:, None]
 
