@@ -143,9 +143,9 @@ def approach_row(
 # What a gear mesh sees of its two gears in six degrees of freedom, as rows on the freedoms of the elastic rig.
 #
 # The forces of a mesh act on the same rows by which its motion is seen, so that its power is theirs and its forces on
-# both gears balance. The turns count from the centre line, which the
-# gears turn as they move: gears that move as one, turned about any axis, show no motion in any row. Friction across the
-# normal n = +-cos(alpha) t + sin(alpha) e acts where both flanks slide,
+# both gears balance. The turns count from the centre line, which the gears turn as they move: gears that move as one,
+# turned about any axis, show no motion in any row. Friction across the normal n = +-cos(alpha) t + sin(alpha) e acts
+# where both flanks slide,
 #
 #     omega_1 rho_1 - omega_2 rho_2 - cos(alpha) e . (v_1 - v_2),
 #

@@ -253,8 +253,8 @@ def _lateral_motions(rig: ElasticRig, freedoms: Freedoms, shaft: str) -> Array:
     on_shaft = np.array(freedoms.shaft_of) == _index(rig, shaft)
     x = np.zeros(freedoms.size)
     nodes = freedoms.nodes[shaft]
-    for i, here in enumerate(nodes.x):
-        x[nodes.first + 6 * i : nodes.first + 6 * i + 6] = here
+    for i, position in enumerate(nodes.x):
+        x[nodes.first + 6 * i : nodes.first + 6 * i + 6] = position
     for gear in rig.drivetrain.gears:
         if gear.shaft == shaft and gear.seat is not None:
             place = freedoms.place(gear.name)

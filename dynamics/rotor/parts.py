@@ -330,14 +330,14 @@ def check_loops(circuit: PowerCircuit) -> None:
     ratios, directions = _spread(circuit)
     distances: dict[frozenset[int], tuple[str, float]] = {}
     for a, b, mesh in _edges(circuit):
-        here = ratios[b] / ratios[a]
-        asked = Fraction(mesh.teeth[0], mesh.teeth[1])
-        if here != asked:
+        turned = ratios[b] / ratios[a]
+        ratio = Fraction(mesh.teeth[0], mesh.teeth[1])
+        if turned != ratio:
             raise DrivetrainError(
                 f"mesh {mesh.name!r}: loop cannot turn: teeth {mesh.teeth[0]}/{mesh.teeth[1]} give the wheel "
-                f"{float(asked):.9g} of the pinion's speed, the rest of the loop {float(here):.9g}, "
+                f"{float(ratio):.9g} of the pinion's speed, the rest of the loop {float(turned):.9g}, "
                 "so the product of the ratios round the loop is "
-                f"{float(asked / here):.9g} and not 1; change tooth numbers so that it is 1"
+                f"{float(ratio / turned):.9g} and not 1; change tooth numbers so that it is 1"
             )
         if directions[a] == directions[b]:
             raise DrivetrainError(

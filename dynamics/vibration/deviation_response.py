@@ -430,12 +430,12 @@ class DeviationResponse:
             if residue not in changes:
                 changes[residue] = self._class(residue, reach, torques, tangent)
             h = round(order / loop.cell_order - residue)
-            here = changes[residue]
-            torque = here.torque[:, reach + h].copy()
+            of_class = changes[residue]
+            torque = of_class.torque[:, reach + h].copy()
             if residue == 0.0:
                 torque[: loop.n_inputs] += loop.torque[:, h]
             whole = loop.loads(torque[: loop.n_inputs])
-            for row, amplitude in zip(here.rows, torque[loop.n_inputs :]):
+            for row, amplitude in zip(of_class.rows, torque[loop.n_inputs :]):
                 whole += amplitude * row
             sides = 2.0 if order else 1.0
             order_loads.append(OrderLoads(order=order, omega=order * loop.speed, torque=sides * whole))

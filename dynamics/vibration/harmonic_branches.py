@@ -474,10 +474,10 @@ class BranchTrace:
 
     def _direction(self) -> _Tangent | None:
         """Tangent at the present point, along the last step: at a corner, where a contact opens, it may turn back."""
-        here = self._over_speed.equations(self._solution.grid, self._solution.speed)
-        residual, reactions = here.residual(self._state)
+        equations = self._over_speed.equations(self._solution.grid, self._solution.speed)
+        residual, reactions = equations.residual(self._state)
         try:
-            along = here.step(self._per_speed(here, residual, self._state), reactions)
+            along = equations.step(self._per_speed(equations, residual, self._state), reactions)
         except np.linalg.LinAlgError:
             return self._tangent
         size = math.sqrt(self._product(along, along) + 1.0 / self._scale**2)

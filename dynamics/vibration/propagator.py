@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
-# Tables of the tooth forces beside the ports for the compiled march (``dynamics.kernels.wrench``).
-
 # Layout of the modes of a drivetrain for the compiled march: branch by branch, with the ports they meet.
 #
 # See ``dynamics.kernels.DiscreteModes`` for the tables that are filled here.
@@ -126,6 +124,8 @@ def port_blocks(port_branches: Integers, layout: ModalLayout, response: StepResp
         np.array(direct + others, np.int64), np.concatenate(linked),
     )  # fmt: skip
 
+
+# Tables of the tooth forces beside the ports for the compiled march (``dynamics.kernels.wrench``).
 
 Scalar = TypeVar("Scalar", np.float64, np.complex128)
 

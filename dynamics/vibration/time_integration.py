@@ -358,9 +358,9 @@ class TimeMarch:
         their own."""
         approach, angle = self._carried.ports[mesh, 6:8]
         reach, sides = approach + self._carried.offset[mesh], self.model.wrench_numbers[:, 0]
-        here = self._reaction(mesh, angle, reach)
-        if len(sides) == 0 or (here.force_front if sides[mesh] > 0.0 else here.force_back)[0] > 0.0:
-            return float(here.energy[0])
+        reaction = self._reaction(mesh, angle, reach)
+        if len(sides) == 0 or (reaction.force_front if sides[mesh] > 0.0 else reaction.force_back)[0] > 0.0:
+            return float(reaction.energy[0])
         moved = reach - sides[mesh] * self._carried.apart[0, mesh]
         return float(self._reaction(mesh, angle, moved).energy[0])
 
