@@ -138,8 +138,8 @@ class VariableConduction:
         """
         result = np.empty_like(temperature)
         for number, (name, law) in enumerate(self._laws):
-            mine = self._body == number
-            local = temperature[mine]
+            of_law = self._body == number
+            local = temperature[of_law]
             conductivity = np.broadcast_to(law(local), local.shape)
             bad = ~(np.isfinite(conductivity) & (conductivity > 0.0))
             if bad.any():
@@ -147,7 +147,7 @@ class VariableConduction:
                     f"conductivity of body {name!r} is {conductivity[bad][0]} W/(m K) at {local[bad][0]:.6g} K; it "
                     "must be positive at every temperature that occurs: limit the law to its range"
                 )
-            result[mine] = conductivity
+            result[of_law] = conductivity
         return result
 
     def heat_out(self, temperature: FloatArray) -> FloatArray:

@@ -352,12 +352,12 @@ def group_blocks(
     b = data.shape[1]
     blocks = np.zeros((count, size * b, size * b))
     for group in range(count):
-        for mine in range(size):
-            row = members[group, mine]
+        for member in range(size):
+            row = members[group, member]
             for entry in range(indptr[row], indptr[row + 1]):
                 for other in range(size):
                     if members[group, other] == indices[entry]:
                         for i in range(b):
                             for j in range(b):
-                                blocks[group, mine * b + i, other * b + j] = data[entry, i, j]
+                                blocks[group, member * b + i, other * b + j] = data[entry, i, j]
     return blocks

@@ -182,8 +182,8 @@ def _check_pieces(name: str, cells: IndexArray, bodies: Mapping[str, IndexArray]
     cells : (n_cells, n_corners)
     """
     broken = []
-    for body, mine in bodies.items():
-        sizes = np.sort(np.bincount(_pieces(cells[mine], n_nodes)))[::-1]
+    for body, of_body in bodies.items():
+        sizes = np.sort(np.bincount(_pieces(cells[of_body], n_nodes)))[::-1]
         if len(sizes) > 1:
             broken.append(
                 f"body {body!r} in {len(sizes)} pieces of {_listed([str(size) for size in sizes])} cells"
@@ -248,9 +248,9 @@ def _patches(points: FloatArray, facets: IndexArray) -> list[str]:
     label = _pieces(facets, len(points))
     patches = []
     for patch in np.argsort(-np.bincount(label), kind="stable"):
-        mine = facets[label == patch]
-        x, y, z = points[np.unique(mine)].mean(axis=0)
-        patches.append(f"{len(mine)} about ({x:.4g}, {y:.4g}, {z:.4g}) m")
+        members = facets[label == patch]
+        x, y, z = points[np.unique(members)].mean(axis=0)
+        patches.append(f"{len(members)} about ({x:.4g}, {y:.4g}, {z:.4g}) m")
     return patches
 
 
