@@ -194,9 +194,7 @@ def _bent(model: ElasticModel, bow: ShaftBow) -> Complex:
     """Shape (n,) of a bent shaft on all freedoms, complex amplitudes over its angle."""
     nodes = model.freedoms.nodes[bow.shaft]
     shaft = next(part for part in model.rig.drivetrain.shafts if part.name == bow.shaft)
-    residual = (
-        bow.amplitude / bow.height * np.array([bow.shape(float(position)) for position in nodes.positions])
-    )
+    residual = bow.amplitude / bow.height * np.array([bow.shape(float(x)) for x in nodes.positions])
     thermal = bow.gradient * np.array(list(_curved(shaft, nodes.positions)))
     shape = residual * np.exp(1j * bow.angle) + thermal * np.exp(1j * bow.gradient_angle)
     ahead = model.rig.placement(bow.shaft).direction

@@ -375,8 +375,8 @@ class NamedMode:
 def torsional_modes(system: LinearSystem, laws: Sequence[MeshLaw], highest: float) -> tuple[NamedMode, ...]:
     """Modes up to a frequency [Hz] of a loop whose shafts only twist, by rising frequency."""
     form = modal_form(*closed_matrices(system, laws), system.rigid)
-    oscillating = _oscillating(form, highest)
-    frequencies, gains = _frequencies(form, oscillating), _mesh_gains(form, oscillating, system, laws)
+    index = _oscillating(form, highest)
+    frequencies, gains = _frequencies(form, index), _mesh_gains(form, index, system, laws)
     return tuple(
         NamedMode(frequency=float(f), name=f"torsional {i}", likeness=1.0, mesh_gain=float(gain))
         for i, (f, gain) in enumerate(zip(frequencies, gains), start=1)
@@ -393,13 +393,13 @@ def elastic_named_modes(
     highest : frequency [Hz] up to which modes are found; torsional ones belong to torsional modes up to there
     """
     form = modal_form(*closed_matrices(system, laws), system.rigid)
-    oscillating = _oscillating(form, SOUGHT * highest)
-    frequencies, gains = _frequencies(form, oscillating), _mesh_gains(form, oscillating, system, laws)
-    shapes = seen.on_coordinates(form.velocity_shapes[:, oscillating])
-    likeness = _likeness(seen.reduced, shapes, laws, twisting, highest)
+    index = _oscillating(form, SOUGHT * highest)
+    frequencies, gains = _frequencies(form, index), _mesh_gains(form, index, system, laws)
+    modes = seen.on_coordinates(form.velocity_shapes[:, index])
+    likeness = _likeness(seen.reduced, modes, laws, twisting, highest)
     rows, matched = linear_sum_assignment(-likeness)
     alike = dict(zip(matched.tolist(), likeness[rows, matched].tolist()))
-    names = _names(seen.reduced, shapes, set(alike))
+    names = _names(seen.reduced, modes, set(alike))
     return tuple(
         NamedMode(frequency=float(f), name=name, likeness=alike.get(i, 0.0), mesh_gain=float(gain))
         for i, (f, name, gain) in enumerate(zip(frequencies, names, gains))
@@ -415,15 +415,13 @@ def _oscillating(form: ModalForm, highest: float) -> Integers:
     return np.asarray(index[np.argsort(size[index], kind="stable")], np.int64)
 
 
-def _frequencies(form: ModalForm, oscillating: Integers) -> Array:
-    return np.array([abs(pole) / (2.0 * np.pi) for pole in form.poles[oscillating]])
+def _frequencies(form: ModalForm, index: Integers) -> Array:
+    return np.array([abs(pole) / (2.0 * np.pi) for pole in form.poles[index]])
 
 
-def _mesh_gains(
-    form: ModalForm, oscillating: Integers, system: LinearSystem, laws: Sequence[MeshLaw]
-) -> Array:
+def _mesh_gains(form: ModalForm, index: Integers, system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
     """(m,) as `NamedMode.mesh_gain`."""
-    poles = form.poles[oscillating]
+    poles = form.poles[index]
     gains = []
     for law, (pinion, wheel) in zip(laws, system.mesh_ports):
         reach = (
@@ -431,15 +429,13 @@ def _mesh_gains(
         )
         load = law.base_radius_1 * form.loads[:, pinion] - law.base_radius_2 * form.loads[:, wheel]
         damping = np.maximum(np.abs(poles.real), LEAST_DAMPING * np.abs(poles))
-        gains.append(
-            law.mean_stiffness * np.abs(reach[oscillating] * load[oscillating]) / (damping * np.abs(poles))
-        )
+        gains.append(law.mean_stiffness * np.abs(reach[index] * load[index]) / (damping * np.abs(poles)))
     return np.asarray(np.max(gains, axis=0), float)
 
 
 def _likeness(
     reduced: ReducedElasticRig,
-    shapes: Complex,
+    modes: Complex,
     laws: Sequence[MeshLaw],
     twisting: LinearSystem,
     highest: float,
@@ -449,16 +445,16 @@ def _likeness(
     form = modal_form(mass, damping, stiffness, twisting.rigid)
     torsional = form.velocity_shapes[:, _oscillating(form, highest)]
     turns = np.flatnonzero(np.array(reduced.model.freedoms.family) == FAMILIES.index("torsion"))
-    shared = np.abs(torsional.conj().T @ mass @ (reduced.basis[turns] @ shapes)) ** 2
+    shared = np.abs(torsional.conj().T @ mass @ (reduced.basis[turns] @ modes)) ** 2
     size = np.real(np.einsum("it,ij,jt->t", torsional.conj(), mass, torsional))
-    return np.asarray(shared / size[:, None] / np.sum(np.abs(shapes) ** 2, axis=0))
+    return np.asarray(shared / size[:, None] / np.sum(np.abs(modes) ** 2, axis=0))
 
 
-def _names(reduced: ReducedElasticRig, shapes: Complex, torsional: set[int]) -> Iterator[str]:
+def _names(reduced: ReducedElasticRig, modes: Complex, torsional: set[int]) -> Iterator[str]:
     """Names of modes by rising frequency; the coordinates are mass-orthonormal."""
     shafts = [shaft.name for shaft in reduced.model.rig.drivetrain.shafts]
     counts: dict[str, int] = {}
-    for i, share in enumerate(mode_character(reduced, shapes).share):
+    for i, share in enumerate(mode_character(reduced, modes).share):
         body, family = np.unravel_index(int(np.argmax(share)), share.shape)
         kind = FAMILIES[family] if body == len(shafts) else f"{FAMILIES[family]} {shafts[body]}"
         kind = "torsional" if i in torsional else kind
@@ -505,8 +501,8 @@ class _Description:
         """Describe a shape (n,) with the energies of the meshes."""
         reduced = self.seen.reduced
         model = reduced.model
-        coordinates = times(self._to_coordinates, shape)
-        whole = times(reduced.basis, coordinates)
+        motion = times(self._to_coordinates, shape)
+        whole = times(reduced.basis, motion)
         energy: dict[str, float] = {}
         for name, stiffness in self._shafts.items():
             energy[name] = _energy(stiffness, whole)
@@ -515,9 +511,7 @@ class _Description:
             energy[part] = energy.get(part, 0.0) + _energy(joint.stiffness, times(joint.rows, whole))
         for name, coefficients in self.bearings.items():
             spring = coefficients.padded()[0]
-            energy[f"bearing {name}"] = _energy(
-                0.5 * (spring + spring.T), times(reduced.ports[name], coordinates)
-            )
+            energy[f"bearing {name}"] = _energy(0.5 * (spring + spring.T), times(reduced.ports[name], motion))
         for name, value in zip(self.seen.ports, mesh_energy):
             energy[f"mesh {name}"] = float(value)
         shares = energy_shares({name: max(value, 0.0) for name, value in energy.items()})

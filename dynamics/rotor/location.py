@@ -184,9 +184,7 @@ def _bodies(rig: ElasticRig) -> dict[str, str]:
 def _turning(rig: ElasticRig) -> dict[str, int]:
     """What turns as one while the torque of the loop is given: lines, open at the coupling that is twisted."""
     drivetrain = rig.drivetrain
-    joints = [
-        coupling.shafts for coupling in drivetrain.couplings if coupling.name != drivetrain.bracing_coupling
-    ]
+    joints = [c.shafts for c in drivetrain.couplings if c.name != drivetrain.bracing_coupling]
     seats = [(gear.name, gear.shaft) for gear in drivetrain.gears if gear.seat is not None]
     return turning_together(
         [*(shaft.name for shaft in drivetrain.shafts), *(a for a, _ in seats)], joints + seats

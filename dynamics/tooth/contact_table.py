@@ -272,10 +272,8 @@ def _tables(
         along = PathFilter(step=path_speed * march.step) if march else None
         if along is not None and not along.acts_on(law.base_pitch):
             along = None
-        finer = (
-            grid if along is None else replace(grid, per_pitch=along.cells(law.base_pitch, grid.per_pitch))
-        )
-        levels = _levels(law, finer, march if along else None)
+        fine = grid if along is None else replace(grid, per_pitch=along.cells(law.base_pitch, grid.per_pitch))
+        levels = _levels(law, fine, march if along else None)
         closes = law.damping_acts_on == "contact_closing_rate"
         # a helical flank lags the other way on the back, and what moves along its path moves backwards there
         signs = (1.0, -1.0) if np.any(law.slice_shift) or along or (closes and path_speed) else (1.0,)
@@ -286,7 +284,7 @@ def _tables(
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),
-                    per_pitch=finer.per_pitch,
+                    per_pitch=fine.per_pitch,
                     depths=depths,
                     tilts=grid.planes_at,
                     path_filter=PathFilter(step=sign * along.step) if along else None,
@@ -297,8 +295,8 @@ def _tables(
         part = _mesh_tables(law, flanks, depths, levels, grid)
         for name, column in FIRST_ENTRIES.items():
             counts[mesh, column] = sum(getattr(before, name).size for before in parts)
-        _fill_counts(counts[mesh], law, flanks, finer, part)
-        _fill_values(values[mesh], law, flanks, finer, depths)
+        _fill_counts(counts[mesh], law, flanks, fine, part)
+        _fill_values(values[mesh], law, flanks, fine, depths)
         parts.append(part)
     values[:, layout.V_DERIVATIVE] = derivative_torques
     return ContactTables(

@@ -352,20 +352,18 @@ class SegmentReading:
     def root(self, tooth: int, side: int) -> list[Entry]:
         """Stress at the points of a fillet over the face; that of a neighbour between its own points."""
         strip = self._strip(self._segment.section.fillets, (tooth, side))
-        at_points = [
+        points = [
             [self._stress(strip, place, position) for position in self._positions]
             for place in _stress_points(strip.n_elements)
         ]
         if tooth == 0:
-            return [entry for place in at_points for entry in place]
+            return [entry for place in points for entry in place]
         arcs = _arcs(strip)[1]
         entries = []
         for arc in self.fillet.arc.tolist():
             upper = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
             share = float(np.clip((arc - arcs[upper - 1]) / (arcs[upper] - arcs[upper - 1]), 0.0, 1.0))
-            entries += [
-                _mixed(pair, share) for pair in zip(at_points[upper - 1], at_points[upper], strict=True)
-            ]
+            entries += [_mixed(pair, share) for pair in zip(points[upper - 1], points[upper], strict=True)]
         return entries
 
     @cached_property

@@ -513,11 +513,7 @@ def _deviations(flank: FlankField, path: Array, face: Array) -> tuple[Array, Arr
     None for the back where it has the same. A topography of every tooth counts with its mean over the face.
     """
     micro = flank.micro
-    measured = [
-        topography
-        for topography in (micro.topography, micro.back_topography)
-        if topography is not None and topography.teeth > 1
-    ]
+    measured = [t for t in (micro.topography, micro.back_topography) if t is not None and t.teeth > 1]
     moved = bool(micro.pitch_deviations) or bool(micro.run_out)
     if not moved and not micro.profile_slopes and not measured:
         return np.zeros((1, len(path))), None
@@ -538,10 +534,7 @@ def _turning_deviation(flanks: Sequence[FlankField], path: Array) -> Array | Non
     return np.array(
         [
             np.concatenate(
-                [
-                    flank.turning_deviation(flank.roll(path), np.arange(flank.teeth)[:, None], side)
-                    for flank in flanks
-                ]
+                [f.turning_deviation(f.roll(path), np.arange(f.teeth)[:, None], side) for f in flanks]
             )
             for side in sides
         ]

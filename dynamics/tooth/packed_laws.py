@@ -125,9 +125,7 @@ def most_contacts(law: MeshLaw) -> int:
 
 def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
     front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
-    least_gap = float(law.gap.min()) + min(
-        float(pinion.min() + wheel.min()) for pinion, wheel in (front, back)
-    )
+    least_gap = float(law.gap.min()) + min(float(p.min() + w.min()) for p, w in (front, back))
     reversal = max(law.friction_reversal_speed, 1e-9)
     teeth = law.mean_stiffness / (1.0 - law.body_compliance * law.mean_stiffness)
     # both flanks pressed at once: the body can bring one into contact that the gears alone would not

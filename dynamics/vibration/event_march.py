@@ -149,29 +149,27 @@ def _settled(
     """March on with constant motor torque and twist while the missing loads come up; the mean speed is held."""
     steady = HeldSpeed(system, laws, start.speed)
     ratios = steady.ratios
-    within, rising = _parted(system, laws, start.period)
+    kept, rising = _parted(system, laws, start.period)
     turn = 2.0 * np.pi / start.speed
     rise = turn * np.ceil(max(RISE / turn, RISE_TURNS))
     count = round(rise * SAMPLE_RATE)
-    angles, speeds = start.angle * ratios[within.dofs], start.speed * ratios[within.dofs]
+    angles, speeds = start.angle * ratios[kept.dofs], start.speed * ratios[kept.dofs]
     drive = start.drive_torque
     march = TimeMarch(
         system,
         laws,
         start.state,
         march_settings(cutoff),
-        DriveLoads(drive_torque=drive, drag_torques=start.drags, periodic=within.values(angles, speeds)),
+        DriveLoads(drive_torque=drive, drag_torques=start.drags, periodic=kept.values(angles, speeds)),
         march_model(system, laws, tuple(start.drags), cutoff),
     )
     for block in range(BLOCKS):
         time = (block * count + 1 + np.arange(count)) / SAMPLE_RATE
-        theta = angles + time[:, None] * speeds
+        phi = angles + time[:, None] * speeds
         share = np.minimum(time / rise, 1.0)[:, None]
         given = np.zeros((count, 4 + len(system.periodic_loads)))
         given[:, 0], given[:, 1] = drive, start.state.twist
-        given[:, 4:] = within.values(theta, speeds) + share**2 * (3.0 - 2.0 * share) * rising.values(
-            theta, speeds
-        )
+        given[:, 4:] = kept.values(phi, speeds) + share**2 * (3.0 - 2.0 * share) * rising.values(phi, speeds)
         turned = march.advance(given, drags=constant_drags(start.drags)).slow_speed[:, 0]
         mean = float(turned.mean() / ratios[system.drive_dof])
         change = steady.correction(mean, rise)

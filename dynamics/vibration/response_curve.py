@@ -350,10 +350,8 @@ class SectionTorques:
         loads = np.zeros((len(self.model.loads), wave.time.size))
         for m, (packed, inputs) in enumerate(zip(self.model.packed, mesh_inputs(self.model))):
             motion = wave.angle[m], wave.approach[m], wave.omega_1[m], wave.omega_2[m]
-            for row, (torque, *_) in zip(
-                inputs, input_torques(self.model, m, evaluate_mesh(packed, *motion))
-            ):
-                loads[row] += torque
+            for i, (torque, *_) in zip(inputs, input_torques(self.model, m, evaluate_mesh(packed, *motion))):
+                loads[i] += torque
         return loads
 
     def _driven(self, point: CurvePoint, base: float, drive_speed: float, top: int) -> Complex:
