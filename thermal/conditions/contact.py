@@ -137,10 +137,8 @@ def _candidates(first: FacetTriangles, second: FacetTriangles, reach: float) -> 
     """(k, 2) pairs of triangles that are near and face each other."""
     radius = first.radius + second.radius.max() + reach
     near = cKDTree(second.centre).query_ball_point(first.centre, radius, return_sorted=True)
-    i = np.repeat(np.arange(len(near)), [len(neighbours) for neighbours in near])
-    j = np.concatenate(
-        [np.asarray(neighbours, dtype=np.int64) for neighbours in near] or [np.empty(0, np.int64)]
-    )
+    i = np.repeat(np.arange(len(near)), [len(others) for others in near])
+    j = np.concatenate([np.asarray(others, dtype=np.int64) for others in near] or [np.empty(0, np.int64)])
     facing = np.einsum("nd,nd->n", first.normal[i], second.normal[j]) < OPPOSED
     return np.column_stack([i[facing], j[facing]]).astype(np.int32)
 

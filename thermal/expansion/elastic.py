@@ -380,11 +380,11 @@ def check_held(elements: FiniteElements, fixed: BoolArray) -> None:
     """Check that every connected piece has six held directions or more (ElasticError)."""
     mesh = elements.mesh
     piece = elements.piece_of_node
-    directions = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
-    for number in np.flatnonzero(directions < 6):
+    count = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
+    for number in np.flatnonzero(count < 6):
         names = [b for b, cells in mesh.bodies.items() if (elements.components[cells] == number).any()]
         raise ElasticError(
-            f"body {', '.join(names)} is held in {directions[number]:.0f} directions; a piece needs at least six"
+            f"body {', '.join(names)} is held in {count[number]:.0f} directions; a piece needs at least six"
         )
 
 
@@ -403,11 +403,9 @@ class FreePieces:
     def of(cls, elements: FiniteElements, fixed: BoolArray) -> "FreePieces":
         """Find them; fixed : (n_nodes, 3) held directions."""
         piece = elements.piece_of_node
-        directions = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
+        count = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
         points = elements.mesh.points
-        members = (
-            np.flatnonzero(piece == number).astype(np.int32) for number in np.flatnonzero(directions == 6)
-        )
+        members = (np.flatnonzero(piece == number).astype(np.int32) for number in np.flatnonzero(count == 6))
         determinate = (nodes for nodes in members if _is_determinate(points[nodes], fixed[nodes]))
         return cls(points, fixed, tuple(determinate))
 

@@ -253,12 +253,12 @@ class ExpansionSetup:
 
 
 def _locating(model: GearboxModel, shaft: ShaftStation) -> BearingStation:
-    locating = [b for b in model.bearings if b.shaft == shaft.name and b.locating]
-    if len(locating) != 1:
+    bearings = [b for b in model.bearings if b.shaft == shaft.name and b.locating]
+    if len(bearings) != 1:
         raise ElasticError(
-            f"shaft {shaft.name!r} has {len(locating)} locating bearings; it needs exactly one"
+            f"shaft {shaft.name!r} has {len(bearings)} locating bearings; it needs exactly one"
         )
-    return locating[0]
+    return bearings[0]
 
 
 def _check_stations(model: GearboxModel) -> None:
