@@ -131,16 +131,16 @@ class FlankField:
         _require_flank(flank)
         micro, roll = self.micro, np.asarray(roll, dtype=np.float64)
         number = np.asarray(tooth, dtype=np.int64)
-        own = number % self.teeth
-        place = np.array(micro.pitch_deviations or (0.0,))[own if micro.pitch_deviations else 0]
-        slopes = np.array(micro.profile_slopes or (0.0,))[own if micro.profile_slopes else 0]
+        index = number % self.teeth
+        place = np.array(micro.pitch_deviations or (0.0,))[index if micro.pitch_deviations else 0]
+        slopes = np.array(micro.profile_slopes or (0.0,))[index if micro.profile_slopes else 0]
         tilt = 0.5 * slopes * self._along_profile(roll)
         removed = (place if flank == "back" else -place) - tilt + self.turning_deviation(roll, number, flank)
         measured = self._topography(flank)
         if measured is not None and measured.teeth > 1:
             root, tip = self.profile
             angle, face = np.clip(roll, root, tip) / self._cold_scale, np.asarray(face, dtype=np.float64)
-            removed = removed + measured.at(angle, face, own) - measured.mean.at(angle, face, 0)
+            removed = removed + measured.at(angle, face, index) - measured.mean.at(angle, face, 0)
         return np.asarray(removed)
 
     def turning_deviation(self, roll: ArrayLike, tooth: ArrayLike, flank: Flank = "front") -> Array:

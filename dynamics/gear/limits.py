@@ -62,13 +62,13 @@ def _require_rim(pair: PairGeometry, index: int) -> None:
         )
     height = rim_in_tooth_heights(pair, index)
     if (bore or rim is not None) and height <= NO_RIM:
-        what = (
+        subject = (
             f"bore_diameters[{index}] = {1e3 * bore:.3f} mm leaves a rim"
             if rim is None
             else f"{NAMES[index]}: rim_thickness = {1e3 * rim:.3f} mm is a rim"
         )
         raise GearGeometryError(
-            f"{what} of {height:.3f} tooth heights under the root, must exceed {NO_RIM}; "
+            f"{subject} of {height:.3f} tooth heights under the root, must exceed {NO_RIM}; "
             + ("reduce the bore" if rim is None else "make it thicker")
         )
 
@@ -113,18 +113,18 @@ def rim_in_tooth_heights(pair: PairGeometry, index: int) -> float:
 
 def unusual(pair: PairGeometry) -> tuple[str, ...]:
     """Warnings about a pair that can run: name, value, limit, remedy."""
-    found: list[str] = []
+    warnings: list[str] = []
     for i, name in enumerate(NAMES):
         rim = rim_in_tooth_heights(pair, i)
         stated = pair.details[i].rim_thickness is not None
         if (stated or pair.bore_diameters[i]) and rim < THIN_RIM:
-            found.append(
+            warnings.append(
                 f"{name}: rim under the root {rim:.2f} tooth heights (limit {THIN_RIM}): it adds to the root stress; "
                 + ("make the rim thicker" if stated else "reduce the bore")
             )
     if pair.transverse_backlash < -1e-9:
-        found.append(
+        warnings.append(
             f"backlash {1e6 * pair.transverse_backlash:.1f} um on the working pitch circles is negative: "
             "the teeth jam; thin them (thickness_allowances) or increase the centre distance"
         )
-    return tuple(found)
+    return tuple(warnings)

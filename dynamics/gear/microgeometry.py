@@ -92,11 +92,11 @@ class Topography:
             np.clip(face, self.face[0], self.face[-1]),
             np.asarray(tooth) % self.teeth,
         )
-        found = np.empty(angle.shape)
+        removed = np.empty(angle.shape)
         for number in np.unique(teeth):
             here = teeth == number
-            found[here] = self._surfaces[number].ev(angle[here], place[here])
-        return found
+            removed[here] = self._surfaces[number].ev(angle[here], place[here])
+        return removed
 
     @cached_property
     def mean(self) -> "Topography":

@@ -300,16 +300,16 @@ _ROUNDING = 1.0 + 1e-9
 def _outside(
     head: str, values: dict[str, float], limits: dict[str, tuple[float, float, str]]
 ) -> tuple[str, ...]:
-    found = []
+    warnings = []
     for name, value in values.items():
         low, high, unit = limits[name]
         tail = f" {unit}" if unit else ""
         if not low / _ROUNDING <= value <= high * _ROUNDING:
-            found.append(
+            warnings.append(
                 f"{head}: {name} = {value:.3g}{tail}: outside {low:g} to {high:g}{tail} of this law; "
                 "compare the laws or give the measured loss"
             )
-    return tuple(found)
+    return tuple(warnings)
 
 
 def _extrapolation(values: dict[str, float], limits: dict[str, tuple[float, float, str]]) -> float:

@@ -220,19 +220,19 @@ def wetted_area(gear: DippedGear, bath: OilBath) -> float:
 def level_warnings(place: str, gear: DippedGear, bath: OilBath) -> tuple[str, ...]:
     """Sentences for a level that reaches the shaft and for teeth of which only the tips touch the oil."""
     underside = gear.axis_height - gear.shaft_radius
-    found: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     if bath.running_level >= underside:
-        found += (
+        warnings += (
             f"{place}: oil level = {bath.running_level * 1e3:.1f} mm: reaches the shaft at {underside * 1e3:.1f} mm; "
             "lower it, or count flooded bearings and shaft seals",
         )
     depth = bath.running_level - gear.lowest_point
     if 0.0 < depth < gear.tooth_height:
-        found += (
+        warnings += (
             f"{place}: immersion = {depth * 1e3:.2f} mm: less than the tooth height {gear.tooth_height * 1e3:.2f} mm; "
             "raise the level for safe lubrication",
         )
-    return found
+    return warnings
 
 
 def tooth_space_flow(gear: DippedGear, bath: OilBath, speed: float) -> float:

@@ -59,14 +59,14 @@ def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> 
 
     A curve that still rises at its highest speed has a peak there (``at_end``).
     """
-    found: list[Resonance] = []
+    peaks: list[Resonance] = []
     for mesh, amplitude in enumerate(curve.amplitude):
         share = amplitude / np.abs(curve.mean_torque[mesh])
         standing = {peak: height for peak, height in _prominences(share) if height >= least_prominence}
         if (rise := _rise_at_end(share)) >= least_prominence:
             standing[share.size - 1] = rise
         for peak, prominence in standing.items():
-            found.append(
+            peaks.append(
                 Resonance(
                     mesh=mesh,
                     speed=_peak_speed(curve.speed, share, peak),
@@ -78,7 +78,7 @@ def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> 
                     at_end=peak == share.size - 1,
                 )
             )
-    return tuple(found)
+    return tuple(peaks)
 
 
 def _prominences(values: Array) -> Iterator[tuple[int, float]]:

@@ -103,7 +103,7 @@ class FlankContact:
         path = self.pair.path
         start, end = path.start, path.end
         inner, outer = path.inner_single_contact, path.outer_single_contact
-        found = {
+        positions = {
             "A": start,
             "AB": 0.5 * (start + inner),
             "B": inner,
@@ -112,7 +112,7 @@ class FlankContact:
             "DE": 0.5 * (outer + end),
             "E": end,
         }
-        return {name: s for name, s in found.items() if start <= s <= end}
+        return {name: s for name, s in positions.items() if start <= s <= end}
 
     def radii(self, s: Array) -> tuple[Array, Array]:
         """Transverse radii of curvature of pinion and wheel flank [m], shape of ``s``."""
@@ -265,12 +265,12 @@ def pitting(
     )
     raised = nominal * sqrt(load.factors.product)
     first, second = (
-        _one(pair, load, materials, viscosity_40, index, wanted, (nominal, raised)) for index in (0, 1)
+        _pitting(pair, load, materials, viscosity_40, index, wanted, (nominal, raised)) for index in (0, 1)
     )
     return first, second
 
 
-def _one(
+def _pitting(
     pair: GearPair, load: FlankLoad, materials: FlankMaterials, viscosity_40: float, index: int,
     wanted: dict[str, float], stresses: tuple[float, float],
 ) -> Pitting:  # fmt: skip

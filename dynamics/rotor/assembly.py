@@ -126,8 +126,8 @@ def assemble_rig(rig: ElasticRig) -> ElasticModel:
 
 def shaft_stiffness(model: ElasticModel, shaft: str) -> csr_array:
     """Stiffness (n, n) of the elements of one shaft alone."""
-    own = next(one for one in model.rig.drivetrain.shafts if one.name == shaft)
-    return _joined([_beam(model.rig, model.freedoms, own, 0.0)[1]], model.size)
+    part = next(part for part in model.rig.drivetrain.shafts if part.name == shaft)
+    return _joined([_beam(model.rig, model.freedoms, part, 0.0)[1]], model.size)
 
 
 def _beam(
@@ -283,7 +283,7 @@ class CrossJointLoad:
 def cross_joint_loads(model: ElasticModel) -> Iterator[CrossJointLoad]:
     """Of every cross joint of a rig under an angle."""
     for joint in model.rig.cross_joints:
-        coupling = next(one for one in model.rig.drivetrain.couplings if one.name == joint.coupling)
+        coupling = next(part for part in model.rig.drivetrain.couplings if part.name == joint.coupling)
         across, square = _directions(model, coupling, joint)
         first, second = (_tilts(model, coupling, side) for side in (0, 1))
         standing = -0.5 * across @ (first + second)
@@ -293,7 +293,7 @@ def cross_joint_loads(model: ElasticModel) -> Iterator[CrossJointLoad]:
 
 def tilt_rows(model: ElasticModel) -> Array:
     """(4 k, n) tilts of the shaft ends at k cross joints."""
-    couplings = {one.name: one for one in model.rig.drivetrain.couplings}
+    couplings = {coupling.name: coupling for coupling in model.rig.drivetrain.couplings}
     rows = [
         _tilts(model, couplings[joint.coupling], side) for joint in model.rig.cross_joints for side in (0, 1)
     ]

@@ -104,10 +104,10 @@ def stiffness_matrices(elements: BeamElements) -> Array:
     length, phi = elements.length, elements.shear_share
     whole = np.zeros((length.size, 12, 12))
     scale = elements.elastic_modulus * elements.second_moment / ((1.0 + phi) * length**3)
-    one = np.ones_like(length)
+    unit = np.ones_like(length)
     bending = scale[:, None, None] * _symmetric(
         length,
-        (12.0 * one, 6.0 * one, -12.0 * one, 6.0 * one, 4.0 + phi, -6.0 * one, 2.0 - phi),
+        (12.0 * unit, 6.0 * unit, -12.0 * unit, 6.0 * unit, 4.0 + phi, -6.0 * unit, 2.0 - phi),
     )
     for index, sign in PLANES:
         whole[:, index[:, None], index] += bending * np.outer(sign, sign)
@@ -166,15 +166,15 @@ def _rotary(elements: BeamElements) -> Array:
     """Rotary inertia in one plane (n, 4, 4)."""
     length, phi = elements.length, elements.shear_share
     scale = elements.density * elements.second_moment / (210.0 * length * (1.0 + phi) ** 2)
-    one, slope = np.ones_like(length), 21.0 - 105.0 * phi
+    unit, slope = np.ones_like(length), 21.0 - 105.0 * phi
     return np.asarray(
         scale[:, None, None]
         * _symmetric(
             length,
             (
-                252.0 * one,
+                252.0 * unit,
                 slope,
-                -252.0 * one,
+                -252.0 * unit,
                 slope,
                 28.0 + 35.0 * phi + 70.0 * phi**2,
                 -slope,

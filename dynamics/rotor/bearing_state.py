@@ -138,12 +138,12 @@ def line_loads(model: ElasticModel) -> dict[tuple[str, SpeedPower], Complex]:
     """Loads (n,) by shaft line, under the name of its first loaded shaft, and by power of the speed."""
     lines = model.rig.drivetrain.lines()
     first: dict[int, str] = {}
-    found: dict[tuple[str, SpeedPower], Complex] = {}
+    loads: dict[tuple[str, SpeedPower], Complex] = {}
     for load in rotating_loads(model):
         name = first.setdefault(lines[load.shaft], load.shaft)
         key = (name, load.speed_power)
-        found[key] = found.get(key, 0.0) + load.load
-    return found
+        loads[key] = loads.get(key, 0.0) + load.load
+    return loads
 
 
 def misalignment_load(model: ElasticModel, misalignments: tuple[AxisMisalignment, ...]) -> Array:
@@ -172,7 +172,7 @@ def _rotating_load(model: ElasticModel, part: RotatingPart) -> RotatingLoad:
             return RotatingLoad(shaft=part.shaft, load=np.asarray(load), speed_power=0)
         case FlangeRunOut():
             joint = model.joint(part.coupling, "coupling")
-            coupling = next(one for one in model.rig.drivetrain.couplings if one.name == part.coupling)
+            coupling = next(c for c in model.rig.drivetrain.couplings if c.name == part.coupling)
             turn = -1j * _sense(model, coupling.shafts[0])
             offset = part.offset * np.exp(1j * part.offset_angle)
             slope = part.tilt * np.exp(1j * part.tilt_angle)
@@ -193,8 +193,8 @@ def _sense(model: ElasticModel, shaft: str) -> float:
 def _bent(model: ElasticModel, bow: ShaftBow) -> Complex:
     """Shape (n,) of a bent shaft on all freedoms, complex amplitudes over its angle."""
     nodes = model.freedoms.nodes[bow.shaft]
-    shaft = next(one for one in model.rig.drivetrain.shafts if one.name == bow.shaft)
-    residual = bow.amplitude / bow.height * np.array([bow.shape(float(at)) for at in nodes.positions])
+    shaft = next(part for part in model.rig.drivetrain.shafts if part.name == bow.shaft)
+    residual = bow.amplitude / bow.height * np.array([bow.shape(float(x)) for x in nodes.positions])
     thermal = bow.gradient * np.array(list(_curved(shaft, nodes.positions)))
     shape = residual * np.exp(1j * bow.angle) + thermal * np.exp(1j * bow.gradient_angle)
     ahead = model.rig.placement(bow.shaft).direction

@@ -143,9 +143,9 @@ def approach_row(
 # What a gear mesh sees of its two gears in six degrees of freedom, as rows on the freedoms of the elastic rig.
 #
 # The forces of a mesh act on the same rows by which its motion is seen, so that its power is theirs and its forces on
-# both gears balance. The turns count from the centre line, which the
-# gears turn as they move: gears that move as one, turned about any axis, show no motion in any row. Friction across the
-# normal n = +-cos(alpha) t + sin(alpha) e acts where both flanks slide,
+# both gears balance. The turns count from the centre line, which the gears turn as they move: gears that move as one,
+# turned about any axis, show no motion in any row. Friction across the normal n = +-cos(alpha) t + sin(alpha) e acts
+# where both flanks slide,
 #
 #     omega_1 rho_1 - omega_2 rho_2 - cos(alpha) e . (v_1 - v_2),
 #
@@ -194,14 +194,14 @@ def _moved(model: ElasticModel, mesh: str, directions: MeshDirections) -> Array:
     connection = model.rig.mesh(mesh)
     names = (connection.pinion, connection.wheel)
     centres = [model.freedoms.place(name).x for name in names]
-    found = np.zeros((3, model.size))
+    motion = np.zeros((3, model.size))
     for sign, name, radius, centre in zip((1.0, -1.0), names, directions.radii, centres):
         rows = model.rows(name)
         arm = sign * radius * directions.centre_line
         arm[0] = 0.5 * sum(centres) - centre
         turned = np.stack([np.zeros(model.size), rows[4], rows[5]])
-        found += sign * (rows[:3] + np.cross(turned.T, arm).T)
-    return found
+        motion += sign * (rows[:3] + np.cross(turned.T, arm).T)
+    return motion
 
 
 def _face_direction(model: ElasticModel, mesh: str) -> float:
@@ -237,13 +237,13 @@ class SeenRig:
 
         Raises DrivetrainError as `RunningState.check`.
         """
-        at = self.reduced.matrices(state)
+        matrices = self.reduced.matrices(state)
         back = self._back
         places = self._places
         return LinearSystem(
-            inertia=back.T @ at.mass @ back,
-            damping=back.T @ at.damping @ back,
-            stiffness=back.T @ at.stiffness @ back,
+            inertia=back.T @ matrices.mass @ back,
+            damping=back.T @ matrices.damping @ back,
+            stiffness=back.T @ matrices.stiffness @ back,
             dofs=self._names,
             mesh_ports=np.array(
                 [(places[f"{mesh} pinion"], places[f"{mesh} wheel"]) for mesh in self.ports], np.int64
@@ -255,9 +255,9 @@ class SeenRig:
             periodic_loads=(*self._periodic_loads, *self._cross_joints(state)),
             own_coordinates=Coordinates(
                 freedoms=self._forth,
-                inertia=at.mass,
-                damping=_without_rounding(at.damping),
-                stiffness=_without_rounding(at.stiffness),
+                inertia=matrices.mass,
+                damping=_without_rounding(matrices.damping),
+                stiffness=_without_rounding(matrices.stiffness),
                 rigid=self.reduced.rigid,
             ),
             mesh_wrench=self._mesh_wrench,
@@ -372,10 +372,10 @@ class SeenRig:
         """Ripple of the motor, excitation of the couplings, which counts the turns of the line it is on, and what turns
         with every line."""
         drivetrain, model = self.reduced.model.rig.drivetrain, self.reduced.model
-        found = []
+        loads = []
         if drivetrain.motor.ripple:
             load = self._load(model.row("motor", "turn"))
-            found.append(
+            loads.append(
                 PeriodicLoad(
                     name="motor", load=load, dof=self._places["drive"], parts=drivetrain.motor.ripple
                 )
@@ -383,7 +383,7 @@ class SeenRig:
         for coupling in drivetrain.couplings:
             if coupling.excitation:
                 load = self._load(model.joint(coupling.name, "coupling").row("turn"))
-                found.append(
+                loads.append(
                     PeriodicLoad(
                         name=coupling.name,
                         load=load,
@@ -396,8 +396,8 @@ class SeenRig:
                 turning = self._load(full.real) + 1j * self._load(full.imag)
                 part = LoadOrder(order=1.0, amplitude=1.0, speed_power=power)
                 name = TURNING[0] if power else TURNING[1]
-                found += rotating_load(f"{name} of {shaft}", turning, self._port_of_line(shaft), part)
-        return tuple(found)
+                loads += rotating_load(f"{name} of {shaft}", turning, self._port_of_line(shaft), part)
+        return tuple(loads)
 
     def _cross_joints(self, state: RunningState) -> Iterator[PeriodicLoad]:
         """What cross joints make of the torque that they pass, twice a turn of their first shaft."""
@@ -461,12 +461,12 @@ def _springs(model: ElasticModel) -> Iterator[TwistSpring]:
     for joint in model.joints:
         for kind in JOINTS:
             if joint.kind == kind and "turn" in joint.directions:
-                at = joint.directions.index("turn")
+                turn = joint.directions.index("turn")
                 yield TwistSpring(
                     TorqueSection(kind=kind, part=joint.name),
                     joint.row("turn"),
-                    float(joint.stiffness[at, at]),
-                    float(joint.damping[at, at]),
+                    float(joint.stiffness[turn, turn]),
+                    float(joint.damping[turn, turn]),
                 )
 
 

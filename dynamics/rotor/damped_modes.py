@@ -105,12 +105,12 @@ def damped_modes(rig: ReducedElasticRig, state: RunningState, highest: float | N
     """Modes of a rig at a state, up to a frequency [Hz] if given; raises DrivetrainError as `RunningState.check`."""
     matrices = rig.matrices(state)
     turned, stiffness, free = _free_first(matrices.stiffness, rig.n_rigid)
-    n, held = rig.size, slice(free, rig.size)
-    scale = np.sqrt(np.maximum(np.diag(stiffness)[held], 1.0))
+    n, elastic = rig.size, slice(free, rig.size)
+    scale = np.sqrt(np.maximum(np.diag(stiffness)[elastic], 1.0))
     size = n - free
     system = np.zeros((size + n, size + n))
     system[np.arange(size), size + free + np.arange(size)] = scale
-    system[size:, :size] = -stiffness[:, held] / scale
+    system[size:, :size] = -stiffness[:, elastic] / scale
     system[size:, size:] = -(turned.T @ matrices.damping @ turned)
     poles, vectors = np.linalg.eig(system)
     oscillating = poles.imag > OSCILLATING * np.abs(poles)
@@ -252,13 +252,13 @@ def rig_modes(rig: ReducedElasticRig, state: RunningState, highest: float) -> tu
     elastic = _elastic_shares(rig, modes)
     shafts = [shaft.name for shaft in rig.model.rig.drivetrain.shafts]
     slowest = AT_REST * abs(state.speed) / (2.0 * math.pi)
-    found = []
+    oscillating = []
     for i in range(modes.poles.size):
         if modes.frequency[i] <= slowest:
             continue
         body, family = np.unravel_index(int(np.argmax(character.share[i])), character.share[i].shape)
         on_shaft = body < len(shafts)
-        found.append(
+        oscillating.append(
             RigMode(
                 name=character.names[i],
                 family=FAMILIES[int(family)],
@@ -269,7 +269,7 @@ def rig_modes(rig: ReducedElasticRig, state: RunningState, highest: float) -> tu
                 elastic_share=float(elastic[i]),
             )
         )
-    return tuple(found)
+    return tuple(oscillating)
 
 
 def _elastic_shares(rig: ReducedElasticRig, modes: DampedModes) -> Array:
@@ -306,26 +306,26 @@ def line_whirls(rig: ReducedElasticRig, state: RunningState, loads: LineLoads) -
     """
     matrices = rig.matrices(state)
     speeds = {name: abs(rig.model.spins[name]) * state.speed for name, _ in loads}
-    found = []
+    whirls = []
     for name, speed in speeds.items():
         if not speed > 0.0:
             continue
         load = sum(
-            (speed**power * own for (line, power), own in loads.items() if line == name),
+            (speed**power * amplitude for (line, power), amplitude in loads.items() if line == name),
             np.zeros(rig.size, complex),
         )
         motion = matrices.response(np.asarray(load)[:, None], speed)[:, 0]
-        found.append(LineWhirl(line=name, frequency=speed, motion=motion))
-    return tuple(found)
+        whirls.append(LineWhirl(line=name, frequency=speed, motion=motion))
+    return tuple(whirls)
 
 
 def whirl_at(whirls: tuple[LineWhirl, ...], rows: Array, sense: float) -> dict[str, Orbit]:
     """Orbit of a place by line, from the rows (2, n) of its motion along y and z on the reduced coordinates."""
-    found = {}
+    orbits = {}
     for whirl in whirls:
         across, up = rows @ whirl.motion
-        found[whirl.line] = orbit(complex(across), complex(up), sense)
-    return found
+        orbits[whirl.line] = orbit(complex(across), complex(up), sense)
+    return orbits
 
 
 def bearing_forces(
@@ -333,12 +333,12 @@ def bearing_forces(
 ) -> dict[str, Orbit]:
     """Force [N] that turns once with a line in a bearing, K w + C w', by line: half axes of its ellipse."""
     stiffness, damping = (matrix[:2] for matrix in state.bearings[bearing].padded())
-    found = {}
+    orbits = {}
     for whirl in whirls:
         motion = rig.ports[bearing] @ whirl.motion
         force = stiffness @ motion + 1j * whirl.frequency * damping @ motion
-        found[whirl.line] = orbit(complex(force[0]), complex(force[1]))
-    return found
+        orbits[whirl.line] = orbit(complex(force[0]), complex(force[1]))
+    return orbits
 
 
 # Modes of the closed elastic loop with names that stay: the torsional ones by number, the others by shaft and motion.
@@ -375,8 +375,8 @@ class NamedMode:
 def torsional_modes(system: LinearSystem, laws: Sequence[MeshLaw], highest: float) -> tuple[NamedMode, ...]:
     """Modes up to a frequency [Hz] of a loop whose shafts only twist, by rising frequency."""
     form = modal_form(*closed_matrices(system, laws), system.rigid)
-    found = _oscillating(form, highest)
-    frequencies, gains = _frequencies(form, found), _mesh_gains(form, found, system, laws)
+    index = _oscillating(form, highest)
+    frequencies, gains = _frequencies(form, index), _mesh_gains(form, index, system, laws)
     return tuple(
         NamedMode(frequency=float(f), name=f"torsional {i}", likeness=1.0, mesh_gain=float(gain))
         for i, (f, gain) in enumerate(zip(frequencies, gains), start=1)
@@ -393,13 +393,13 @@ def elastic_named_modes(
     highest : frequency [Hz] up to which modes are found; torsional ones belong to torsional modes up to there
     """
     form = modal_form(*closed_matrices(system, laws), system.rigid)
-    found = _oscillating(form, SOUGHT * highest)
-    frequencies, gains = _frequencies(form, found), _mesh_gains(form, found, system, laws)
-    own = seen.on_coordinates(form.velocity_shapes[:, found])
-    likeness = _likeness(seen.reduced, own, laws, twisting, highest)
+    index = _oscillating(form, SOUGHT * highest)
+    frequencies, gains = _frequencies(form, index), _mesh_gains(form, index, system, laws)
+    modes = seen.on_coordinates(form.velocity_shapes[:, index])
+    likeness = _likeness(seen.reduced, modes, laws, twisting, highest)
     rows, matched = linear_sum_assignment(-likeness)
     alike = dict(zip(matched.tolist(), likeness[rows, matched].tolist()))
-    names = _names(seen.reduced, own, set(alike))
+    names = _names(seen.reduced, modes, set(alike))
     return tuple(
         NamedMode(frequency=float(f), name=name, likeness=alike.get(i, 0.0), mesh_gain=float(gain))
         for i, (f, name, gain) in enumerate(zip(frequencies, names, gains))
@@ -415,13 +415,13 @@ def _oscillating(form: ModalForm, highest: float) -> Integers:
     return np.asarray(index[np.argsort(size[index], kind="stable")], np.int64)
 
 
-def _frequencies(form: ModalForm, found: Integers) -> Array:
-    return np.array([abs(pole) / (2.0 * np.pi) for pole in form.poles[found]])
+def _frequencies(form: ModalForm, index: Integers) -> Array:
+    return np.array([abs(pole) / (2.0 * np.pi) for pole in form.poles[index]])
 
 
-def _mesh_gains(form: ModalForm, found: Integers, system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
+def _mesh_gains(form: ModalForm, index: Integers, system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
     """(m,) as `NamedMode.mesh_gain`."""
-    poles = form.poles[found]
+    poles = form.poles[index]
     gains = []
     for law, (pinion, wheel) in zip(laws, system.mesh_ports):
         reach = (
@@ -429,28 +429,32 @@ def _mesh_gains(form: ModalForm, found: Integers, system: LinearSystem, laws: Se
         )
         load = law.base_radius_1 * form.loads[:, pinion] - law.base_radius_2 * form.loads[:, wheel]
         damping = np.maximum(np.abs(poles.real), LEAST_DAMPING * np.abs(poles))
-        gains.append(law.mean_stiffness * np.abs(reach[found] * load[found]) / (damping * np.abs(poles)))
+        gains.append(law.mean_stiffness * np.abs(reach[index] * load[index]) / (damping * np.abs(poles)))
     return np.asarray(np.max(gains, axis=0), float)
 
 
 def _likeness(
-    reduced: ReducedElasticRig, own: Complex, laws: Sequence[MeshLaw], twisting: LinearSystem, highest: float
+    reduced: ReducedElasticRig,
+    modes: Complex,
+    laws: Sequence[MeshLaw],
+    twisting: LinearSystem,
+    highest: float,
 ) -> Array:
     """(m_torsional, m) modal assurance of elastic shapes on the coordinates (n, m) with the torsional modes."""
     mass, damping, stiffness = closed_matrices(twisting, laws)
     form = modal_form(mass, damping, stiffness, twisting.rigid)
     torsional = form.velocity_shapes[:, _oscillating(form, highest)]
     turns = np.flatnonzero(np.array(reduced.model.freedoms.family) == FAMILIES.index("torsion"))
-    shared = np.abs(torsional.conj().T @ mass @ (reduced.basis[turns] @ own)) ** 2
+    shared = np.abs(torsional.conj().T @ mass @ (reduced.basis[turns] @ modes)) ** 2
     size = np.real(np.einsum("it,ij,jt->t", torsional.conj(), mass, torsional))
-    return np.asarray(shared / size[:, None] / np.sum(np.abs(own) ** 2, axis=0))
+    return np.asarray(shared / size[:, None] / np.sum(np.abs(modes) ** 2, axis=0))
 
 
-def _names(reduced: ReducedElasticRig, own: Complex, torsional: set[int]) -> Iterator[str]:
+def _names(reduced: ReducedElasticRig, modes: Complex, torsional: set[int]) -> Iterator[str]:
     """Names of modes by rising frequency; the coordinates are mass-orthonormal."""
     shafts = [shaft.name for shaft in reduced.model.rig.drivetrain.shafts]
     counts: dict[str, int] = {}
-    for i, share in enumerate(mode_character(reduced, own).share):
+    for i, share in enumerate(mode_character(reduced, modes).share):
         body, family = np.unravel_index(int(np.argmax(share)), share.shape)
         kind = FAMILIES[family] if body == len(shafts) else f"{FAMILIES[family]} {shafts[body]}"
         kind = "torsional" if i in torsional else kind
@@ -497,8 +501,8 @@ class _Description:
         """Describe a shape (n,) with the energies of the meshes."""
         reduced = self.seen.reduced
         model = reduced.model
-        own = times(self._to_coordinates, shape)
-        whole = times(reduced.basis, own)
+        motion = times(self._to_coordinates, shape)
+        whole = times(reduced.basis, motion)
         energy: dict[str, float] = {}
         for name, stiffness in self._shafts.items():
             energy[name] = _energy(stiffness, whole)
@@ -507,7 +511,7 @@ class _Description:
             energy[part] = energy.get(part, 0.0) + _energy(joint.stiffness, times(joint.rows, whole))
         for name, coefficients in self.bearings.items():
             spring = coefficients.padded()[0]
-            energy[f"bearing {name}"] = _energy(0.5 * (spring + spring.T), times(reduced.ports[name], own))
+            energy[f"bearing {name}"] = _energy(0.5 * (spring + spring.T), times(reduced.ports[name], motion))
         for name, value in zip(self.seen.ports, mesh_energy):
             energy[f"mesh {name}"] = float(value)
         shares = energy_shares({name: max(value, 0.0) for name, value in energy.items()})
@@ -538,12 +542,12 @@ class _Description:
         elements = csr_array(model.stiffness - joints)
         owner = np.array(model.freedoms.shaft_of)
         kind = np.array([FAMILY.get(name.rsplit(" ", 1)[1], "bending") for name in model.names])
-        found = {}
+        stiffness = {}
         for number, shaft in enumerate(model.rig.drivetrain.shafts):
             for family in ("torsion", "axial", "bending"):
                 mask = diags_array(((owner == number) & (kind == family)).astype(float))
-                found[f"{shaft.name} {family}"] = csr_array(mask @ elements @ mask)
-        return found
+                stiffness[f"{shaft.name} {family}"] = csr_array(mask @ elements @ mask)
+        return stiffness
 
 
 def _energy(stiffness: csr_array | Array, motion: Complex) -> float:

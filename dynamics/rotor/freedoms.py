@@ -371,8 +371,8 @@ def port_rows(bearing: str, freedoms: Freedoms) -> Array:
 def axial_motion(mesh: MeshConnection, rig: ElasticRig, freedoms: Freedoms) -> Array:
     """(n,) motion along x of the pinion against the wheel at their pitch point: u_x + theta_y z - theta_z y."""
     a, b = freedoms.place(mesh.pinion), freedoms.place(mesh.wheel)
-    one, two = rig.placement(a.shaft), rig.placement(b.shaft)
-    across = np.array([two.y - one.y, two.z - one.z])
+    pinion, wheel = rig.placement(a.shaft), rig.placement(b.shaft)
+    across = np.array([wheel.y - pinion.y, wheel.z - pinion.z])
     share = mesh.teeth[0] / sum(mesh.teeth)
     motion = np.zeros(freedoms.size)
     for place, sign, radius in ((a, 1.0, share * across), (b, -1.0, -(1.0 - share) * across)):

@@ -420,13 +420,13 @@ def torsional_twist_rows(drivetrain: Drivetrain) -> TwistRows:
 def section_of_elements(shaft: Shaft, positions: Array) -> Iterator[TorqueSection]:
     """Section of each element between neighbouring positions (n,) [m] of a chain."""
     ends = np.cumsum([0.0, *(section.length for section in shaft.sections)])
-    found = [
+    sections = [
         TorqueSection(kind="shaft", part=shaft.name, start=float(a), end=float(b), section=section)
         for a, b, section in zip(ends[:-1], ends[1:], shaft.sections)
     ]
     middle = 0.5 * (positions[:-1] + positions[1:])
-    index = np.clip(np.searchsorted(ends, middle) - 1, 0, len(found) - 1)
-    return (found[i] for i in index)
+    index = np.clip(np.searchsorted(ends, middle) - 1, 0, len(sections) - 1)
+    return (sections[i] for i in index)
 
 
 # Friction in splines as a loss factor: what a cycle dissipates does not depend on its rate.
@@ -490,5 +490,5 @@ def at_speed(drivetrain: Drivetrain, speed: float) -> Drivetrain:
 def with_spline_dampers(rows: TwistRows, drivetrain: Drivetrain, speed: float) -> TwistRows:
     """Rows of torques with the dampers of splines at a speed of the motor's shaft [rad/s], which carry torque too."""
     added = {loss.gear: loss.damping(speed) for loss in spline_losses(drivetrain)}
-    own = [added.get(one.part, 0.0) if one.kind == "spline" else 0.0 for one in rows.sections]
-    return replace(rows, damping=rows.damping + own) if added else rows
+    damping = [added.get(section.part, 0.0) if section.kind == "spline" else 0.0 for section in rows.sections]
+    return replace(rows, damping=rows.damping + damping) if added else rows

@@ -119,8 +119,8 @@ def arc_coefficients(arc: FilmArc) -> FilmCoefficients:
     changes = solve_active(bands, sources, active.ravel())
     changes[~active.ravel()] = 0.0
     weights = np.stack([(normal[:, None] * grid.areas).ravel() for normal in normals])
-    found = 0.5 * weights @ changes
-    return FilmCoefficients(found[:, :2], found[:, 2:])
+    coefficients = 0.5 * weights @ changes
+    return FilmCoefficients(coefficients[:, :2], coefficients[:, 2:])
 
 
 def _sum(parts: Sequence[FilmCoefficients]) -> FilmCoefficients:
@@ -232,8 +232,8 @@ def _solved(steps: int, feed: Feed) -> CoefficientTable:
     width_ratio = steps * WIDTH_RATIO_STEP
     rows, nodes = [], np.sort(np.concatenate([CLOSE_IN, NODES]))
     for film in solved_films(width_ratio, feed, nodes):
-        found = film_coefficients(film)
-        values = np.concatenate([found.stiffness.ravel(), found.damping.ravel()])
+        coefficients = film_coefficients(film)
+        values = np.concatenate([coefficients.stiffness.ravel(), coefficients.damping.ravel()])
         rows.append(values * film.eccentricity / film.sommerfeld * (1.0 - film.eccentricity) ** GROWTH)
     return CoefficientTable(characteristic(width_ratio, feed), CubicSpline(nodes, np.array(rows)))
 
@@ -315,9 +315,9 @@ def journal_lateral(film: RunningFilm, operation: LateralOperation) -> LateralCo
 
 
 def _film_coefficients(film: RunningFilm, eccentricity: float) -> FilmCoefficients:
-    found = film.table.at(eccentricity)
+    coefficients = film.table.at(eccentricity)
     return FilmCoefficients(
-        film.omega * film.damping_scale * found.stiffness, film.damping_scale * found.damping
+        film.omega * film.damping_scale * coefficients.stiffness, film.damping_scale * coefficients.damping
     )
 
 
@@ -401,28 +401,28 @@ class JournalState(BearingState):
 
 def limit_warnings(state: JournalState) -> tuple[str, ...]:
     """Sentences for what lies outside the theory: name, value, limit, remedy."""
-    found = []
+    warnings = []
     if state.regime == "mixed":
-        found.append(
+        warnings.append(
             f"eccentricity >= {HIGHEST_ECCENTRICITY}: mixed friction, drag torque and film thickness are bounds; "
             "raise speed or viscosity or lower the load"
         )
     if 0.0 < state.omega < state.transition_speed:
-        found.append(
+        warnings.append(
             f"speed = {state.omega * 30.0 / math.pi:.0f} rpm: below the transition speed "
             f"{state.transition_speed * 30.0 / math.pi:.0f} rpm of this load; lower the load until it is passed"
         )
     if state.reynolds_number > state.reynolds_limit:
-        found.append(
+        warnings.append(
             f"Reynolds number = {state.reynolds_number:.0f}: above {state.reynolds_limit:.0f}, the film is not "
             "laminar and its drag torque is higher; reduce the clearance or use a thicker oil"
         )
     if state.side_flow > state.flow:
-        found.append(
+        warnings.append(
             f"oil flow = {state.flow * 6e4:.3g} l/min: below the {state.side_flow * 6e4:.3g} l/min the film drives "
             "out, the bearing starves; feed more oil"
         )
-    return tuple(found)
+    return tuple(warnings)
 
 
 TAYLOR_LIMIT = 41.3
@@ -520,8 +520,8 @@ class JournalBearing:
 
         def heat_into(film: _Film) -> float:
             given = operation.friction_heat
-            own = film.torque * film.omega if given is None else given
-            return own + operation.heat_from_bodies
+            friction_heat = film.torque * film.omega if given is None else given
+            return friction_heat + operation.heat_from_bodies
 
         def film_excess(temperature: float) -> float:
             film = _film(self, curve, operation, oil.viscosity(temperature))

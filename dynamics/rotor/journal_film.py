@@ -170,8 +170,8 @@ def solve_active(bands: Array, source: Array, active: Mask) -> Array:
     for offset in (1, width):
         both = active[offset:] & active[:-offset]
         reduced[offset, : both.size] *= both
-    held = np.where(active if source.ndim == 1 else active[:, None], source, 0.0)
-    solution: Array = solveh_banded(reduced, held, lower=True, check_finite=False)
+    right = np.where(active if source.ndim == 1 else active[:, None], source, 0.0)
+    solution: Array = solveh_banded(reduced, right, lower=True, check_finite=False)
     return solution
 
 

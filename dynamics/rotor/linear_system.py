@@ -121,7 +121,7 @@ def known_modal_form(inertia: Array, damping: Array, stiffness: Array, rigid: Ar
     """As `modal_form`; matrices met before are not solved again: of systems that differ in one bearing or shaft all
     branches but one are the same."""
     matrices = (inertia, damping, stiffness, rigid)
-    content = sha256(b"".join(repr(one.shape).encode() + one.tobytes() for one in matrices)).digest()
+    content = sha256(b"".join(repr(matrix.shape).encode() + matrix.tobytes() for matrix in matrices)).digest()
     return kept_as((modal_form, content), lambda: modal_form(*matrices))
 
 
@@ -194,11 +194,11 @@ class MeshWrench:
     def friction_rows(self, laws: Sequence[MeshLaw]) -> Array:
         """(2 n_meshes, n) what torques of friction on pinion and wheel act on beside their ports: each with the
         force across the line of action that both make, their difference over the length T1T2 of the line."""
-        found = []
+        rows = []
         for turns, slide, side, law in zip(self.turns, self.slide, self.sides, laws, strict=True):
             across = side * slide / line_length(law)
-            found += [turns[0] + across, turns[1] - across]
-        return np.array(found)
+            rows += [turns[0] + across, turns[1] - across]
+        return np.array(rows)
 
     def loads(self, laws: Sequence[MeshLaw]) -> Array:
         """Columns (n, 3 n_meshes): both friction rows of every mesh, then slides."""
@@ -212,11 +212,11 @@ class MeshWrench:
     def numbers(self, laws: Sequence[MeshLaw]) -> Array:
         """(n_meshes, 5) plain numbers for the march: side, torques on both friction rows per path torque on the
         pinion less that torque, twice the tangent of the pressure angle, force across per difference of torques."""
-        found = []
+        rows = []
         for side, tangent, law in zip(self.sides, self.tangents, laws, strict=True):
             length = line_length(law)
             part = tangent / (1.0 + tangent**2) / length
-            found.append(
+            rows.append(
                 [
                     side,
                     -part * law.base_radius_1,
@@ -225,7 +225,7 @@ class MeshWrench:
                     -2.0 * side / length,
                 ]
             )
-        return np.array(found)
+        return np.array(rows)
 
 
 def line_length(law: MeshLaw) -> float:
@@ -316,12 +316,12 @@ class LinearSystem:
         inner = self.coordinates
         forms = []
         for branch in np.unique(inner.branches):
-            own = np.flatnonzero(inner.branches == branch)
-            block = np.ix_(own, own)
+            members = np.flatnonzero(inner.branches == branch)
+            block = np.ix_(members, members)
             form = known_modal_form(
-                inner.inertia[block], inner.damping[block], inner.stiffness[block], inner.rigid[own]
+                inner.inertia[block], inner.damping[block], inner.stiffness[block], inner.rigid[members]
             )
-            forms.append(form.seen(inner.freedoms[:, own]))
+            forms.append(form.seen(inner.freedoms[:, members]))
         return ModalForm(
             poles=np.concatenate([form.poles for form in forms]),
             velocity_shapes=np.hstack([form.velocity_shapes for form in forms]),

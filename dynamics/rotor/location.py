@@ -110,8 +110,8 @@ def rigid_motions(rig: ElasticRig, freedoms: Freedoms) -> tuple[RigidMotion, ...
         shape = np.zeros(freedoms.size)
         for body in bodies:
             if body in freedoms.nodes:
-                own = (shaft_of == _index(rig, body)) & ~_separate(rig, freedoms, body)
-                shape[own & sliding] = 1.0
+                on_shaft = (shaft_of == _index(rig, body)) & ~_separate(rig, freedoms, body)
+                shape[on_shaft & sliding] = 1.0
             else:
                 shape[freedoms.place(body).base] = 1.0
         motions.append(RigidMotion("axial", bodies, shape))
@@ -184,7 +184,7 @@ def _bodies(rig: ElasticRig) -> dict[str, str]:
 def _turning(rig: ElasticRig) -> dict[str, int]:
     """What turns as one while the torque of the loop is given: lines, open at the coupling that is twisted."""
     drivetrain = rig.drivetrain
-    joints = [one.shafts for one in drivetrain.couplings if one.name != drivetrain.bracing_coupling]
+    joints = [c.shafts for c in drivetrain.couplings if c.name != drivetrain.bracing_coupling]
     seats = [(gear.name, gear.shaft) for gear in drivetrain.gears if gear.seat is not None]
     return turning_together(
         [*(shaft.name for shaft in drivetrain.shafts), *(a for a, _ in seats)], joints + seats
@@ -222,10 +222,10 @@ def _check_lateral(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[Elastic
         joint.rows[np.diag(joint.stiffness) > 0.0] for joint in joints if joint.kind in ("coupling", "spline")
     ]
     for bearing in rig.drivetrain.bearings:
-        held = [0, 1]
+        directions = [0, 1]
         if bearing.name in rig.moment_carrying:
-            held += [SEAT_DIRECTIONS.index("theta_y"), SEAT_DIRECTIONS.index("theta_z")]
-        rows.append(port_rows(bearing.name, freedoms)[held])
+            directions += [SEAT_DIRECTIONS.index("theta_y"), SEAT_DIRECTIONS.index("theta_z")]
+        rows.append(port_rows(bearing.name, freedoms)[directions])
     table = np.vstack([*rows, np.zeros((1, freedoms.size))]) @ motions
     size = np.linalg.norm(table, axis=1, keepdims=True)
     table = np.divide(table, size, where=size > FREE, out=np.zeros_like(table))
@@ -248,18 +248,18 @@ def _check_lateral(rig: ElasticRig, freedoms: Freedoms, joints: Sequence[Elastic
 def _lateral_motions(rig: ElasticRig, freedoms: Freedoms, shaft: str) -> Array:
     """(n, 4) shift along y and z, tilt about z and y of a rigid shaft with its gears, tilt 1 at half its length."""
     names = np.array(freedoms.names)
-    own = np.array(freedoms.shaft_of) == _index(rig, shaft)
+    on_shaft = np.array(freedoms.shaft_of) == _index(rig, shaft)
     x = np.zeros(freedoms.size)
     nodes = freedoms.nodes[shaft]
-    for i, here in enumerate(nodes.x):
-        x[nodes.first + 6 * i : nodes.first + 6 * i + 6] = here
+    for i, position in enumerate(nodes.x):
+        x[nodes.first + 6 * i : nodes.first + 6 * i + 6] = position
     for gear in rig.drivetrain.gears:
         if gear.shaft == shaft and gear.seat is not None:
             place = freedoms.place(gear.name)
             x[place.freedoms] = place.x
     half = 0.5 * float(np.ptp(nodes.x))
     along = (x - 0.5 * float(nodes.x.min() + nodes.x.max())) / half
-    picked = {d: (own & np.char.endswith(names, f" {d}")).astype(float) for d in SEAT_DIRECTIONS}
+    picked = {d: (on_shaft & np.char.endswith(names, f" {d}")).astype(float) for d in SEAT_DIRECTIONS}
     return np.column_stack(
         [
             picked["u_y"],
@@ -289,8 +289,8 @@ class _Groups:
 
     def without(self, name: str) -> list[tuple[str, ...]]:
         """Groups that do not hold a name."""
-        found: dict[int, list[str]] = {}
+        groups: dict[int, list[str]] = {}
         for member, i in self.group.items():
             if i != self.group[name]:
-                found.setdefault(i, []).append(member)
-        return [tuple(members) for members in found.values()]
+                groups.setdefault(i, []).append(member)
+        return [tuple(members) for members in groups.values()]

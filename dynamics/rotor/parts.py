@@ -118,15 +118,15 @@ def harmonic_loads(
     ratios : (n,) speed of each freedom per speed of the reference; turns : of the reference in the period; speed : of
     the reference [rad/s]. What does not fit the period is left out.
     """
-    found: dict[int, Complex] = {}
+    by_harmonic: dict[int, Complex] = {}
     for of_part in loads:
         ratio = float(ratios[of_part.dof])
         for part in of_part.parts:
             harmonic = waves_within(part.order, ratio, turns)
             if harmonic:
                 value = part.at_speed(ratio * speed) * np.exp(-1j * part.phase) * of_part.load
-                found[harmonic] = found.get(harmonic, 0.0) + value
-    return found
+                by_harmonic[harmonic] = by_harmonic.get(harmonic, 0.0) + value
+    return by_harmonic
 
 
 def left_out(loads: Sequence[PeriodicLoad], ratios: Array, turns: float) -> list[str]:
@@ -330,14 +330,14 @@ def check_loops(circuit: PowerCircuit) -> None:
     ratios, directions = _spread(circuit)
     distances: dict[frozenset[int], tuple[str, float]] = {}
     for a, b, mesh in _edges(circuit):
-        here = ratios[b] / ratios[a]
-        asked = Fraction(mesh.teeth[0], mesh.teeth[1])
-        if here != asked:
+        turned = ratios[b] / ratios[a]
+        ratio = Fraction(mesh.teeth[0], mesh.teeth[1])
+        if turned != ratio:
             raise DrivetrainError(
                 f"mesh {mesh.name!r}: loop cannot turn: teeth {mesh.teeth[0]}/{mesh.teeth[1]} give the wheel "
-                f"{float(asked):.9g} of the pinion's speed, the rest of the loop {float(here):.9g}, "
+                f"{float(ratio):.9g} of the pinion's speed, the rest of the loop {float(turned):.9g}, "
                 "so the product of the ratios round the loop is "
-                f"{float(asked / here):.9g} and not 1; change tooth numbers so that it is 1"
+                f"{float(ratio / turned):.9g} and not 1; change tooth numbers so that it is 1"
             )
         if directions[a] == directions[b]:
             raise DrivetrainError(

@@ -71,9 +71,9 @@ def real_modes(model: ElasticModel, bearings: Mapping[str, BearingCoefficients])
     for i in range(count):
         index = np.flatnonzero(block_of == i)
         touching = np.flatnonzero(np.abs(rigid[index]).sum(axis=0) > 0.0)
-        own = rigid[np.ix_(index, touching)]
+        motions = rigid[np.ix_(index, touching)]
         values, vectors = _block_modes(
-            model.mass[index][:, index].toarray(), stiffness[index][:, index].toarray(), own
+            model.mass[index][:, index].toarray(), stiffness[index][:, index].toarray(), motions
         )
         columns = np.arange(filled, filled + index.size)
         shapes[np.ix_(index, columns)] = vectors
@@ -205,12 +205,12 @@ class ReducedElasticRig:
     @cached_property
     def spline_dampers(self) -> tuple[SplineDamper, ...]:
         """Dampers of splines with a loss factor, rows (n,) on the coordinates, exactly zero on rigid motions."""
-        found = []
+        dampers = []
         for damper in spline_dampers(self.model):
             row = self.rows(damper.row)
             row[: self.n_rigid] = 0.0
-            found.append(SplineDamper(row, damper.loss))
-        return tuple(found)
+            dampers.append(SplineDamper(row, damper.loss))
+        return tuple(dampers)
 
     def rows(self, full: Array) -> Array:
         """Rows (..., n_full) on the freedoms as rows (..., n) on the coordinates; loads likewise."""
@@ -309,10 +309,10 @@ def _attachments(
             continue
         left, weight, _ = np.linalg.svd(flexibility[:, used] / size[used], full_matrices=False)
         left = left[:, weight > DEPENDENT * weight[0]]
-        own, turned = np.linalg.eigh(left.T @ (squared[:, None] * left))
+        eigenvalues, turned = np.linalg.eigh(left.T @ (squared[:, None] * left))
         shapes.append(vectors @ (left @ turned))
-        values.append(own)
-        blocks.append(np.full(own.size, block))
+        values.append(eigenvalues)
+        blocks.append(np.full(eigenvalues.size, block))
     if not shapes:
         return np.zeros((rows.shape[1], 0)), np.zeros(0), np.zeros(0, int)
     return np.hstack(shapes), np.concatenate(values), np.concatenate(blocks)

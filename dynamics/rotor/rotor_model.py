@@ -174,7 +174,7 @@ def rotor_of(drivetrain: Drivetrain, shaft: str) -> Rotor:
     """A shaft with discs, gears and a motor rotor that it carries."""
     parts = list(_masses(drivetrain, shaft))
     mass = math.fsum(mass for mass, _ in parts)
-    return Rotor(mass=mass, centre=math.fsum(mass * at for mass, at in parts) / mass)
+    return Rotor(mass=mass, centre=math.fsum(mass * position for mass, position in parts) / mass)
 
 
 def residual_unbalances(
@@ -200,13 +200,13 @@ def residual_unbalances(
 
 def _masses(drivetrain: Drivetrain, shaft: str) -> Iterator[tuple[float, float]]:
     """(mass [kg], position [m]) of sections, discs, gears and motor of a shaft."""
-    own = next(one for one in drivetrain.shafts if one.name == shaft)
+    part = next(part for part in drivetrain.shafts if part.name == shaft)
     start = 0.0
-    for section in own.sections:
+    for section in part.sections:
         area = 0.25 * math.pi * (section.outer_diameter**2 - section.inner_diameter**2)
-        yield own.density * area * section.length, start + 0.5 * section.length
+        yield part.density * area * section.length, start + 0.5 * section.length
         start += section.length
-    yield from ((disc.mass, disc.position) for disc in own.discs)
+    yield from ((disc.mass, disc.position) for disc in part.discs)
     for gear in drivetrain.gears:
         if gear.shaft == shaft:
             yield gear.mass, gear.position + gear.offset

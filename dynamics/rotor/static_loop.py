@@ -219,10 +219,10 @@ def mesh_angles(model: PortModel, count: int = 32) -> Array:
 class SlowRotation:
     """Rotation so slow that no inertia acts.
 
-    angles : (n_angles,) of the held port [rad]; None: 32 over one period of the first mesh
+    angles : (n_angles,) of the port that turns [rad]; None: 32 over one period of the first mesh
     speed : of the drive freedom, gives friction and linear drag their direction [rad/s]; 0 leaves both out
     drag_torques : by name of ``PortModel.drags`` [N m]
-    held : port that turns by ``angles`` without windup: the drive freedom, last of all, or a pinion.
+    port : port that turns by ``angles`` without windup: the drive freedom, last of all, or a pinion.
         Behind a soft motor shaft a mesh may step over the pitch point, where friction
         reverses, and no state exists for some angles of the drive; it does for the angles of a pinion
     """
@@ -230,7 +230,7 @@ class SlowRotation:
     angles: Array | None = None
     speed: float = 0.0
     drag_torques: Mapping[str, float] | None = None
-    held: int = -1
+    port: int = -1
 
 
 AT_REST = SlowRotation()
@@ -257,7 +257,7 @@ def solve_static(
         If Newton's method does not converge, for instance because the twist leaves the flanks open.
     """
     torque, twist, control_mesh = load.torque, load.twist, load.control_mesh
-    speed, held = rotation.speed, rotation.held
+    speed, port = rotation.speed, rotation.port
     where = mesh_angles(model) if rotation.angles is None else rotation.angles
     drag = model.drag(speed, rotation.drag_torques)
     if start is None:
@@ -273,7 +273,7 @@ def solve_static(
     previous, damp = np.inf, 1.0
     step: tuple[Array, Array, float] = (np.zeros_like(u), np.zeros(where.size), 0.0)
     for _ in range(80):
-        tau, tangents, own, transmitted = _reactions(model, u, where, speed)
+        tau, tangents, pinion_slopes, transmitted = _reactions(model, u, where, speed)
         residual = u @ model.stiffness.T - tau - model.twist * phi - drag - drive[:, None] * unit
         miss = 0.0 if torque is None else torque - float(transmitted[:, control_mesh].mean())
         error = max(float(np.max(np.abs(residual))), abs(miss))
@@ -292,10 +292,10 @@ def solve_static(
         jacobian = np.zeros((where.size, n + 1, n + 1))
         jacobian[:, :n, :n] = model.stiffness - tangents
         jacobian[:, ref, n] = -1.0
-        jacobian[:, n, held % n] = 1.0
+        jacobian[:, n, port % n] = 1.0
         right = np.zeros((where.size, n + 1, 2))
         right[:, :n, 0] = -residual
-        right[:, n, 0] = -u[:, held]
+        right[:, n, 0] = -u[:, port]
         right[:, :n, 1] = model.twist
         try:
             moves = np.asarray(np.linalg.solve(jacobian, right), float)
@@ -303,7 +303,7 @@ def solve_static(
             break
         d_phi = 0.0
         if torque is not None:
-            gain = _transmitted_change(own, moves[:, :n, :], control_mesh)
+            gain = _transmitted_change(pinion_slopes, moves[:, :n, :], control_mesh)
             if gain[1] == 0.0:
                 break
             d_phi = (miss - gain[0]) / gain[1]
@@ -327,9 +327,9 @@ def _round_off(model: PortModel, u: Array, twist: float) -> float:
     return 16.0 * float(np.finfo(float).eps) * float(size)
 
 
-def _transmitted_change(own: Array, moves: Array, mesh: int) -> Array:
+def _transmitted_change(pinion_slopes: Array, moves: Array, mesh: int) -> Array:
     """Mean change of the torque transmitted by one mesh for each column of moves (n_angles, n, columns)."""
-    row = own[:, mesh, :]
+    row = pinion_slopes[:, mesh, :]
     return np.asarray(-np.einsum("aj,ajc->c", row, moves) / len(row))
 
 
@@ -340,7 +340,7 @@ def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple
     The derivatives keep a trace of stiffness where the flanks stand apart, so that Newton's method closes them."""
     tau = np.zeros_like(u)
     tangents = np.zeros((*u.shape, u.shape[1]))
-    own = np.zeros((u.shape[0], model.n_meshes, u.shape[1]))
+    pinion_slopes = np.zeros((u.shape[0], model.n_meshes, u.shape[1]))
     transmitted = np.empty((u.shape[0], model.n_meshes))
     reach = u @ model.approach.T + model.offsets
     for m, packed in enumerate(model.elastic):
@@ -355,13 +355,13 @@ def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple
         apart = np.maximum(
             TRACE * model.laws[m].mean_stiffness - reaction.torque_2_per_approach / radius_2, 0.0
         )
-        own[:, m] = (reaction.torque_1_per_approach - apart * radius_1)[:, None] * model.approach[m]
-        own[:, m, p] += reaction.torque_1_per_angle
-        tangents[:, p] += own[:, m]
+        pinion_slopes[:, m] = (reaction.torque_1_per_approach - apart * radius_1)[:, None] * model.approach[m]
+        pinion_slopes[:, m, p] += reaction.torque_1_per_angle
+        tangents[:, p] += pinion_slopes[:, m]
         tangents[:, w] += (reaction.torque_2_per_approach + apart * radius_2)[:, None] * model.approach[m]
         tangents[:, w, p] += reaction.torque_2_per_angle
         transmitted[:, m] = radius_1 * (reaction.force_front - reaction.force_back)
-    return tau, tangents, own, transmitted
+    return tau, tangents, pinion_slopes, transmitted
 
 
 def _bilateral(

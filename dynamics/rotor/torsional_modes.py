@@ -95,7 +95,7 @@ def modes_of_loop(
     for m, (law, ports) in enumerate(zip(laws, system.mesh_ports)):
         approach[m, ports] = law.base_radius_1, -law.base_radius_2
     mean = np.array([law.mean_stiffness for law in laws])
-    found = [
+    modes = [
         LoopMode(
             frequency=0.0, damping_ratio=0.0, name="rigid rotation", energy={}, mesh_gain=np.zeros(len(laws))
         )
@@ -111,7 +111,7 @@ def modes_of_loop(
         damping = max(abs(pole.real), LEAST_DAMPING * abs(pole))
         gain = np.abs(reach * (form.loads[i] @ approach.T)) * mean / (damping * abs(pole))
         seen = describe(shape, mean * np.abs(reach) ** 2)
-        found.append(
+        modes.append(
             LoopMode(
                 frequency=float(frequency),
                 damping_ratio=float(-pole.real / abs(pole)),
@@ -121,7 +121,7 @@ def modes_of_loop(
                 largest=seen.largest,
             )
         )
-    return tuple(found)
+    return tuple(modes)
 
 
 def closed_matrices(system: LinearSystem, laws: Sequence[MeshLaw]) -> tuple[Array, Array, Array]:
@@ -162,11 +162,11 @@ def energy_shares(energy: Mapping[str, float]) -> dict[str, float]:
 
 def shape_name(energy: Mapping[str, float]) -> str:
     """Up to three parts that hold most of the strain energy: ``test_pinion 62 %, mesh test 21 %``."""
-    named, held = [], 0.0
+    named, total = [], 0.0
     for part, share in energy.items():
         named.append(f"{part} {share:.0%}".replace("%", " %"))
-        held += share
-        if held > 0.75 or len(named) == 3:
+        total += share
+        if total > 0.75 or len(named) == 3:
             break
     return ", ".join(named)
 
@@ -266,7 +266,7 @@ def sampling_audit(
     speed : [rad/s], above 0; sample_rate : [Hz]; samples_wanted : per mesh period, below which a record warns [-]
     """
     ratios = speed_ratios(drivetrain)
-    found = []
+    audits = []
     for mesh in drivetrain.meshes:
         pinion_speed = speed * ratios[drivetrain.gear(mesh.pinion).shaft]
         frequency = pinion_speed * mesh.teeth[0] / (2.0 * math.pi)
@@ -278,13 +278,13 @@ def sampling_audit(
                 f"waveform and harmonics above {int(samples / 2)} are lost; sample at "
                 f"{samples_wanted * frequency:.3g} Hz or use the envelopes taken at the internal rate"
             )
-        found.append(
+        audits.append(
             SamplingAudit(
                 mesh=mesh.name, mesh_frequency=frequency, samples_per_mesh=samples,
                 harmonics=int(samples / 2.0), warning=warning,
             )
         )  # fmt: skip
-    return tuple(found)
+    return tuple(audits)
 
 
 def modes_above_samples(modes: Sequence[LoopMode], sample_rate: float) -> tuple[str, ...]:
@@ -352,15 +352,15 @@ def shaped_modes(
         shapes.append(shape)
         return describe(shape, mesh_energy)
 
-    found = modes_of_loop(system, laws, highest_frequency, keep)
-    modes = tuple(mode for mode in found if mode.frequency > 0.0)
+    loop_modes = modes_of_loop(system, laws, highest_frequency, keep)
+    modes = tuple(mode for mode in loop_modes if mode.frequency > 0.0)
     size = len(system.inertia)
     columns = np.array(shapes).T if shapes else np.zeros((size, 0), complex)
     return ShapedModes(speed=speed, modes=modes, shapes=columns)
 
 
-def tracked(found: Sequence[ShapedModes], inertia: Array) -> tuple[TrackedMode, ...]:
-    """Every mode over the speeds of ``found``, in the order of their first frequency.
+def tracked(by_speed: Sequence[ShapedModes], inertia: Array) -> tuple[TrackedMode, ...]:
+    """Every mode over the speeds of ``by_speed``, in the order of their first frequency.
 
     inertia : (n, n) of the system, the same at all speeds
     """
@@ -368,20 +368,20 @@ def tracked(found: Sequence[ShapedModes], inertia: Array) -> tuple[TrackedMode, 
     rows: list[list[LoopMode | None]] = []
     members: list[int] = []
     before: Complex | None = None
-    for number, at in enumerate(found):
-        shapes = root @ at.shapes
+    for number, shaped in enumerate(by_speed):
+        shapes = root @ shaped.shapes
         shapes = shapes / np.linalg.norm(shapes, axis=0)
-        partners = {} if before is None else _partners(before, shapes, found[number - 1], at)
-        now = []
-        for k, mode in enumerate(at.modes):
+        partners = {} if before is None else _partners(before, shapes, by_speed[number - 1], shaped)
+        current = []
+        for k, mode in enumerate(shaped.modes):
             if k in partners:
                 row = members[partners[k]]
             else:
                 row = len(rows)
-                rows.append([None] * len(found))
+                rows.append([None] * len(by_speed))
             rows[row][number] = mode
-            now.append(row)
-        before, members = shapes, now
+            current.append(row)
+        before, members = shapes, current
     return tuple(TrackedMode(tuple(row)) for row in sorted(rows, key=_first))
 
 
@@ -394,7 +394,7 @@ def _partners(old: Complex, new: Complex, before: ShapedModes, after: ShapedMode
     if not (old.size and new.size):
         return {}
     assurance = np.abs(np.conj(old).T @ new) ** 2
-    frequencies = [np.array([mode.frequency for mode in at.modes]) for at in (before, after)]
+    frequencies = [np.array([mode.frequency for mode in shaped.modes]) for shaped in (before, after)]
     apart = np.abs(np.log(frequencies[0][:, None] / frequencies[1]))
     rows, columns = linear_sum_assignment(apart - assurance)
     return {int(k): int(j) for j, k in zip(rows, columns) if assurance[j, k] >= ALIKE}
@@ -451,15 +451,15 @@ def loop_crossings(
     c is the number of cycles of the order per turn of the motor's shaft. Modes without a frequency are left out.
     """
     oscillating = [mode for mode in modes if mode.frequency > 0.0]
-    found = []
+    crossings = []
     for order in _orders(drivetrain):
-        own = []
+        of_order = []
         harmonics = mesh_harmonics if order.kind == "mesh" else shaft_harmonics
         for number, mode in enumerate(oscillating, start=1):
             for harmonic in range(1, harmonics + 1):
                 speed = 2.0 * math.pi * mode.frequency / (harmonic * order.cycles)
                 if speed <= highest_speed:
-                    own.append(
+                    of_order.append(
                         LoopCrossing(
                             source=order.source,
                             kind=order.kind,
@@ -472,8 +472,8 @@ def loop_crossings(
                             gain=float(mode.mesh_gain[order.mesh]) if order.kind == "mesh" else 0.0,
                         )
                     )
-        found += sorted(own, key=lambda crossing: (crossing.speed, crossing.mode))
-    return tuple(found)
+        crossings += sorted(of_order, key=lambda crossing: (crossing.speed, crossing.mode))
+    return tuple(crossings)
 
 
 def _orders(drivetrain: Drivetrain) -> Iterator[_Order]:

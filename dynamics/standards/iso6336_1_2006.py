@@ -160,19 +160,19 @@ def stiffness(data: MeshData, specific_load: float, choices: StiffnessChoices = 
 
 
 def _regression_warnings(data: MeshData) -> tuple[str, ...]:
-    found = []
+    warnings = []
     total = data.x_1 + data.x_2
     if data.x_1 < data.x_2:
-        found.append(
+        warnings.append(
             f"x1 = {data.x_1:.4f} below x2 = {data.x_2:.4f}: outside the range x1 >= x2 of the stiffness "
             "regression (clause 9.3.1.1); confirm the stiffness by contact analysis"
         )
     if not -0.5 <= total <= 2.0:
-        found.append(
+        warnings.append(
             f"x1 + x2 = {total:.4f} outside -0.5..2 of the stiffness regression (clause 9.3.1.1); "
             "confirm the stiffness by contact analysis"
         )
-    return tuple(found)
+    return tuple(warnings)
 
 
 RunIn = Literal["case_hardened", "nitrided", "through_hardened"]

@@ -115,8 +115,8 @@ def K_Halpha(
 
     Arguments as `iso6336_3_2006.K_Falpha`.
     """
-    found = transverse_sharing(epsilon_gamma, c_gamma_alpha * f_pb_eff / specific_load)
-    return min(max(found, 1.0), K_Halpha_limit(epsilon_alpha, epsilon_gamma, Z_epsilon))
+    factor = transverse_sharing(epsilon_gamma, c_gamma_alpha * f_pb_eff / specific_load)
+    return min(max(factor, 1.0), K_Halpha_limit(epsilon_alpha, epsilon_gamma, Z_epsilon))
 
 
 def K_Halpha_limit(epsilon_alpha: float, epsilon_gamma: float, Z_epsilon: float) -> float:

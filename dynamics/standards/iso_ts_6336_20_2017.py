@@ -73,15 +73,15 @@ def X_Gamma(Gamma: Array, at: PathParameters, sharing: Sharing) -> Array:
     low = (max(sharing.grade, COARSEST_OF_TEST) - 2.0) / GRADE_STEP
     start = (Gamma - at.A) / (at.B - at.A) if at.B > at.A else np.ones_like(Gamma)
     end = (at.E - Gamma) / (at.E - at.D) if at.E > at.D else np.ones_like(Gamma)
-    found = np.ones_like(Gamma)
+    load_share = np.ones_like(Gamma)
     for share, relief, reached in (
         (start, sharing.relief[0], Gamma < at.B),
         (end, sharing.relief[1], Gamma > at.D),
     ):
         plain = low + share / 3.0
-        found = np.where(reached, (1.0 - relief) * plain + relief * share, found)
+        load_share = np.where(reached, (1.0 - relief) * plain + relief * share, load_share)
     factor = _buttressing(Gamma, at, sharing.epsilon_beta) if sharing.epsilon_beta > 0.0 else 1.0
-    return np.where(inside, np.clip(found, 0.0, 1.0) * factor, 0.0)
+    return np.where(inside, np.clip(load_share, 0.0, 1.0) * factor, 0.0)
 
 
 def _buttressing(Gamma: Array, at: PathParameters, epsilon_beta: float) -> Array:

@@ -192,10 +192,10 @@ class InterpolatedCompliance:
 
     def _across(self, face: Array) -> Array:
         """(n, n_f) parts of a force at ``face`` (n,) under the hats; fewer than four of them stay hats."""
-        held = np.clip(face, self.face[0], self.face[-1])
+        inside = np.clip(face, self.face[0], self.face[-1])
         if len(self.face) >= LEAST_SPLINE:
-            return np.asarray(self._face_shapes(held))
-        return np.stack([np.interp(held, self.face, one) for one in np.eye(len(self.face))], axis=1)
+            return np.asarray(self._face_shapes(inside))
+        return np.stack([np.interp(inside, self.face, hat) for hat in np.eye(len(self.face))], axis=1)
 
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
         """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""
@@ -342,9 +342,9 @@ class LocalModel:
         wide = 4.0 * self.line_load * sum(elastic_moduli(self.pair)) / (pi * curvature)
         share = place.beyond**2 / (place.beyond**2 + wide)
         for index in (0, 1):
-            own = place.corner == 1 + index
+            at_corner = place.corner == 1 + index
             edge = 1.0 / max(self.tips[index].rounding, least) - slant / place.roll[index]
-            curvature = curvature + np.where(own, share * edge, 0.0)
+            curvature = curvature + np.where(at_corner, share * edge, 0.0)
         return np.asarray(1.0 / curvature)
 
     def _edge(self, index: int, place: ContactPlace, depth: Array, half_width: Array) -> Array:

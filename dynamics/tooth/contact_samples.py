@@ -95,10 +95,10 @@ def slice_springs(law: MeshLaw, path: Array, sign: float, pitches: int = 1, *, b
     stiffness, gap, slope = np.empty(place.shape), np.empty(place.shape), np.empty(place.shape)
     for row in range(n_slices):
         opening = PchipInterpolator(grid, law.gap[row])
-        at = inside[:, row::n_slices]
-        stiffness[:, row::n_slices] = PchipInterpolator(grid, law.stiffness[row])(at)
-        slope[:, row::n_slices] = opening(at, 1)
-        gap[:, row::n_slices] = opening(at) + np.abs(out[:, row::n_slices] * slope[:, row::n_slices])
+        positions = inside[:, row::n_slices]
+        stiffness[:, row::n_slices] = PchipInterpolator(grid, law.stiffness[row])(positions)
+        slope[:, row::n_slices] = opening(positions, 1)
+        gap[:, row::n_slices] = opening(positions) + np.abs(out[:, row::n_slices] * slope[:, row::n_slices])
     if not beyond:
         stiffness[np.abs(out) > 1e-9 * law.path_step] = 0.0
     face = np.zeros(n_slices) if law.slice_face is None else np.asarray(law.slice_face, float)
@@ -178,8 +178,8 @@ def flank_samples(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid) -> FlankSamp
 
 
 def _sums(law: MeshLaw, node_law: NodeLaw, grid: FlankGrid, beyond: int) -> _Sums:
-    found = _sample(law, node_law, grid, FINER, beyond)
-    return _Sums(found._replace(sums=np.zeros(0)), np.fft.rfft(found.sums, axis=1), found.sums.shape[1])
+    samples = _sample(law, node_law, grid, FINER, beyond)
+    return _Sums(samples._replace(sums=np.zeros(0)), np.fft.rfft(samples.sums, axis=1), samples.sums.shape[1])
 
 
 def _used(grid: FlankGrid, node_law: NodeLaw, count: int) -> NDArray[np.int64]:

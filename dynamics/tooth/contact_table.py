@@ -92,10 +92,10 @@ def splines(samples: Array, pairs: bool) -> Array:
     Of a mesh they are periodic; those of a pair have PADDING cells before and behind.
     """
     if pairs:
-        found = spline_filter1d(samples, 3, axis=0, mode="mirror")
-        return np.asarray(found[PADDING - 1 : len(found) - PADDING + 1])
-    found = spline_filter1d(samples, 3, axis=0, mode="grid-wrap") if len(samples) > 1 else samples
-    return np.asarray(found[np.arange(-1, len(found) + 2) % len(found)])
+        coefficients = spline_filter1d(samples, 3, axis=0, mode="mirror")
+        return np.asarray(coefficients[PADDING - 1 : len(coefficients) - PADDING + 1])
+    coefficients = spline_filter1d(samples, 3, axis=0, mode="grid-wrap") if len(samples) > 1 else samples
+    return np.asarray(coefficients[np.arange(-1, len(coefficients) + 2) % len(coefficients)])
 
 
 def _along(cells: Array, pairs: bool) -> Array:
@@ -121,12 +121,12 @@ def _levers(law: NodeLaw, force: Array, moments: Array) -> list[Array]:
     """
     pressed = force > 1e-6 * force.max()
     first = np.argmax(pressed, axis=-1)[..., None]
-    at = np.maximum(np.arange(force.shape[-1]), first)
-    found = []
+    depth = np.maximum(np.arange(force.shape[-1]), first)
+    levers = []
     for k in (0, 2):
         share, place = (
             np.take_along_axis(
-                np.where(pressed, moments[..., k + i] / np.where(pressed, force, 1.0), 0.0), at, axis=-1
+                np.where(pressed, moments[..., k + i] / np.where(pressed, force, 1.0), 0.0), depth, axis=-1
             )
             for i in (0, 1)
         )
@@ -134,8 +134,8 @@ def _levers(law: NodeLaw, force: Array, moments: Array) -> list[Array]:
             lever = radius * share + sign * place
             # a trace of force that a filter leaves beside the path has no lever of its own
             most = 2.0 * np.quantile(np.abs(lever), 0.99)
-            found.append(np.clip(lever, -most, most))
-    return found
+            levers.append(np.clip(lever, -most, most))
+    return levers
 
 
 def _cubics(energy: Array, force: Array, depths: Array) -> Array:
@@ -272,8 +272,8 @@ def _tables(
         along = PathFilter(step=path_speed * march.step) if march else None
         if along is not None and not along.acts_on(law.base_pitch):
             along = None
-        own = grid if along is None else replace(grid, per_pitch=along.cells(law.base_pitch, grid.per_pitch))
-        levels = _levels(law, own, march if along else None)
+        fine = grid if along is None else replace(grid, per_pitch=along.cells(law.base_pitch, grid.per_pitch))
+        levels = _levels(law, fine, march if along else None)
         closes = law.damping_acts_on == "contact_closing_rate"
         # a helical flank lags the other way on the back, and what moves along its path moves backwards there
         signs = (1.0, -1.0) if np.any(law.slice_shift) or along or (closes and path_speed) else (1.0,)
@@ -284,7 +284,7 @@ def _tables(
                 FlankGrid(
                     sign=sign,
                     pairs=has_individual_teeth(law),
-                    per_pitch=own.per_pitch,
+                    per_pitch=fine.per_pitch,
                     depths=depths,
                     tilts=grid.planes_at,
                     path_filter=PathFilter(step=sign * along.step) if along else None,
@@ -295,8 +295,8 @@ def _tables(
         part = _mesh_tables(law, flanks, depths, levels, grid)
         for name, column in FIRST_ENTRIES.items():
             counts[mesh, column] = sum(getattr(before, name).size for before in parts)
-        _fill_counts(counts[mesh], law, flanks, own, part)
-        _fill_values(values[mesh], law, flanks, own, depths)
+        _fill_counts(counts[mesh], law, flanks, fine, part)
+        _fill_values(values[mesh], law, flanks, fine, depths)
         parts.append(part)
     values[:, layout.V_DERIVATIVE] = derivative_torques
     return ContactTables(
@@ -333,13 +333,13 @@ def _levels(law: MeshLaw, grid: TableGrid, march: MarchStep | None) -> Array:
     Tables that are filtered for a march are of high speeds, and leave out what is for lower ones.
     """
     sharpest = grid.per_pitch / (SHARPEST * law.base_pitch)
-    found = sharpest / BLUNTER ** np.arange(LEVELS, dtype=float)[::-1]
+    levels = sharpest / BLUNTER ** np.arange(LEVELS, dtype=float)[::-1]
     if march is None:
-        return np.asarray(found)
+        return np.asarray(levels)
     slowest = law.base_pitch / (RESOLVED * march.step)
     both = slowest * (1.0 / law.base_radius_1 + 1.0 / law.base_radius_2)
     least = both / max(law.friction_reversal_speed, 1e-9)
-    return np.asarray(found[max(0, min(int(np.searchsorted(found, least)), LEVELS - 1) - 1) :])
+    return np.asarray(levels[max(0, min(int(np.searchsorted(levels, least)), LEVELS - 1) - 1) :])
 
 
 def _is_spur(law: MeshLaw) -> bool:
@@ -358,7 +358,7 @@ def _tabulated_body(law: MeshLaw) -> float:
     Not that of single teeth, whose pairs have tables each, nor where the body may press both flanks at once.
     """
     front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
-    least = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
+    least = float(law.gap.min()) + min(float(pinion.min() + wheel.min()) for pinion, wheel in (front, back))
     jammed = law.backlash + 2.0 * least < 0.0
     return 0.0 if has_individual_teeth(law) or jammed else law.body_compliance
 
@@ -422,17 +422,17 @@ def _deviations(law: MeshLaw, flanks: list[FlankTable]) -> Array:
         return np.array(every)[..., :1]
     grid = law.path_start + law.path_step * np.arange(law.stiffness.shape[1])
     turning = np.zeros((2, *every[0].shape)) if law.turning_deviation is None else law.turning_deviation
-    found = []
+    deviations = []
     for table, turned, flank, sign in zip(every, turning, (flanks[0], flanks[-1]), (1.0, -1.0)):
-        at = np.clip(flank.path, grid[0], grid[-1])
-        of_slices = PchipInterpolator(grid, table - turned, axis=1)(at)
-        own = np.einsum("tki,ki->kt", of_slices, flank.share)
+        positions = np.clip(flank.path, grid[0], grid[-1])
+        of_slices = PchipInterpolator(grid, table - turned, axis=1)(positions)
+        of_teeth = np.einsum("tki,ki->kt", of_slices, flank.share)
         if np.any(turned):
             # every slice stands at the rotation of the gear, that of the middle of the face
             middle = flank.path[:, 0] + sign * law.slice_shift[0]
-            own += CubicSpline(grid, turned, axis=1)(middle).T
-        found.append(splines(own, pairs=True).T)
-    return np.array(found)
+            of_teeth += CubicSpline(grid, turned, axis=1)(middle).T
+        deviations.append(splines(of_teeth, pairs=True).T)
+    return np.array(deviations)
 
 
 def _fill_counts(
@@ -456,7 +456,7 @@ def _fill_values(
     values: Array, law: MeshLaw, flanks: list[FlankTable], grid: TableGrid, depths: Array
 ) -> None:
     front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
-    least = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
+    least = float(law.gap.min()) + min(float(pinion.min() + wheel.min()) for pinion, wheel in (front, back))
     body = law.body_compliance - _tabulated_body(law)
     for column, value in (
         (layout.V_R1, law.base_radius_1), (layout.V_R2, law.base_radius_2), (layout.V_PER_PITCH, 1.0 / law.base_pitch),

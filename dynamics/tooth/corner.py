@@ -171,15 +171,15 @@ def contact_places(pair: GearPair, path: Array, tips: tuple[TipEnd, TipEnd] | No
     for end, outside in zip(ends, (path < ends[0].place, path > ends[1].place), strict=True):
         if not np.any(outside):
             continue
-        gap[outside], own = end.touch(path[outside])
-        roll, normal = end.corner.touched(own)
+        gap[outside], owner_path = end.touch(path[outside])
+        roll, normal = end.corner.touched(owner_path)
         owner, flank, mesh, tip = end.owner, 1 - end.owner, end.corner.mesh, end.corner.tip
         rolls[owner][outside], rolls[flank][outside] = tip.roll, roll
         levers[owner][outside] = mesh.centre_distance * np.cos(normal) - mesh.flank_base
         reaches[owner][outside] = mesh.centre_distance * np.sin(normal) - roll
         reaches[flank][outside] = roll
         angle[outside], corner[outside] = normal, 1 + owner
-        carried_on = np.abs(mesh.reach + own - tip.roll)
+        carried_on = np.abs(mesh.reach + owner_path - tip.roll)
         beyond[outside] = carried_on * (tip.roll + 0.5 * carried_on) / mesh.base
     return ContactPlace(
         gap=gap,

@@ -105,7 +105,7 @@ def influence_law(
     force, line_load = lines.even, elastic.force / (grid.width * len(grid.face))
     body = lines.body
     for _ in range(LOAD_STEPS):
-        springs = _springs(elastic, grid, lines.own(force, body, grid.path), body, line_load)
+        springs = _springs(elastic, grid, lines.slice_compliance(force, body, grid.path), body, line_load)
         law = law_of_springs(springs, flanks, position, dissipation)
         cycle = static_cycle(_alike(law), elastic.force, CYCLE, lines.start)
         force, line_load = lines.loaded(cycle), cycle.mean_slice_force / grid.width
@@ -202,7 +202,7 @@ class ContactLines:
         of_pairs = force.sum(axis=2)
         return float(moved / (of_pairs.sum(axis=1) ** 2 - (of_pairs**2).sum(axis=1)).sum())
 
-    def own(self, force: Array, body: float, path: Array) -> Array:
+    def slice_compliance(self, force: Array, body: float, path: Array) -> Array:
         """Compliance of a slice (n_slices, n_path) under these forces, less the shared body [m/N].
 
         Where it carries next to nothing it is that under the least force, on all slices of its pair that open no later.
@@ -213,12 +213,12 @@ class ContactLines:
         others = others - body * (of_pairs.sum(axis=1, keepdims=True) - of_pairs)
         raised = np.maximum(force[:, :, None, :], least * self.no_later)
         acting = np.einsum("kpii->kpi", raised)
-        found = (((self.of_pair - body) * raised).sum(axis=3) + others * force / acting) / acting
-        slices = found.shape[2]
+        compliance = (((self.of_pair - body) * raised).sum(axis=3) + others * force / acting) / acting
+        slices = compliance.shape[2]
         result = np.empty((slices, len(path)))
         for i in range(slices):
             order = np.argsort(self.path[:, :, i], axis=None)
-            result[i] = np.interp(path, self.path[:, :, i].ravel()[order], found[:, :, i].ravel()[order])
+            result[i] = np.interp(path, self.path[:, :, i].ravel()[order], compliance[:, :, i].ravel()[order])
         return result
 
     def loaded(self, cycle: StaticCycle) -> Array:
@@ -265,8 +265,8 @@ def _springs(elastic: ElasticPair, grid: _Grid, tooth: Array, body: float, line_
     a, c = local.law[..., 0], local.law[..., 1]
     secant = a - c * np.log(normal)
     tangent = elastic.linearisation == "tangent"
-    own = tooth + (secant - c if tangent else secant) / weight**2
-    if not np.all(own > 0.0):
+    compliance = tooth + (secant - c if tangent else secant) / weight**2
+    if not np.all(compliance > 0.0):
         raise DynamicsInputError(
             f"influence numbers: the shared body takes {body:.3g} m/N, more than a tooth pair gives in all; "
             "build them anew"
@@ -274,18 +274,18 @@ def _springs(elastic: ElasticPair, grid: _Grid, tooth: Array, body: float, line_
     return PairSprings(
         path=grid.path,
         face=grid.face,
-        stiffness=1.0 / own,
+        stiffness=1.0 / compliance,
         gap=place.gap + removed + (c * normal / weight if tangent else 0.0),
         # refined by the loaded cycle; here of one pair
-        mean_stiffness=1.0 / (body + float((1.0 / (1.0 / own).sum(axis=0)).mean())),
+        mean_stiffness=1.0 / (body + float((1.0 / (1.0 / compliance).sum(axis=0)).mean())),
         body_compliance=body,
     )
 
 
 def _alike(law: MeshLaw) -> MeshLaw:
     """The law without what single teeth deviate."""
-    none, one = np.zeros((1, law.stiffness.shape[1])), np.ones(1)
+    none, unit = np.zeros((1, law.stiffness.shape[1])), np.ones(1)
     return law._replace(
-        deviation_1=none, deviation_2=none, back_deviation_1=None, back_deviation_2=None, scale_1=one, scale_2=one,
+        deviation_1=none, deviation_2=none, back_deviation_1=None, back_deviation_2=None, scale_1=unit, scale_2=unit,
         damping=0.0, friction=0.0,
     )  # fmt: skip

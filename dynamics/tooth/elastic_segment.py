@@ -46,9 +46,9 @@ def solve_segment(
     upper, turned_over = segment.points[:, 2] > -segment.slack, np.array([1.0, 1.0, -1.0])[:, None]
     middle = mirror == np.arange(n)
     systems = []
-    for sign, held in ((1.0, [2]), (-1.0, [0, 1])):  # in the middle plane
+    for sign, fixed in ((1.0, [2]), (-1.0, [0, 1])):  # in the middle plane
         moves = free.copy()
-        moves[np.ix_(middle, held)] = False
+        moves[np.ix_(middle, fixed)] = False
         share = 0.5 * (forces + sign * turned_over * forces[mirror])
         share[middle] *= 0.5  # the other half has the other half of it
         systems.append((moves, share))

@@ -94,7 +94,7 @@ def local_excess(model: GearModel, rolls: Array) -> Array:
     local = _even(loads @ moved) - _even(rows(reading.axis(0), size) @ moved)
     points, depth = fine.form.flank_point(reading.rolls), fine.form.axis_depth(reading.rolls)
     n = len(reading.rolls)
-    found = np.zeros(n)
+    excess = np.zeros(n)
     for load in range(n):
         places = [place for place in (load - APART, load + APART) if 0 <= place < n]
         apart = [
@@ -102,8 +102,8 @@ def local_excess(model: GearModel, rolls: Array) -> Array:
             - _half_space(float(np.hypot(*(points[place] - points[load]))), float(depth[place]), nu)
             for place in places
         ]
-        found[load] = np.mean(apart)
-    return np.asarray(np.interp(rolls, reading.rolls, found))
+        excess[load] = np.mean(apart)
+    return np.asarray(np.interp(rolls, reading.rolls, excess))
 
 
 def _even(block: Array) -> Array:
@@ -183,7 +183,7 @@ class Strip:
 
         The shares sum to one over the list.
         """
-        found, width = [], 0.0
+        quadrature, width = [], 0.0
         for first, rising in ((hat - 1, True), (hat, False)):
             if not 0 <= first < len(self.face) - 1:
                 continue
@@ -194,8 +194,8 @@ class Strip:
                 layer, across = self.segment.layers_at(position)[0]
                 shape = QUAD_8.values(np.array([[along, across]]))[0]
                 share = weight * (high - low) * (part if rising else 1.0 - part)
-                found.append((position, self.nodes(element, layer), share * shape))
-        return [(position, nodes, shares / width) for position, nodes, shares in found]
+                quadrature.append((position, self.nodes(element, layer), share * shape))
+        return [(position, nodes, shares / width) for position, nodes, shares in quadrature]
 
 
 Entry = tuple[IndexArray, Array]
@@ -291,21 +291,21 @@ class SegmentReading:
     def loads(self) -> list[Entry]:
         """Unit normal forces on the flank of tooth 0."""
         flank = self._strip(self._segment.section.flanks, 0)
-        found = []
+        entries = []
         for number, roll in enumerate(self.rolls.tolist()):
             place = (number, 0.0) if number < flank.n_elements else (number - 1, 1.0)
-            found += [displacement_row(flank, place, hat, self._inwards(roll, 0)) for hat in self._hats]
-        return found
+            entries += [displacement_row(flank, place, hat, self._inwards(roll, 0)) for hat in self._hats]
+        return entries
 
     def axis(self, tooth: int) -> list[Entry]:
         """Displacement of a tooth on its axis under the points of its right flank, along their normals."""
         axis = self._strip(self._segment.section.axes, tooth)
         height = np.hypot(*axis.points.T)
-        found = []
+        entries = []
         for roll in self.rolls.tolist():
             place = _element_at(height, float(self._form.axis_point(roll)[1]))
-            found += [displacement_row(axis, place, hat, self._inwards(roll, tooth)) for hat in self._hats]
-        return found
+            entries += [displacement_row(axis, place, hat, self._inwards(roll, tooth)) for hat in self._hats]
+        return entries
 
     def carried(self, tooth: int) -> list[Entry]:
         """Displacement of a tooth at the points of its right flank if it moved with its foot as a rigid body.
@@ -318,7 +318,7 @@ class SegmentReading:
         across = chord / np.linalg.norm(chord)
         upwards = np.array([-across[1], across[0]])
         middle = 0.5 * (right + left)
-        found = []
+        entries = []
         for roll in self.rolls.tolist():
             normal = self._inwards(roll, tooth)
             point = self._form.axis_point(roll)
@@ -326,14 +326,14 @@ class SegmentReading:
             # the foot turns clockwise by the difference of its ends over its length
             lever = (normal[0] * arm[1] - normal[1] * arm[0]) / np.linalg.norm(chord)
             turning = lever * np.append(upwards, 0.0)
-            found += [
+            entries += [
                 _joined(
                     displacement_row(*ends[0], hat, 0.5 * normal - turning),
                     displacement_row(*ends[1], hat, 0.5 * normal + turning),
                 )
                 for hat in self._hats
             ]
-        return found
+        return entries
 
     def _ground(self, place: float) -> tuple[Strip, tuple[int, float]]:
         """Middle of the tooth space at ``place`` pitches, and where it lies on a strip."""
@@ -352,19 +352,19 @@ class SegmentReading:
     def root(self, tooth: int, side: int) -> list[Entry]:
         """Stress at the points of a fillet over the face; that of a neighbour between its own points."""
         strip = self._strip(self._segment.section.fillets, (tooth, side))
-        own = [
+        points = [
             [self._stress(strip, place, position) for position in self._positions]
             for place in _stress_points(strip.n_elements)
         ]
         if tooth == 0:
-            return [entry for place in own for entry in place]
+            return [entry for place in points for entry in place]
         arcs = _arcs(strip)[1]
-        found = []
+        entries = []
         for arc in self.fillet.arc.tolist():
-            at = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
-            share = float(np.clip((arc - arcs[at - 1]) / (arcs[at] - arcs[at - 1]), 0.0, 1.0))
-            found += [_mixed(pair, share) for pair in zip(own[at - 1], own[at], strict=True)]
-        return found
+            upper = int(np.clip(np.searchsorted(arcs, arc), 1, len(arcs) - 1))
+            share = float(np.clip((arc - arcs[upper - 1]) / (arcs[upper] - arcs[upper - 1]), 0.0, 1.0))
+            entries += [_mixed(pair, share) for pair in zip(points[upper - 1], points[upper], strict=True)]
+        return entries
 
     @cached_property
     def fillet(self) -> RootFillet:

@@ -27,7 +27,7 @@ class RootFillet:
 
     def weights_at_tangent(self, angle: float) -> Array:
         """Shares (n,) of the points in the place whose tangent stands at ``angle`` to the tooth axis [rad]."""
-        return np.array([np.interp(-angle, -self.tangent, one) for one in np.eye(len(self.tangent))])
+        return np.array([np.interp(-angle, -self.tangent, unit) for unit in np.eye(len(self.tangent))])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -261,7 +261,7 @@ def evaluate_table(
     tilts : gap that closes per face width from mid-face in front and on the back, (n,) or scalar [rad]
     """
     columns = np.broadcast_arrays(
-        *(np.atleast_1d(np.asarray(one, float)) for one in (theta_1, approach, omega_1, omega_2, *tilts))
+        *(np.atleast_1d(np.asarray(state, float)) for state in (theta_1, approach, omega_1, omega_2, *tilts))
     )
     states = MeshStates(*(np.ascontiguousarray(column) for column in columns[:4]))
     out = np.empty((len(columns[0]), len(TableReaction._fields)))

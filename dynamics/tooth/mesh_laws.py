@@ -207,7 +207,7 @@ def _ring_compliance(pair: GearPair, index: int, outline: ToothOutline, angle: A
 
 
 def _ring_warnings(pair: GearPair) -> tuple[str, ...]:
-    found = []
+    warnings = []
     for index, name in enumerate(("pinion", "wheel")):
         h, theta = _ring_shape(pair, index)
         for symbol, value, (low, high) in (
@@ -215,11 +215,11 @@ def _ring_warnings(pair: GearPair) -> tuple[str, ...]:
             ("half root angle [rad]", theta, ROOT_ANGLE_RANGE),
         ):
             if not low <= value <= high:
-                found.append(
+                warnings.append(
                     f"{name}: {symbol} = {value:.4f} outside {low}..{high} of the ring formula "
                     "(Sainsot et al. 2004); use the half plane"
                 )
-    return tuple(found)
+    return tuple(warnings)
 
 
 Engagement = Literal["corner", "path"]
@@ -440,14 +440,14 @@ def alike_teeth(law: MeshLaw, pinion: bool = True, wheel: bool = True) -> MeshLa
 
     What they have in common in front and on the back goes into the gap, half of the difference into the offset.
     """
-    none, one = np.zeros((1, law.stiffness.shape[1])), np.ones(1)
+    none, unit = np.zeros((1, law.stiffness.shape[1])), np.ones(1)
     if pinion:
         law = _with_means(law, law.deviation_1, law.back_deviation_1, law.scale_1)
-        law = law._replace(deviation_1=none, back_deviation_1=None, scale_1=one)
+        law = law._replace(deviation_1=none, back_deviation_1=None, scale_1=unit)
         law = _without_turning(law, slice(law.teeth_1))
     if wheel:
         law = _with_means(law, law.deviation_2, law.back_deviation_2, law.scale_2)
-        law = law._replace(deviation_2=none, back_deviation_2=None, scale_2=one)
+        law = law._replace(deviation_2=none, back_deviation_2=None, scale_2=unit)
         law = _without_turning(law, slice(law.teeth_1, None))
     return law
 
@@ -513,7 +513,7 @@ def _deviations(flank: FlankField, path: Array, face: Array) -> tuple[Array, Arr
     None for the back where it has the same. A topography of every tooth counts with its mean over the face.
     """
     micro = flank.micro
-    measured = [own for own in (micro.topography, micro.back_topography) if own is not None and own.teeth > 1]
+    measured = [t for t in (micro.topography, micro.back_topography) if t is not None and t.teeth > 1]
     moved = bool(micro.pitch_deviations) or bool(micro.run_out)
     if not moved and not micro.profile_slopes and not measured:
         return np.zeros((1, len(path))), None
@@ -534,7 +534,7 @@ def _turning_deviation(flanks: Sequence[FlankField], path: Array) -> Array | Non
     return np.array(
         [
             np.concatenate(
-                [one.turning_deviation(one.roll(path), np.arange(one.teeth)[:, None], side) for one in flanks]
+                [f.turning_deviation(f.roll(path), np.arange(f.teeth)[:, None], side) for f in flanks]
             )
             for side in sides
         ]

@@ -59,7 +59,7 @@ def _tables(laws: Sequence[MeshLaw], derivative_torques: bool, over_phase: bool)
     least: list[Array] = []
     for mesh, law in enumerate(laws):
         n_slices, n_path = law.stiffness.shape
-        own, places = _deviation_tables(law, sum(map(len, deviations)))
+        deviation_cells, places = _deviation_tables(law, sum(map(len, deviations)))
         scale_at = sum(map(len, scales))
         individual = has_individual_teeth(law)
         n_phases = phase_count(law) if over_phase and not individual else 0
@@ -80,7 +80,7 @@ def _tables(laws: Sequence[MeshLaw], derivative_torques: bool, over_phase: bool)
         )  # fmt: skip
         cells.append(np.hstack((_cells(stiffness), _cells(gap))))
         shifts.append(np.asarray(law.slice_shift, float))
-        deviations.append(own)
+        deviations.append(deviation_cells)
         scales.append(np.concatenate((law.scale_1, law.scale_2)).astype(float))
     return PackedMeshes(
         values=values,
@@ -125,7 +125,7 @@ def most_contacts(law: MeshLaw) -> int:
 
 def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
     front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
-    least_gap = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
+    least_gap = float(law.gap.min()) + min(float(p.min() + w.min()) for p, w in (front, back))
     reversal = max(law.friction_reversal_speed, 1e-9)
     teeth = law.mean_stiffness / (1.0 - law.body_compliance * law.mean_stiffness)
     # both flanks pressed at once: the body can bring one into contact that the gears alone would not
@@ -158,12 +158,12 @@ def _deviation_cells(table: Array) -> Array:
     return _cells(_cubic(table)) if np.any(table) else np.zeros((rows * (points - 1), 4))
 
 
-def _deviation_tables(law: MeshLaw, at: int) -> tuple[Array, tuple[int, int, int, int]]:
-    """Return cells of pinion and wheel, front and back, and where each begins in a table whose next row is ``at``."""
+def _deviation_tables(law: MeshLaw, next_row: int) -> tuple[Array, tuple[int, int, int, int]]:
+    """Return cells of pinion and wheel, front and back, and where each begins in a table that goes on at a row."""
     tables = [_deviation_cells(law.deviation_1), _deviation_cells(law.deviation_2)]
-    places = [at, at + len(tables[0])]
+    places = [next_row, next_row + len(tables[0])]
     for index, table in enumerate((law.back_deviation_1, law.back_deviation_2)):
-        places.append(places[index] if table is None else at + sum(map(len, tables)))
+        places.append(places[index] if table is None else next_row + sum(map(len, tables)))
         if table is not None:
             tables.append(_deviation_cells(table))
     return np.vstack(tables), (places[0], places[1], places[2], places[3])
@@ -193,12 +193,12 @@ def _phase_contacts(
     middle = place + 0.5 * width / law.path_step
     on_path = (middle >= 0.0) & (middle <= n_path - 1)
     cells, slices, pairs = np.nonzero(on_path)
-    at, steps = place[cells, slices, pairs], width / law.path_step
+    position, steps = place[cells, slices, pairs], width / law.path_step
     lanes = np.vstack(
         (
-            *_hermite(stiffness, at, slices, steps),
-            *_hermite(gap, at, slices, steps),
-            law.path_start + at * law.path_step,
+            *_hermite(stiffness, position, slices, steps),
+            *_hermite(gap, position, slices, steps),
+            law.path_start + position * law.path_step,
         )
     )
     # the control points of the gap bound it from below; contacts that open last come first
@@ -206,10 +206,10 @@ def _phase_contacts(
     bound = np.minimum.reduce([g_0, g_0 + g_1 / 3.0, g_0 + (2.0 * g_1 + g_2) / 3.0, g_0 + g_1 + g_2 + g_3])
     order = np.lexsort((bound, cells))
     lanes, bound = lanes[:, order], bound[order]
-    found = np.bincount(cells, minlength=n_phases)
-    sizes = np.where(found > 1, kernels.VECTOR * -(-found // kernels.VECTOR), found)
+    counts = np.bincount(cells, minlength=n_phases)
+    sizes = np.where(counts > 1, kernels.VECTOR * -(-counts // kernels.VECTOR), counts)
     starts = np.cumsum(sizes) - sizes
-    within = np.arange(len(cells)) - (np.cumsum(found) - found)[cells]
+    within = np.arange(len(cells)) - (np.cumsum(counts) - counts)[cells]
     least = np.full(int(sizes.sum()), np.inf)
     least[starts[cells] + within] = bound
     data = np.zeros(kernels.N_PHASE * len(least))
@@ -218,16 +218,16 @@ def _phase_contacts(
     return sizes, least, data
 
 
-def _hermite(cubic: PchipInterpolator, at: Array, rows: Integers, width: float) -> tuple[Array, ...]:
-    """Return cubic coefficients over the fraction of [at, at + width] from values and derivatives at both ends."""
-    (v_0, s_0), (v_1, s_1) = (_value_and_derivative(cubic, at + shift, rows) for shift in (0.0, width))
+def _hermite(cubic: PchipInterpolator, start: Array, rows: Integers, width: float) -> tuple[Array, ...]:
+    """Cubic coefficients over the fraction of [start, start + width] from values and derivatives at both ends."""
+    (v_0, s_0), (v_1, s_1) = (_value_and_derivative(cubic, start + shift, rows) for shift in (0.0, width))
     d_0, d_1 = s_0 * width, s_1 * width
     return v_0, d_0, 3.0 * (v_1 - v_0) - 2.0 * d_0 - d_1, 2.0 * (v_0 - v_1) + d_0 + d_1
 
 
-def _value_and_derivative(cubic: PchipInterpolator, at: Array, rows: Integers) -> tuple[Array, Array]:
-    """Return value and derivative of row ``rows[i]`` at ``at[i]``, held within the table."""
-    inside = np.clip(at, 0.0, cubic.x[-1])
+def _value_and_derivative(cubic: PchipInterpolator, position: Array, rows: Integers) -> tuple[Array, Array]:
+    """Return value and derivative of row ``rows[i]`` at ``position[i]``, held within the table."""
+    inside = np.clip(position, 0.0, cubic.x[-1])
     index = np.minimum(inside.astype(np.int64), len(cubic.x) - 2)
     f = inside - index
     c_3, c_2, c_1, c_0 = cubic.c[:, index, rows]

@@ -190,8 +190,8 @@ class _End:
 
     def open_by(self, path: Array, gap: float) -> NDArray[np.bool_]:
         """Whether `gap` has grown to a gap [m]: the corner stays clear of the flank until it is closed by as much."""
-        at = gap - path if self.of_wheel else path
-        return np.asarray(self.corner.opening(at) >= gap)
+        position = gap - path if self.of_wheel else path
+        return np.asarray(self.corner.opening(position) >= gap)
 
 
 def _before(pair: GearPair) -> _End:

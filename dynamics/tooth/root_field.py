@@ -97,13 +97,13 @@ def root_course(
     spread = np.stack([_spread(cycle, compliance, gear, pair) for pair in range(n_pairs)])
     sense = -1 if gear == 0 else 1
     stress = np.zeros((n_pairs, n, *_shape(numbers, n_f)))
-    for own in range(n_pairs):
+    for stressed in range(n_pairs):
         for loaded in range(n_pairs):
             # pinion teeth of later pairs stand behind the loaded flank, wheel teeth before it
-            offset = sense * int(points.pairs[own] - points.pairs[loaded])
+            offset = sense * int(points.pairs[stressed] - points.pairs[loaded])
             block = numbers.stress.get((offset, side))
             if block is not None:
-                stress[own] += (spread[loaded] @ block.T).reshape(n, -1, n_f)
+                stress[stressed] += (spread[loaded] @ block.T).reshape(n, -1, n_f)
     path = (points.position - points.pair.base_pitch * points.pairs[:, None])[::-1].ravel()
     return RootCourse(path=path, face=numbers.face, stress=stress[::-1].reshape(len(path), -1, n_f))
 
@@ -329,15 +329,15 @@ def tooth_turn(passes: Sequence[ToothPass]) -> ToothTurn:
     """
     if not passes:
         raise ValueError("a turn needs at least one way through a mesh; leave out gears that carry no load")
-    windows = [one.window for one in passes]
+    windows = [tooth_pass.window for tooth_pass in passes]
     angle = np.unique(np.concatenate([[0.0, 2.0 * pi], *(np.mod(window, 2.0 * pi) for window in windows)]))
 
-    loaded = {one.loaded for one in passes}
-    places = {fillet: _most_stressed([one.of(fillet) for one in passes]) for fillet in loaded}
+    loaded = {tooth_pass.loaded for tooth_pass in passes}
+    places = {fillet: _most_stressed([tooth_pass.of(fillet) for tooth_pass in passes]) for fillet in loaded}
 
     def over_turn(fillet: Fillet) -> Array:
         place = places[fillet if fillet in loaded else OTHER[fillet]]
-        return np.asarray(sum(one.at(fillet, place, angle) for one in passes))
+        return np.asarray(sum(tooth_pass.at(fillet, place, angle) for tooth_pass in passes))
 
     return ToothTurn(angle=angle, leading=over_turn("leading"), trailing=over_turn("trailing"))
 

@@ -258,7 +258,7 @@ class SectionDrawing:
         parts = _far_parts(last, self._pitch / (2 * thickness + fillet // 2))
         opposite = (self._polar(ring.root, pi), self._polar(ring.depth, pi))
         across = self._wall(*opposite)
-        found = []
+        ring_arcs = []
         for side, (root, low), wall in ((1, ends[1], sides[1]), (-1, ends[0], sides[0])):
             arcs, rim, angle = [], [], last
             for number, (end, n, ratio) in enumerate(parts):
@@ -271,8 +271,8 @@ class SectionDrawing:
                 rim.append(outer)
                 (root, low), wall, angle = further, next_wall, end
             self.curves[f"rim {side}"] = rim
-            found += arcs if side > 0 else [arc.turned() for arc in reversed(arcs)]
-        return found
+            ring_arcs += arcs if side > 0 else [arc.turned() for arc in reversed(arcs)]
+        return ring_arcs
 
     def _wall(self, root: int, low: int) -> int:
         """Line across the ring, from its inner circle to the root circle."""
@@ -339,8 +339,8 @@ def least_jacobian(points: Array, cells: IndexArray) -> float:
     places = np.concatenate([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))])
     gradients = QUAD_8.gradients(places)
     jacobian = np.einsum("nka,qkb->nqab", points[cells], gradients)
-    found = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
-    return float((found / np.abs(found).mean(axis=1, keepdims=True)).min())
+    determinant = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
+    return float((determinant / np.abs(determinant).mean(axis=1, keepdims=True)).min())
 
 
 GMSH_QUAD_8 = 16
@@ -433,13 +433,13 @@ def _quadrilaterals(gmsh: ModuleType, surface: int) -> NDArray[np.int64]:
 
 def _along(gmsh: ModuleType, curves: list[int]) -> NDArray[np.int64]:
     """Node tags of curves that follow each other, in order, corners and middles."""
-    found: list[int] = []
+    tags: list[int] = []
     for curve in curves:
         nodes = gmsh.model.mesh.getElements(1, curve)[2][0].reshape(-1, 3).astype(np.int64)
         steps = nodes[:, [0, 2]].ravel().tolist()
-        found += steps if not found else steps[1:]
-        found.append(int(nodes[-1, 1]))
-    return np.array(found)
+        tags += steps if not tags else steps[1:]
+        tags.append(int(nodes[-1, 1]))
+    return np.array(tags)
 
 
 NOWHERE = -1
@@ -522,8 +522,8 @@ class GearSegment:
         """Layers that hold a position over the face and the place in each, 0 to 1; both that meet in a plane."""
         places = (position - self.heights[:-1]) / np.diff(self.heights)
         slack = self.slack / np.diff(self.heights)
-        held = np.flatnonzero((places >= -slack) & (places <= 1.0 + slack))
-        return [(int(layer), float(np.clip(places[layer], 0.0, 1.0))) for layer in held]
+        layers = np.flatnonzero((places >= -slack) & (places <= 1.0 + slack))
+        return [(int(layer), float(np.clip(places[layer], 0.0, 1.0))) for layer in layers]
 
     @property
     def straight(self) -> Array:

@@ -78,15 +78,15 @@ class SliceCompliance:
     def matrix(self, roll: Array, face: Array, tooth: Integers) -> Array:
         """Compliance (n, n) between points, see `FlankCompliance` [m/N]."""
         grid = self.grid.position
-        at = np.argmin(np.abs(face[:, None] - grid), axis=1)
-        if np.any(np.abs(face - grid[at]) > 1e-9 * self.grid.face_width):
+        cell = np.argmin(np.abs(face[:, None] - grid), axis=1)
+        if np.any(np.abs(face - grid[cell]) > 1e-9 * self.grid.face_width):
             raise DynamicsInputError(
                 "a contact point is not on the face grid of its compliance; give both the same grid"
             )
         table, compliance, _ = self._table
         root = np.sqrt(np.interp(roll, table, compliance) * cos(self.pair.base_helix_angle))
         same_tooth = tooth[:, None] == tooth
-        return np.asarray(np.where(same_tooth, np.outer(root, root) * self._spread[np.ix_(at, at)], 0.0))
+        return np.asarray(np.where(same_tooth, np.outer(root, root) * self._spread[np.ix_(cell, cell)], 0.0))
 
     def depth(self, roll: Array) -> Array:
         """Depth of the tooth axis under the flank, shape of ``roll`` [m]."""

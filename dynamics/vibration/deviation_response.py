@@ -94,9 +94,9 @@ class ToothForcing:
         excited = np.zeros((self.loop.inputs.shape[1], waves.size, self.loop.samples), complex)
         for back, sensitivity in enumerate(self._sensitivity(m)):
             if sensitivity is not None:
-                own = _teeth(self.laws[m], side, bool(back))
-                pattern = tooth_pattern(own.deviation, own.scale, own.number, waves)
-                outputs = excitation(sensitivity, self.loop.ideal[m], pattern, own.first)
+                teeth = _teeth(self.laws[m], side, bool(back))
+                pattern = tooth_pattern(teeth.deviation, teeth.scale, teeth.number, waves)
+                outputs = excitation(sensitivity, self.loop.ideal[m], pattern, teeth.first)
                 excited += self.loop.on_inputs(m, outputs)
         return excited
 
@@ -243,11 +243,11 @@ class _Cycle:
             [system.solve(of_class, nothing) for system, of_class in zip(self.systems, forces)]
         )
 
-    def _in_time(self, found: Sequence[ClassSolution]) -> Array:
+    def _in_time(self, solutions: Sequence[ClassSolution]) -> Array:
         """Changes of approach, its rate, pinion angle and pinion speed over the cycle (4, n_meshes, count)."""
         loop, count = self.loop, self.cells * self.n
         spectra = np.zeros((4, len(loop.ideal), count), complex)
-        for j, (system, solution) in enumerate(zip(self.systems, found)):
+        for j, (system, solution) in enumerate(zip(self.systems, solutions)):
             place = self.number * self.cells + j
             values = np.stack(
                 (
@@ -424,22 +424,22 @@ class DeviationResponse:
         reach = min(reach, most)
         tangent = loop.tangent(reach)
         changes: dict[float, _Class] = {}
-        found = []
+        order_loads = []
         for order in wanted:
             residue = loop.residue(order)
             if residue not in changes:
                 changes[residue] = self._class(residue, reach, torques, tangent)
             h = round(order / loop.cell_order - residue)
-            here = changes[residue]
-            torque = here.torque[:, reach + h].copy()
+            of_class = changes[residue]
+            torque = of_class.torque[:, reach + h].copy()
             if residue == 0.0:
                 torque[: loop.n_inputs] += loop.torque[:, h]
             whole = loop.loads(torque[: loop.n_inputs])
-            for row, amplitude in zip(here.rows, torque[loop.n_inputs :]):
+            for row, amplitude in zip(of_class.rows, torque[loop.n_inputs :]):
                 whole += amplitude * row
             sides = 2.0 if order else 1.0
-            found.append(OrderLoads(order=order, omega=order * loop.speed, torque=sides * whole))
-        return found
+            order_loads.append(OrderLoads(order=order, omega=order * loop.speed, torque=sides * whole))
+        return order_loads
 
     def _class(
         self, residue: float, reach: int, torques: Sequence[OrderTorque], tangent: Complex

@@ -93,17 +93,17 @@ def steady_start(
     Raises DynamicsInputError and DynamicsNotConverged as `TimeIntegration.periodic`.
     """
     period = _period(system, laws, settings.period)
-    found = periodic_by_time(
+    response = periodic_by_time(
         system, laws, speed, LoopLoad(torque=torque), drags, replace(settings, period=period)
     )
     start = SteadyStart(
         speed=speed,
-        state=found.end,
-        drive_torque=found.drive_torque,
+        state=response.end,
+        drive_torque=response.drive_torque,
         drags=dict(drags),
-        angle=float(found.end.angles[system.mesh_ports[0, 0]]),
+        angle=float(response.end.angles[system.mesh_ports[0, 0]]),
         period=period,
-        doubts=() if found.steady else tuple(found.warnings),
+        doubts=() if response.steady else tuple(response.warnings),
     )
     missing = _left_out(system, laws, period)
     return _settled(system, laws, start, missing, settings.cutoff) if missing else start
@@ -149,27 +149,27 @@ def _settled(
     """March on with constant motor torque and twist while the missing loads come up; the mean speed is held."""
     steady = HeldSpeed(system, laws, start.speed)
     ratios = steady.ratios
-    held, rising = _parted(system, laws, start.period)
+    kept, rising = _parted(system, laws, start.period)
     turn = 2.0 * np.pi / start.speed
     rise = turn * np.ceil(max(RISE / turn, RISE_TURNS))
     count = round(rise * SAMPLE_RATE)
-    angles, speeds = start.angle * ratios[held.dofs], start.speed * ratios[held.dofs]
+    angles, speeds = start.angle * ratios[kept.dofs], start.speed * ratios[kept.dofs]
     drive = start.drive_torque
     march = TimeMarch(
         system,
         laws,
         start.state,
         march_settings(cutoff),
-        DriveLoads(drive_torque=drive, drag_torques=start.drags, periodic=held.values(angles, speeds)),
+        DriveLoads(drive_torque=drive, drag_torques=start.drags, periodic=kept.values(angles, speeds)),
         march_model(system, laws, tuple(start.drags), cutoff),
     )
     for block in range(BLOCKS):
         time = (block * count + 1 + np.arange(count)) / SAMPLE_RATE
-        at = angles + time[:, None] * speeds
+        phi = angles + time[:, None] * speeds
         share = np.minimum(time / rise, 1.0)[:, None]
         given = np.zeros((count, 4 + len(system.periodic_loads)))
         given[:, 0], given[:, 1] = drive, start.state.twist
-        given[:, 4:] = held.values(at, speeds) + share**2 * (3.0 - 2.0 * share) * rising.values(at, speeds)
+        given[:, 4:] = kept.values(phi, speeds) + share**2 * (3.0 - 2.0 * share) * rising.values(phi, speeds)
         turned = march.advance(given, drags=constant_drags(start.drags)).slow_speed[:, 0]
         mean = float(turned.mean() / ratios[system.drive_dof])
         change = steady.correction(mean, rise)
@@ -191,12 +191,12 @@ def _parted(
 ) -> tuple[TurningLoads, TurningLoads]:
     """The loads of a system with the orders that a period holds alone, and with the others alone."""
     loads = system.periodic_loads
-    held = within_period(loads, pinion_ratios(system, laws), _turns(system, laws, period))
+    within = within_period(loads, pinion_ratios(system, laws), _turns(system, laws, period))
     rest = [
-        replace(load, parts=tuple(part for part in load.parts if part not in own.parts))
-        for load, own in zip(loads, held)
+        replace(load, parts=tuple(part for part in load.parts if part not in kept.parts))
+        for load, kept in zip(loads, within)
     ]
-    return TurningLoads(system, held), TurningLoads(system, rest)
+    return TurningLoads(system, within), TurningLoads(system, rest)
 
 
 # A gear that has lost teeth: where they stood, nothing touches, on either flank.
@@ -242,8 +242,8 @@ def without_teeth(law: MeshLaw, member: Member, teeth: tuple[int, ...]) -> MeshL
     front = law.deviation_1 if member == "pinion" else law.deviation_2
     back = back_deviations(law)[member == "wheel"]
     gaps = []
-    for own in (front, back):
-        gap = np.tile(own, (number, 1)) if len(own) == 1 else own.copy()
+    for deviation in (front, back):
+        gap = np.tile(deviation, (number, 1)) if len(deviation) == 1 else deviation.copy()
         gap[[tooth % number for tooth in teeth]] += GONE
         gaps.append(gap)
     other = law.deviation_2 if member == "pinion" else law.deviation_1
@@ -307,15 +307,15 @@ def bearing_channels(seen: SeenRig, system: LinearSystem, state: RunningState) -
     meshes; the weight of the shafts is left out.
     """
     zero = np.zeros((2, len(system.inertia)))
-    found = []
+    channels = []
     for name, coefficients in state.bearings.items():
         stiffness, damping = coefficients.padded()
         rows = seen.on_freedoms(seen.reduced.model.ports[name])
-        found.append(
+        channels.append(
             Channel(place=name, kind="bearing", angle=stiffness[:2] @ rows, speed=damping[:2] @ rows)
         )
-        found.append(Channel(place=name, kind="journal velocity", angle=zero, speed=rows[:2]))
-    return tuple(found)
+        channels.append(Channel(place=name, kind="journal velocity", angle=zero, speed=rows[:2]))
+    return tuple(channels)
 
 
 class Watched:
@@ -484,10 +484,10 @@ class EventMarch:
         tripped: float | None = 0.0 if trip is not None and trip.channel is None else None
         first = self._system.mesh_ports[0, 0]
         for i in range(n):
-            now = (i + 1) / SAMPLE_RATE
+            time = (i + 1) / SAMPLE_RATE
             drive[i] = start.drive_torque
             if tripped is not None and trip is not None and brake is not None:
-                since = now - tripped - trip.delay
+                since = time - tripped - trip.delay
                 share = float(np.clip(since / brake.onset, 0.0, 1.0)) if brake.onset else float(since >= 0.0)
                 drive[i] += share * (-brake.torque - start.drive_torque)
             angles = angles + speeds / SAMPLE_RATE
@@ -502,7 +502,7 @@ class EventMarch:
             least[:, i], greatest[:, i] = torque.min(axis=1), torque.max(axis=1)
             still += (block.force == 0.0).mean(axis=1)
             if tripped is None and trip is not None and trip.crossed(values[:, i]):
-                tripped = now
+                tripped = time
         braked = None if tripped is None or trip is None else tripped + trip.delay
         return {
             "time": np.arange(1, n + 1) / SAMPLE_RATE, "speed": speed, "drive": drive, "least": least,
@@ -529,12 +529,12 @@ def time_to_standstill(
     """
     ratios = pinion_ratios(system, laws)
     inertia = float(ratios @ system.inertia @ ratios) / float(ratios[system.drive_dof]) ** 2
-    at = np.linspace(speed, 0.0, 401)
-    torque = np.array([brake.torque + drag(float(value)) for value in at])
+    speeds = np.linspace(speed, 0.0, 401)
+    torque = np.array([brake.torque + drag(float(value)) for value in speeds])
     if torque.min() <= 0.0:
         raise DynamicsInputError(
-            f"event: {torque.min():.3g} N m brake the rig at {at[int(torque.argmin())]:.3g} rad/s: must be above 0; "
-            "give a brake torque"
+            f"event: {torque.min():.3g} N m brake the rig at {speeds[int(torque.argmin())]:.3g} rad/s: must be above "
+            "0; give a brake torque"
         )
     # half of the ramp of the brake acts
-    return float(cumulative_trapezoid(inertia / torque, -at)[-1]) + 0.5 * brake.onset
+    return float(cumulative_trapezoid(inertia / torque, -speeds)[-1]) + 0.5 * brake.onset

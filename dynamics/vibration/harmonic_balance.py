@@ -241,8 +241,8 @@ class HarmonicNewton:
         coupled = np.zeros((n_meshes, len(gain), n_meshes * n), complex)
         for row in range(n_meshes):
             for mesh, inputs in enumerate(self.inputs):
-                for at, own in zip(inputs, tangent[mesh]):
-                    coupled[row, :, mesh * n : (mesh + 1) * n] += gain[:, row, at, None] * own
+                for column, slope in zip(inputs, tangent[mesh]):
+                    coupled[row, :, mesh * n : (mesh + 1) * n] += gain[:, row, column, None] * slope
         return coupled
 
     def _torques(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
@@ -561,8 +561,8 @@ class HarmonicEquations:
             reaction = evaluate_mesh(packed, *moving)
             transmitted[m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
             acting = input_torques(model, m, reaction)
-            for k, (at, (value, *slopes)) in enumerate(zip(self._inputs[m], acting)):
-                torque[at] += value
+            for k, (row, (value, *slopes)) in enumerate(zip(self._inputs[m], acting)):
+                torque[row] += value
                 for kind, slope in enumerate(slopes):
                     tangents[kind, m, k] = slope.reshape(grid.cells, grid.samples).mean(axis=0)
         harmonics = np.fft.rfft(torque, axis=1)[:, : grid.top + 1] / count
@@ -583,7 +583,7 @@ def input_torques(model: PortModel, m: int, reaction: MeshReaction) -> tuple[tup
     beside = []
     for port, radius, share, sign in zip(ports, model.base_radii[m], model.path_shares[m], (1.0, -1.0)):
         value, per_approach, per_rate = (
-            own + sign * radius * force for own, force in zip(port, normal, strict=True)
+            torque + sign * radius * force for torque, force in zip(port, normal, strict=True)
         )
         beside.append((value + share * reaction.path_torque, per_approach, per_rate))
     return (*ports, *beside)

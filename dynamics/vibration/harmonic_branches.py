@@ -144,7 +144,7 @@ class HarmonicStates:
         passed
     """
 
-    found: dict[int, HarmonicSolution] = field(default_factory=dict)
+    solved: dict[int, HarmonicSolution] = field(default_factory=dict)
     other: dict[int, HarmonicSolution] = field(default_factory=dict)
     reasons: dict[int, str] = field(default_factory=dict)
     not_mesh_periodic: set[int] = field(default_factory=set)
@@ -185,14 +185,14 @@ class BranchSearch:
 
     def run(self) -> HarmonicStates:
         """All states; a reason stays where no stable one is known."""
-        found = self.states.found
+        solved = self.states.solved
         self._walk_over(range(len(self._speeds)))
         if self._walk.cells == 1:
             if self.states.reasons:
                 self._trace_gaps()
             if any(self._open.values()):
                 self._walk_back()
-        if found and len(found) + len(self.states.not_mesh_periodic) < len(self._speeds):
+        if solved and len(solved) + len(self.states.not_mesh_periodic) < len(self._speeds):
             self._walk_over(range(len(self._speeds) - 1, -1, -1))
         return self.states
 
@@ -200,12 +200,12 @@ class BranchSearch:
         """Each speed that has no state yet from the state before it."""
         last = self._start
         for i in order:
-            if i not in self.states.found and i not in self.states.not_mesh_periodic:
+            if i not in self.states.solved and i not in self.states.not_mesh_periodic:
                 try:
                     self._keep(i, self._solved(i, last))
                 except DynamicsNotConverged as reason:
                     self.states.reasons.setdefault(i, str(reason))
-            last = self.states.found.get(i, last)
+            last = self.states.solved.get(i, last)
 
     def _solved(self, i: int, last: HarmonicSolution | None) -> HarmonicSolution:
         speed = float(self._speeds[i])
@@ -226,7 +226,7 @@ class BranchSearch:
                 if "(fold" not in reason:
                     self.states.not_mesh_periodic.add(i)
                 raise DynamicsNotConverged(reason)
-        self.states.found[i] = state
+        self.states.solved[i] = state
         self.states.reasons.pop(i, None)
 
     def _unstable(self, state: HarmonicSolution, i: int | None = None) -> str:
@@ -252,7 +252,7 @@ class BranchSearch:
         )
         for gap in _runs(missing, self._speeds):
             for rising in (True, False):
-                if all(i in self.states.found or i in self.states.not_mesh_periodic for i in gap):
+                if all(i in self.states.solved or i in self.states.not_mesh_periodic for i in gap):
                     break
                 start = self._next_to(gap, rising=rising)
                 if start is not None:
@@ -262,9 +262,9 @@ class BranchSearch:
         """Nearest state below (rising) or above the gap; a plain one from outside the speeds if there is none."""
         edge = self._speeds[gap].min() if rising else self._speeds[gap].max()
         side = 1.0 if rising else -1.0
-        known = [i for i in self.states.found if side * (edge - self._speeds[i]) > 0.0]
+        known = [i for i in self.states.solved if side * (edge - self._speeds[i]) > 0.0]
         if known:
-            return self.states.found[min(known, key=lambda i: abs(float(self._speeds[i] - edge)))]
+            return self.states.solved[min(known, key=lambda i: abs(float(self._speeds[i] - edge)))]
         for share in PLAIN:
             if (share < 1.0) == rising:
                 speed = float(share * edge)
@@ -287,22 +287,22 @@ class BranchSearch:
         most = int(MOST_POINTS * min(1.0, FEW_HARMONICS / start.grid.harmonics) ** 2)
         for place, state in crossings(trace.points((low, high), most, speeds), start, speeds):
             i = gap[place]
-            if i in self.states.found and i in self.states.other:
+            if i in self.states.solved and i in self.states.other:
                 continue
             speed = float(self._speeds[i])
             self._walk.take(self._problem(speed))
             try:
                 solved = self._walk.solve_near(speed, self._drags(speed), state)
-                if i not in self.states.found:
+                if i not in self.states.solved:
                     self._keep(i, solved)
-                elif not self._same(solved, self.states.found[i]) and not self._unstable(solved):
+                elif not self._same(solved, self.states.solved[i]) and not self._unstable(solved):
                     self.states.other[i] = solved
             except DynamicsNotConverged as reason:
                 self.states.reasons[i] = str(reason)
 
     def _walk_back(self) -> None:
         """The other way through neighbouring speeds with contact loss, from the state after them."""
-        known = self.states.found
+        known = self.states.solved
         last: HarmonicSolution | None = None
         for i in range(len(self._speeds) - 1, -1, -1):
             if i not in known:
@@ -422,7 +422,7 @@ class BranchTrace:
         A step that finds no state within ``STALL_LIMIT`` is halved; below ``LEAST_STEP`` the trace ends.
         """
         self._over_speed = over_speed
-        self._at, self._state = start, state_of(start)
+        self._solution, self._state = start, state_of(start)
         self._scale = SPEED_SCALE * start.speed
         self._weight = _weight(over_speed.problem(start.speed))
         self._tangent: _Tangent | None = None
@@ -438,17 +438,17 @@ class BranchTrace:
         asked : speeds [rad/s] for which it is traced. Where a mesh chatters, tangents hold for the shortest steps only;
         a trace that gets on so slowly that the points left reach none of these speeds is given up.
         """
-        crawled, passed = 0, [self._at.speed]
+        crawled, passed = 0, [self._solution.speed]
         for left in range(most - 1, -1, -1):
-            if not limits[0] <= self._at.speed <= limits[1] or not self._advance():
+            if not limits[0] <= self._solution.speed <= limits[1] or not self._advance():
                 return
             assert self._chord is not None
-            yield TracedPoint(solution=self._at, rising=self._chord.speed > 0.0)
+            yield TracedPoint(solution=self._solution, rising=self._chord.speed > 0.0)
             if asked is None:
                 continue
-            away = float(np.abs(asked - self._at.speed).min())
+            away = float(np.abs(asked - self._solution.speed).min())
             crawled = crawled + 1 if left * self._length * self._scale < away else 0
-            passed = [*passed[-STANDING:], self._at.speed]
+            passed = [*passed[-STANDING:], self._solution.speed]
             stands = len(passed) > STANDING and left * np.abs(np.diff(passed)).mean() < away
             if crawled >= CRAWLING or stands:
                 return
@@ -459,13 +459,13 @@ class BranchTrace:
         if tangent is None:
             return False
         while self._length >= LEAST_STEP:
-            found = self._corrected(tangent)
-            if found is not None:
-                solution, iterations = found
+            corrected = self._corrected(tangent)
+            if corrected is not None:
+                solution, iterations = corrected
                 self._chord = _Tangent(
-                    state_of(solution).plus(self._state, -1.0), solution.speed - self._at.speed
+                    state_of(solution).plus(self._state, -1.0), solution.speed - self._solution.speed
                 )
-                self._at, self._state, self._tangent = solution, state_of(solution), tangent
+                self._solution, self._state, self._tangent = solution, state_of(solution), tangent
                 if iterations <= EASY:
                     self._length = min(1.6 * self._length, MOST_STEP)
                 return True
@@ -474,10 +474,10 @@ class BranchTrace:
 
     def _direction(self) -> _Tangent | None:
         """Tangent at the present point, along the last step: at a corner, where a contact opens, it may turn back."""
-        here = self._over_speed.equations(self._at.grid, self._at.speed)
-        residual, reactions = here.residual(self._state)
+        equations = self._over_speed.equations(self._solution.grid, self._solution.speed)
+        residual, reactions = equations.residual(self._state)
         try:
-            along = here.step(self._per_speed(here, residual, self._state), reactions)
+            along = equations.step(self._per_speed(equations, residual, self._state), reactions)
         except np.linalg.LinAlgError:
             return self._tangent
         size = math.sqrt(self._product(along, along) + 1.0 / self._scale**2)
@@ -493,13 +493,13 @@ class BranchTrace:
     def _corrected(self, tangent: _Tangent) -> tuple[HarmonicSolution, int] | None:
         """State a step ahead, in the plane across the tangent, and the iterations it took; None if there is none."""
         ahead = self._state.plus(tangent.state, self._length)
-        speed_ahead = self._at.speed + self._length * tangent.speed
+        speed_ahead = self._solution.speed + self._length * tangent.speed
         state, speed = ahead, speed_ahead
         best: tuple[HarmonicSolution, int] | None = None
         for iteration in range(MOST_ITERATIONS):
             if not 0.0 < speed < math.inf:
                 return None
-            equations = self._over_speed.equations(self._at.grid, speed, band=speed_ahead)
+            equations = self._over_speed.equations(self._solution.grid, speed, band=speed_ahead)
             residual, reactions = equations.residual(state)
             error = equations.error(residual)
             if best is None or error < best[0].residual:
@@ -524,10 +524,10 @@ class BranchTrace:
         reactions: MeshHarmonics,
         state: HarmonicState,
         tangent: _Tangent,
-        at: tuple[HarmonicState, float, float],
+        prediction: tuple[HarmonicState, float, float],
     ) -> tuple[HarmonicState, float] | None:
         """Newton step of state and speed by bordering: two solutions with one matrix."""
-        ahead, speed_ahead, speed = at
+        ahead, speed_ahead, speed = prediction
         try:
             back = equations.step(residual, reactions)
             along = equations.step_again(self._per_speed(equations, residual, state), reactions)
@@ -569,13 +569,13 @@ def crossings(
     """Where a trace from ``start`` passes asked speeds (n,) [rad/s]: index and state between two of its points."""
     before = start
     for point in trace:
-        now = point.solution
-        low, high = sorted((before.speed, now.speed))
+        after = point.solution
+        low, high = sorted((before.speed, after.speed))
         passed = np.flatnonzero((speeds > low) & (speeds <= high))
-        for i in passed if now.speed > before.speed else passed[::-1]:
-            share = (speeds[i] - before.speed) / (now.speed - before.speed)
-            yield int(i), _between(before, now, float(share), float(speeds[i]))
-        before = now
+        for i in passed if after.speed > before.speed else passed[::-1]:
+            share = (speeds[i] - before.speed) / (after.speed - before.speed)
+            yield int(i), _between(before, after, float(share), float(speeds[i]))
+        before = after
 
 
 def _between(a: HarmonicSolution, b: HarmonicSolution, share: float, speed: float) -> HarmonicSolution:

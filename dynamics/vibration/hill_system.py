@@ -136,10 +136,10 @@ class MeshPeriodic:
         still = omega == 0.0
         form, size = self.system.form, np.where(still, 1.0, np.abs(omega))
         into = self._into if rows is None else np.hstack([self._into, form.into(rows)])
-        found = form.receptance_to(size, self.bodies, into)
-        found = np.where((omega < 0.0)[:, None, None], found.conj(), found)
-        found[still] = 0.0
-        return np.asarray(found)
+        receptance = form.receptance_to(size, self.bodies, into)
+        receptance = np.where((omega < 0.0)[:, None, None], receptance.conj(), receptance)
+        receptance[still] = 0.0
+        return np.asarray(receptance)
 
     def tangent(self, reach: int) -> Complex:
         """(3, n_meshes, k, n, n) harmonics of the torques per harmonics of approach, rate and pinion angle."""
@@ -153,8 +153,8 @@ class MeshPeriodic:
             tangent, n = self.tangent(reach), 2 * reach + 1
             omega = np.concatenate([self.omega(residue, reach) for residue in left])
             receptance = self.receptance(omega).reshape(len(left), n, self.bodies.size, -1)
-            for residue, own in zip(left, receptance):
-                self._classes[residue, reach] = HillSystem(self, residue, tangent, own)
+            for residue, of_class in zip(left, receptance):
+                self._classes[residue, reach] = HillSystem(self, residue, tangent, of_class)
         return [self._classes[residue, reach] for residue in residues]
 
 
@@ -210,26 +210,26 @@ class HillSystem:
 
     def _solve(self, known: Complex, torque: Complex, acting: Complex) -> Complex:
         load = known if self.still < 0 else self._load(known, torque, acting)
-        found = lu_solve(self.factors, load, check_finite=False)
-        return np.asarray(found[: self.n_meshes * self.n].reshape(self.n_meshes, self.n))
+        solution = lu_solve(self.factors, load, check_finite=False)
+        return np.asarray(solution[: self.n_meshes * self.n].reshape(self.n_meshes, self.n))
 
     def _with_mean(self, block: Complex) -> Complex:
         """The class of the mean: with the mean windup of all freedoms, drive torque and twist as further unknowns."""
         loop, size, still = self.loop, self.n_meshes * self.n, self.still
         system = loop.system
         ports, dofs = system.mesh_ports, len(system.inertia)
-        at = np.arange(self.n_meshes) * self.n + still
+        means = np.arange(self.n_meshes) * self.n + still
         matrix = np.zeros((size + dofs + 2, size + dofs + 2), complex)
         matrix[:size, :size] = block
-        matrix[at] = 0.0
-        matrix[at, at] = 1.0
+        matrix[means] = 0.0
+        matrix[means, means] = 1.0
         for m, law in enumerate(loop.ideal):
-            matrix[at[m], size + ports[m]] = -law.base_radius_1, law.base_radius_2
+            matrix[means[m], size + ports[m]] = -law.base_radius_1, law.base_radius_2
         self.scale = float(np.abs(system.stiffness).max())
         matrix[size : size + dofs, size : size + dofs] = system.stiffness / self.scale
         for m, inputs in enumerate(loop.inputs):
-            for at_input, row in zip(inputs, self.tangent[m, :, still] / self.scale):
-                load = np.outer(loop.model.loads[at_input], row)
+            for port, row in zip(inputs, self.tangent[m, :, still] / self.scale):
+                load = np.outer(loop.model.loads[port], row)
                 matrix[size : size + dofs, m * self.n : (m + 1) * self.n] -= load
         matrix[size + system.drive_dof, size + dofs] = -1.0
         matrix[size : size + dofs, size + dofs + 1] = -system.twist_load / self.scale
@@ -304,16 +304,16 @@ def pair_sensitivity(
     sign = -1.0 if back else 1.0
     if law.body_compliance > 0.0:
         motion = motion._replace(approach=evaluate_mesh(packed, *motion).tooth_approach)
-    found = _contacts(law, packed, motion, sign)
-    if found is None or not found.pair.size:
+    contacts = _contacts(law, packed, motion, sign)
+    if contacts is None or not contacts.pair.size:
         return None
     if law.body_compliance > 0.0:
-        found = _through_body(law, found, _contacts(law, packed, motion, -sign), sign)
+        contacts = _through_body(law, contacts, _contacts(law, packed, motion, -sign), sign)
     n, n_path = motion.angle.size, law.stiffness.shape[1]
-    first = int(found.pair.min())
-    pairs = int(found.pair.max()) - first + 1
-    row, share = (found.pair - first) * n + found.at, found.fraction
-    rows, columns = np.concatenate([row, row]), np.concatenate([found.cell, found.cell + 1])
+    first = int(contacts.pair.min())
+    pairs = int(contacts.pair.max()) - first + 1
+    row, share = (contacts.pair - first) * n + contacts.sample, contacts.fraction
+    rows, columns = np.concatenate([row, row]), np.concatenate([contacts.cell, contacts.cell + 1])
     weight = np.concatenate([1.0 - share, share])
 
     def spread(values: Array) -> tuple[csr_array, ...]:
@@ -322,10 +322,10 @@ def pair_sensitivity(
             for value in values
         )
 
-    scale = np.array([np.bincount(row, value, pairs * n) for value in found.per_scale]).reshape(
+    scale = np.array([np.bincount(row, value, pairs * n) for value in contacts.per_scale]).reshape(
         OUTPUTS, pairs, n
     )
-    return PairSensitivity(first, pairs, spread(found.per_gap), spread(found.per_gap_slope), scale)
+    return PairSensitivity(first, pairs, spread(contacts.per_gap), spread(contacts.per_gap_slope), scale)
 
 
 class ToothPattern(NamedTuple):
@@ -381,7 +381,7 @@ def excitation(
 class _Contacts(NamedTuple):
     """Touching contacts of one flank: sample, pair, cell of the path and place in it, and their sensitivities."""
 
-    at: Integers
+    sample: Integers
     pair: Integers
     cell: Integers
     fraction: Array
@@ -392,17 +392,19 @@ class _Contacts(NamedTuple):
     per_scale: Array
 
 
-def _through_body(law: MeshLaw, own: _Contacts, other: _Contacts | None, sign: float) -> _Contacts:
+def _through_body(law: MeshLaw, contacts: _Contacts, other: _Contacts | None, sign: float) -> _Contacts:
     """The contacts of one flank with what their deviations do to all others by way of the shared body."""
-    n = int(max(one.at.max(initial=-1) for one in (own, other) if one is not None)) + 1
+    n = int(max(flank.sample.max(initial=-1) for flank in (contacts, other) if flank is not None)) + 1
     per_approach, stiffness = np.zeros((OUTPUTS, n)), np.zeros(n)
-    for flank, side in ((own, sign), (other, -sign)):
+    for flank, side in ((contacts, sign), (other, -sign)):
         if flank is not None:
-            stiffness += np.bincount(flank.at, flank.stiffness, n)
-            per_approach -= side * np.array([np.bincount(flank.at, one, n) for one in flank.per_gap])
+            stiffness += np.bincount(flank.sample, flank.stiffness, n)
+            per_approach -= side * np.array([np.bincount(flank.sample, row, n) for row in flank.per_gap])
     given = law.body_compliance * per_approach / (1.0 + law.body_compliance * stiffness)
-    moved = sign * given[:, own.at] * own.stiffness
-    return own._replace(per_gap=own.per_gap + moved, per_scale=own.per_scale - moved * own.depth)
+    moved = sign * given[:, contacts.sample] * contacts.stiffness
+    return contacts._replace(
+        per_gap=contacts.per_gap + moved, per_scale=contacts.per_scale - moved * contacts.depth
+    )
 
 
 def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -> _Contacts | None:
@@ -418,17 +420,17 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     turn = np.floor(whole / pitch)
     later = np.arange(int(np.ceil(n_cells / pitch)))[:, None, None]
     place = whole - turn * pitch + later * pitch
-    listed, at, piece = np.nonzero(place < n_cells)
-    place = place[listed, at, piece]
-    pair = (sign * (turn[at, piece] - listed)).astype(np.int64)
+    listed, sample, piece = np.nonzero(place < n_cells)
+    place = place[listed, sample, piece]
+    pair = (sign * (turn[sample, piece] - listed)).astype(np.int64)
     cell = np.minimum(place.astype(np.int64), n_cells - 1)
     f = place - cell
     c = packed.cells[packed.counts[0, CELLS_AT] + piece * n_cells + cell].T
     gap = c[4] + f * (c[5] + f * (c[6] + f * c[7]))
-    reach = within[at]
+    reach = within[sample]
     near = reach > gap
-    at, pair, cell, f, c, reach, gap = (
-        at[near],
+    sample, pair, cell, f, c, reach, gap = (
+        sample[near],
         pair[near],
         cell[near],
         f[near],
@@ -440,7 +442,7 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     stiffness_slope = (c[1] + f * (2.0 * c[2] + 3.0 * f * c[3])) / law.path_step
     gap_slope = (c[5] + f * (2.0 * c[6] + 3.0 * f * c[7])) / law.path_step
     s = law.path_start + (cell + f) * law.path_step
-    omega_1, omega_2 = motion.omega_1[at], motion.omega_2[at]
+    omega_1, omega_2 = motion.omega_1[sample], motion.omega_2[sample]
     damp_time = packed.values[0, DAMP_TIME]
     closes = packed.values[0, CLOSING]
     path_speed = closes * sign * law.base_radius_1 * omega_1
@@ -465,7 +467,7 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     r_1, r_2 = -sign * law.base_radius_1, sign * law.base_radius_2
     none = np.zeros_like(force)
     return _Contacts(
-        at, pair, cell, f, stiffness, depth,
+        sample, pair, cell, f, stiffness, depth,
         np.array([
             r_1 * (force_gap * lever_1 + damped_gap * lever - stiffness_slope * depth), r_2 * force_gap * lever_2,
             -r_1 * force_gap,

@@ -99,7 +99,7 @@ class _Winding:
         self._laws = [law._replace(friction=0.0, damping=0.0) for law in laws]
         self._packed = [pack_meshes([law]) for law in self._laws]
         self._spring = np.array([law.mean_stiffness for law in laws])
-        n, held = len(system.inertia), system.mesh_ports[0, 0]
+        n, fixed = len(system.inertia), system.mesh_ports[0, 0]
         ports = np.zeros((len(laws), n + 1))
         for row, law, (pinion, wheel) in zip(ports, laws, system.mesh_ports):
             row[pinion], row[wheel] = law.base_radius_1, -law.base_radius_2
@@ -107,9 +107,9 @@ class _Winding:
         matrix[:n, :n] = system.stiffness
         matrix += ports.T @ (self._spring[:, None] * ports)
         unit = 1.0 / np.sqrt(np.abs(np.diag(matrix)[:n]))
-        rows, columns = np.append(unit, 1.0 / unit[held]), np.append(unit, 1.0 / unit[system.drive_dof])
+        rows, columns = np.append(unit, 1.0 / unit[fixed]), np.append(unit, 1.0 / unit[system.drive_dof])
         # the last unknown is the motor torque, the last row holds the pinion
-        matrix[system.drive_dof, n], matrix[n, held] = -1.0, 1.0
+        matrix[system.drive_dof, n], matrix[n, fixed] = -1.0, 1.0
         right[:n, 0], right[:, 1:-1], right[:n, -1] = load, -ports.T, system.twist_load
         scaled = np.linalg.solve(rows[:, None] * matrix * columns, rows[:, None] * right)
         self._shares = columns[:, None] * scaled

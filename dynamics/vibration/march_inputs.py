@@ -150,9 +150,9 @@ def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]
     places = np.empty(len(drags), np.int64)
     first = 0
     for line in np.unique(lines):
-        own = np.flatnonzero(np.array(lines) == line)
-        places[own] = first + np.arange(len(own))
-        first += -(-len(own) // kernels.FOUR) * kernels.FOUR
+        on_line = np.flatnonzero(np.array(lines) == line)
+        places[on_line] = first + np.arange(len(on_line))
+        first += -(-len(on_line) // kernels.FOUR) * kernels.FOUR
     return places
 
 
@@ -255,7 +255,7 @@ class MarchTables:
         unfiltered = np.array([law.base_pitch / (RESOLVED * law.base_radius_1 * step) for law in laws])
         self._slow = np.where(self._closes, CREEP, unfiltered)
         self._speeds: Array | None = None
-        self._found: dict[tuple[float, ...], ContactTables] = {}
+        self._by_speed: dict[tuple[float, ...], ContactTables] = {}
 
     def at(self, speeds: Array) -> ContactTables:
         """Tables for speeds of the pinions (n_meshes,) [rad/s], the last ones as long as they are good."""
@@ -263,21 +263,21 @@ class MarchTables:
         if known is not None:
             wide = np.where(self._closes, CLOSING_RUNG, RUNG) * np.abs(known)
             if np.all(np.abs(speeds - known) <= np.where(known == 0.0, self._slow, wide)):
-                return self._found[tuple(known.tolist())]
+                return self._by_speed[tuple(known.tolist())]
         rungs = np.round(np.log(np.maximum(np.abs(speeds), 1e-9)) / np.log1p(RUNG))
         known = np.where(self._closes, speeds, np.sign(speeds) * (1.0 + RUNG) ** rungs)
         known = np.where(np.abs(speeds) < self._slow, 0.0, known)
         self._speeds = known
         key = tuple(known.tolist())
-        if key not in self._found:
+        if key not in self._by_speed:
             if self._closes.any():  # of too many speeds to keep
-                self._found.clear()
-            self._found[key] = contact_tables(
+                self._by_speed.clear()
+            self._by_speed[key] = contact_tables(
                 self._laws,
                 march=MarchStep(step=self._step, speeds=key) if known.any() else None,
                 derivative_torques=self._derivative_torques,
             )
-        return self._found[key]
+        return self._by_speed[key]
 
 
 # Change of a march to the matrices of another speed band.
@@ -331,13 +331,13 @@ class TurningLoads:
         loads = system.periodic_loads if loads is None else loads
         parts = [(i, part) for i, load in enumerate(loads) for part in load.parts]
         self.dofs = np.array([load.dof for load in loads], np.int64)
-        self._own = np.array([i for i, _ in parts], np.int64)
+        self._load_of_part = np.array([i for i, _ in parts], np.int64)
         self._order = np.array([part.order for _, part in parts])
         self._phase = np.array([part.phase for _, part in parts])
         self._power = np.array([part.speed_power for _, part in parts], float)
         amplitude = np.array([part.amplitude for _, part in parts])
         self._amplitude = np.zeros((len(parts), len(loads)))
-        self._amplitude[np.arange(len(parts)), self._own] = amplitude
+        self._amplitude[np.arange(len(parts)), self._load_of_part] = amplitude
         momentum = system.inertia @ system.rigid
         lines = np.linalg.solve(system.rigid.T @ momentum, momentum.T)
         self._line_speeds = system.rigid[self.dofs] @ lines
@@ -348,8 +348,8 @@ class TurningLoads:
 
     def values(self, angles: Array, speeds: Array) -> Array:
         """(..., n) value of each load at angles [rad] and speeds [rad/s] of its line (..., n)."""
-        own = self._own
-        waves = np.cos(self._order * angles[..., own] - self._phase) * speeds[..., own] ** self._power
+        load = self._load_of_part
+        waves = np.cos(self._order * angles[..., load] - self._phase) * speeds[..., load] ** self._power
         return np.asarray(waves @ self._amplitude)
 
 

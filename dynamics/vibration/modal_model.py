@@ -129,8 +129,8 @@ def modal_model(
     wrench = np.zeros((n, 0)) if beside is None else beside.loads(laws)
     _check(system, laws, slow_and_drags)
     inner = system.coordinates
-    own, squared, frequencies, n_lines = _branch_shapes(system)
-    damping = own.T @ inner.damping @ own
+    of_branches, squared, frequencies, n_lines = _branch_shapes(system)
+    damping = of_branches.T @ inner.damping @ of_branches
     damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
     m = n - n_lines
     matrix = np.zeros((n + m, n + m))
@@ -139,18 +139,18 @@ def modal_model(
     matrix[n:, n_lines:n] = np.diag(frequencies[n_lines:])
     skew = 0.5 * (inner.stiffness - inner.stiffness.T)
     if skew.any():
-        elastic = own[:, n_lines:]
+        elastic = of_branches[:, n_lines:]
         matrix[n_lines:n, n:] -= elastic.T @ skew @ (elastic / frequencies[n_lines:])
-    branch_of = inner.branches[np.argmax(np.abs(own), axis=0)]
-    shapes = inner.freedoms @ own
+    branch_of = inner.branches[np.argmax(np.abs(of_branches), axis=0)]
+    shapes = inner.freedoms @ of_branches
     of_state = np.concatenate((branch_of, branch_of[n_lines:]))
     groups = _groups(shapes.T @ np.column_stack((_port_columns(system), drags)), branch_of)
     in_order = np.argsort(groups, kind="stable")
     solved = [_branch_modes(matrix, np.flatnonzero(of_state == branch), n) for branch in in_order]
-    values = np.concatenate([own for own, _, _ in solved])
+    values = np.concatenate([eigenvalues for eigenvalues, _, _ in solved])
     vectors = np.hstack([right for _, right, _ in solved])
     inverse = np.vstack([left for _, _, left in solved])
-    branches = np.repeat(groups[in_order], [len(own) for own, _, _ in solved])
+    branches = np.repeat(groups[in_order], [len(eigenvalues) for eigenvalues, _, _ in solved])
     branch_of = groups[branch_of]
     weights = np.where(values.imag > 0.0, 2.0, 1.0)
 
@@ -258,9 +258,9 @@ def _branch_shapes(system: LinearSystem) -> tuple[Array, Array, Array, int]:
     frequencies: list[Array] = []
     for branch in np.unique(inner.branches):
         members = np.flatnonzero(inner.branches == branch)
-        own = np.ix_(members, members)
-        stiffness = inner.stiffness[own]
-        modes = real_modes(inner.inertia[own], stiffness, inner.rigid[members])
+        of_branch = np.ix_(members, members)
+        stiffness = inner.stiffness[of_branch]
+        modes = real_modes(inner.inertia[of_branch], stiffness, inner.rigid[members])
         if np.array_equal(stiffness, stiffness.T) and np.any(modes.squared[modes.n_rigid :] <= 0.0):
             raise DynamicsInputError(
                 f"the line of {_named(system, members[0])} is torn: a part of it is held by no stiffness; join it or "
@@ -308,9 +308,9 @@ def _branch_modes(
     The first ``n`` states are velocities. Two modes that coincide, as those of a critical damper do, are parted by a
     little more damping.
     """
-    own, moving = matrix[np.ix_(members, members)], np.ix_(members < n, members < n)
+    block, moving = matrix[np.ix_(members, members)], np.ix_(members < n, members < n)
     for more in (0.0, PARTING, 100.0 * PARTING):
-        parted = own.copy()
+        parted = block.copy()
         parted[moving] *= 1.0 + more
         values, vectors = np.linalg.eig(parted)
         try:
@@ -354,14 +354,14 @@ def _drag_branches(shapes: Array, branch_of: NDArray[np.int64], drags: Array) ->
     moved = np.abs(shapes.T @ drags)
     branches = np.zeros(drags.shape[1] // FOUR, np.int64)
     for four in range(len(branches)):
-        own = moved[:, FOUR * four : FOUR * (four + 1)].max(axis=1)
-        found = np.unique(branch_of[own > 1e-9 * own.max()])
-        if len(found) > 1:
+        motion = moved[:, FOUR * four : FOUR * (four + 1)].max(axis=1)
+        lines = np.unique(branch_of[motion > 1e-9 * motion.max()])
+        if len(lines) > 1:
             raise DynamicsInputError(
-                f"drag torques {FOUR * four} to {FOUR * four + 3} act on {len(found)} shaft lines that only a mesh "
+                f"drag torques {FOUR * four} to {FOUR * four + 3} act on {len(lines)} shaft lines that only a mesh "
                 "ties together, limit 1: let each line begin a new four"
             )
-        branches[four] = found[0]
+        branches[four] = lines[0]
     return branches
 
 

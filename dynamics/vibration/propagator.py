@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
-# Tables of the tooth forces beside the ports for the compiled march (``dynamics.kernels.wrench``).
-
 # Layout of the modes of a drivetrain for the compiled march: branch by branch, with the ports they meet.
 #
 # See ``dynamics.kernels.DiscreteModes`` for the tables that are filled here.
@@ -81,8 +79,8 @@ def branch_layout(branches: Integers) -> ModalLayout:
     """Return the places of modes on ``branches`` (n_modes,), not decreasing."""
     modes, starts = [], [0]
     for size in np.unique(branches, return_counts=True)[1]:
-        own = np.arange(size)
-        modes.append(starts[-1] + own // WIDTH * 2 * WIDTH + own % WIDTH)
+        index = np.arange(size)
+        modes.append(starts[-1] + index // WIDTH * 2 * WIDTH + index % WIDTH)
         starts.append(starts[-1] + 2 * WIDTH * -(-int(size) // WIDTH))
     return ModalLayout(np.concatenate(modes), np.array(starts, np.int64))
 
@@ -101,7 +99,7 @@ def port_blocks(port_branches: Integers, layout: ModalLayout, response: StepResp
     through = np.pad(np.stack((old, new)), ((0, 0), (0, 2), (0, 1)))
     blocks: list[tuple[int, ...]] = []
     further: list[tuple[int, ...]] = []
-    own: list[tuple[int, ...]] = []
+    direct: list[tuple[int, ...]] = []
     others: list[tuple[int, ...]] = []
     bank, linked = [np.zeros(0)], [np.zeros(0)]
     for branch, (start, stop) in enumerate(zip(layout.starts[:-1], layout.starts[1:])):
@@ -111,20 +109,22 @@ def port_blocks(port_branches: Integers, layout: ModalLayout, response: StepResp
         for number, pair in enumerate(pairs):
             outputs = [2 * pair[0], 2 * pair[0] + 1, 2 * pair[1], 2 * pair[1] + 1]
             for source, acting in enumerate(pairs):
-                at = sum(map(len, linked))
+                link_at = sum(map(len, linked))
                 linked.append(through[:, outputs][:, :, acting].ravel())
                 to_itself = source == number == 0
-                (own if to_itself else others).append((*pair, *acting, at))
+                (direct if to_itself else others).append((*pair, *acting, link_at))
                 if source == number:
                     bank_at = sum(map(len, bank))
-                    (further if number else blocks).append((start, bank_at, home, groups, *pair, at))
+                    (further if number else blocks).append((start, bank_at, home, groups, *pair, link_at))
             table = np.stack((np.zeros_like(fades), fades, *pushes[pair], *seen[outputs]))[:, start:stop]
             bank.append(table.reshape(-1, groups, 2 * WIDTH).swapaxes(0, 1).ravel())
     return PortBlocks(
         np.array(blocks, np.int64), np.array(further, np.int64).reshape(-1, len(blocks[0])), np.concatenate(bank),
-        np.array(own + others, np.int64), np.concatenate(linked),
+        np.array(direct + others, np.int64), np.concatenate(linked),
     )  # fmt: skip
 
+
+# Tables of the tooth forces beside the ports for the compiled march (``dynamics.kernels.wrench``).
 
 Scalar = TypeVar("Scalar", np.float64, np.complex128)
 
@@ -137,9 +137,9 @@ def n_friction_rows(model: ModalModel) -> int:
 def wrench_columns(model: ModalModel, table: NDArray[Scalar]) -> NDArray[Scalar]:
     """Columns of a table (..., n_inputs) for the forces beside the ports, in the order of the march (..., n)."""
     n_meshes = len(model.wrench_numbers)
-    own = table[..., table.shape[-1] - 3 * n_meshes :]
+    beside = table[..., table.shape[-1] - 3 * n_meshes :]
     none = np.zeros((*table.shape[:-1], n_friction_rows(model) - 2 * n_meshes), table.dtype)
-    return np.concatenate((own[..., : 2 * n_meshes], none, own[..., 2 * n_meshes :]), axis=-1)
+    return np.concatenate((beside[..., : 2 * n_meshes], none, beside[..., 2 * n_meshes :]), axis=-1)
 
 
 def wrench_inputs(model: ModalModel, forces: Array) -> Array:
@@ -161,8 +161,8 @@ def parted_flanks(model: ModalModel, wrench: MeshWrench | None, angles: Array) -
 
 def wrench_hold(model: ModalModel, interval: float) -> ComplexArray:
     """Part (n_modes, 3 n_meshes) of the modal state that follows at once what is linear over an interval [s]."""
-    own = model.inputs[:, model.inputs.shape[1] - 3 * len(model.wrench_numbers) :]
-    return np.asarray(interval * straight_line(model.eigenvalues * interval).state[:, None] * own)
+    beside = model.inputs[:, model.inputs.shape[1] - 3 * len(model.wrench_numbers) :]
+    return np.asarray(interval * straight_line(model.eigenvalues * interval).state[:, None] * beside)
 
 
 def wrench_modes(
@@ -175,18 +175,18 @@ def wrench_modes(
     n_meshes, n, n_ports = len(model.wrench_numbers), n_friction_rows(model), 4 * model.n_meshes
     x = model.eigenvalues * step
     forcing = wrench_columns(model, model.inputs)
-    held = wrench_columns(model, hold)
+    immediate = wrench_columns(model, hold)
     through = wrench_columns(model, model.through[:n_ports]).real
     speed, turn = np.arange(0, n_ports, 2), np.arange(1, n_ports, 2)
-    present, outputs = held, []
+    present, outputs = immediate, []
     for _ in range(every):
-        one = np.zeros((n_ports, n + n_meshes))
+        output = np.zeros((n_ports, n + n_meshes))
         moved = step * phi(1, x)[:, None] * present + step**2 * phi(2, x)[:, None] * forcing
-        one[turn] = (model.outputs[turn] @ moved).real + step * through[turn]
+        output[turn] = (model.outputs[turn] @ moved).real + step * through[turn]
         present = np.exp(x)[:, None] * present + step * phi(1, x)[:, None] * forcing
-        one[speed] = (model.outputs[speed] @ present).real + through[speed]
-        outputs.append(one.T)
-    push = layout.lay((present - held).T)
+        output[speed] = (model.outputs[speed] @ present).real + through[speed]
+        outputs.append(output.T)
+    push = layout.lay((present - immediate).T)
     pieces, flat = _pieces(push[:n], layout)
     seen, rate = model.wrench_outputs, model.wrench_through_rate / step
     new = (seen @ hold).real + model.wrench_through + rate
@@ -211,18 +211,18 @@ def _pieces(push: Array, layout: ModalLayout) -> tuple[NDArray[np.int64], Array]
 
     push : (n, n_states)
     """
-    found: list[tuple[int, int, int, int, int]] = []
+    pieces: list[tuple[int, int, int, int, int]] = []
     flat = [np.zeros(0)]
     for four in range(len(push) // FOUR):
-        own = push[FOUR * four : FOUR * (four + 1)]
+        pushes = push[FOUR * four : FOUR * (four + 1)]
         for block, (start, stop) in enumerate(zip(layout.starts[:-1], layout.starts[1:])):
-            groups = own[:, start:stop].reshape(FOUR, -1, 2 * WIDTH).swapaxes(0, 1)
+            groups = pushes[:, start:stop].reshape(FOUR, -1, 2 * WIDTH).swapaxes(0, 1)
             moved = np.flatnonzero(np.any(groups != 0.0, axis=(1, 2)))
             if moved.size:
                 first, last = int(moved[0]), int(moved[-1]) + 1
-                found.append((four, block, first, last - first, sum(map(len, flat))))
+                pieces.append((four, block, first, last - first, sum(map(len, flat))))
                 flat.append(groups[first:last].ravel())
-    return np.array(found, np.int64).reshape(-1, 5), np.concatenate(flat)
+    return np.array(pieces, np.int64).reshape(-1, 5), np.concatenate(flat)
 
 
 # What a torque gives to a mode within a step of the march, by its values at start and end of the step.

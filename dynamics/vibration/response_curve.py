@@ -350,8 +350,8 @@ class SectionTorques:
         loads = np.zeros((len(self.model.loads), wave.time.size))
         for m, (packed, inputs) in enumerate(zip(self.model.packed, mesh_inputs(self.model))):
             motion = wave.angle[m], wave.approach[m], wave.omega_1[m], wave.omega_2[m]
-            for at, (torque, *_) in zip(inputs, input_torques(self.model, m, evaluate_mesh(packed, *motion))):
-                loads[at] += torque
+            for i, (torque, *_) in zip(inputs, input_torques(self.model, m, evaluate_mesh(packed, *motion))):
+                loads[i] += torque
         return loads
 
     def _driven(self, point: CurvePoint, base: float, drive_speed: float, top: int) -> Complex:
@@ -373,8 +373,8 @@ class SectionTorques:
             if point.motion.periods
             else 1.0 / (self.model.laws[0].teeth_1 * pinion)
         )
-        held = within_period(self.system.periodic_loads, self.ratios, asked)
-        for harmonic, load in harmonic_loads(held, self.ratios, turns, drive_speed).items():
+        within = within_period(self.system.periodic_loads, self.ratios, asked)
+        for harmonic, load in harmonic_loads(within, self.ratios, turns, drive_speed).items():
             if harmonic <= top:
                 phase = np.exp(1j * lead * harmonic / turns)
                 loads[:, harmonic - 1] += 0.5 * phase * (form.loads @ load)
@@ -396,7 +396,7 @@ class SectionTorques:
 def section_torques(system: LinearSystem, laws: Sequence[MeshLaw], rows: TwistRows) -> SectionTorques:
     """Torques of the sections of a system with the mesh laws of its periodic states."""
     scale = float(np.max(np.abs(np.diag(system.stiffness))))
-    held = system.stiffness + scale * system.rigid @ system.rigid.T
+    restrained = system.stiffness + scale * system.rigid @ system.rigid.T
     model = port_model(system, laws)
     return SectionTorques(
         system=system,
@@ -405,5 +405,5 @@ def section_torques(system: LinearSystem, laws: Sequence[MeshLaw], rows: TwistRo
         ratios=line_ratios(system, laws),
         into=system.form.into(model.loads),
         seen=rows.rows @ system.form.velocity_shapes,
-        flexibility=np.asarray(np.linalg.solve(held.T, rows.rows.T).T, float),
+        flexibility=np.asarray(np.linalg.solve(restrained.T, rows.rows.T).T, float),
     )

@@ -103,13 +103,13 @@ class HarmonicWalk:
         near = last is not None and abs(last.speed - speed) <= SAME_PLACE * speed
         for start in self._starts(grid, speed, drags, last):
             try:
-                found = self._solve(start, speed, drags)
+                solution = self._solve(start, speed, drags)
             except DynamicsNotConverged as error:
                 reason = error
             else:
-                if found.residual < self.tolerance or not near:
-                    return found
-                stalled = found if stalled is None or found.residual < stalled.residual else stalled
+                if solution.residual < self.tolerance or not near:
+                    return solution
+                stalled = solution if stalled is None or solution.residual < stalled.residual else stalled
         if stalled is not None:
             return stalled
         raise reason
@@ -174,9 +174,9 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
     All meshes share the cell: the shortest rotation that is a whole number of mesh periods of each.
     """
     law = model.laws[control_mesh]
-    own = model.ratios[model.pinions[control_mesh]]
+    ratio = model.ratios[model.pinions[control_mesh]]
     pitch = [
-        Fraction(float(m.teeth_1 * model.ratios[model.pinions[i]] / (law.teeth_1 * own)))
+        Fraction(float(m.teeth_1 * model.ratios[model.pinions[i]] / (law.teeth_1 * ratio)))
         .limit_denominator(10_000)
         for i, m in enumerate(model.laws)
     ]  # fmt: skip
@@ -187,7 +187,7 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
                 "the frequency of the control mesh; integrate in time"
             )
     common = math.lcm(*(value.denominator for value in pitch))
-    cell_angle = common * 2.0 * math.pi / (law.teeth_1 * float(own))
+    cell_angle = common * 2.0 * math.pi / (law.teeth_1 * float(ratio))
     if period == "mesh":
         return 1, cell_angle
     meshes = math.lcm(law.teeth_1, common)
@@ -211,7 +211,7 @@ def quasi_static_start(
         state = solve_static(problem.model, problem.load, rotation)
     except DynamicsNotConverged:
         pinion = int(problem.model.pinions[problem.load.control_mesh])
-        state = solve_static(problem.model, problem.load, replace(rotation, held=pinion))
+        state = solve_static(problem.model, problem.load, replace(rotation, port=pinion))
     coefficients = np.fft.rfft(state.ports[:, :-1].T, axis=1)[:, : grid.harmonics + 1] / grid.samples
     ports = np.zeros((coefficients.shape[0], grid.top + 1), complex)
     ports[:, :: grid.cells] = coefficients

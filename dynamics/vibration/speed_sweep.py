@@ -103,7 +103,7 @@ def periodic_response(
     states = HarmonicStates(reasons=dict.fromkeys(range(len(given)), ""))
     if given and "harmonic_balance" in settings.methods:
         states = _by_harmonics(loops, given, drag_torques)
-    found = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.found.items()}
+    points = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.solved.items()}
     other = {i: point_of(loops.problem(given[i]).model, state) for i, state in states.other.items()}
     reasons = states.reasons
     if "time_integration" in settings.methods:
@@ -111,14 +111,14 @@ def periodic_response(
             drags = drag_torques(given[i]) if callable(drag_torques) else drag_torques
             try:
                 longest = SHORT_SEARCH if i in states.not_mesh_periodic else LONG_SEARCH
-                found[i] = _in_time(loops, given[i], drags, longest)
+                points[i] = _in_time(loops, given[i], drags, longest)
             except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
-        points=tuple(found[i] for i in sorted(found)),
-        failed=tuple((given[i], reasons[i]) for i in range(len(given)) if i not in found),
+        points=tuple(points[i] for i in sorted(points)),
+        failed=tuple((given[i], reasons[i]) for i in range(len(given)) if i not in points),
         other_branch=tuple(other[i] for i in sorted(other)),
-        unstable=tuple(given[i] for i in sorted(states.unstable) if i not in found),
+        unstable=tuple(given[i] for i in sorted(states.unstable) if i not in points),
     )
 
 
@@ -226,12 +226,12 @@ def _by_harmonics(loops: _Loops, speeds: Sequence[float], drags: DragTorques) ->
         lambda speed: loops.problem(speed * ratio),
         lambda speed: drags(speed * ratio) if callable(drags) else drags,
         np.array(speeds) / ratio,
-        _held(settings.start, loops.load),
+        _with_twist(settings.start, loops.load),
     )
     return search.run() if settings.branches else search.on_one_branch()
 
 
-def _held(start: HarmonicSolution | None, load: LoopLoad) -> HarmonicSolution | None:
+def _with_twist(start: HarmonicSolution | None, load: LoopLoad) -> HarmonicSolution | None:
     """A start with the twist that is held: Newton steps leave it as it is."""
     return start if start is None or load.twist is None else replace(start, twist=load.twist)
 

@@ -161,8 +161,8 @@ class SteadySearch:
         self.balanced_drive = self.drive
         self.steady, self.residual = False, float("inf")
         self._stiffness, self._period = wound.loop_stiffness, period
-        self._held = HeldSpeed(system, march.laws, period.speed)
-        self._ratios = self._held.ratios
+        self._speed_hold = HeldSpeed(system, march.laws, period.speed)
+        self._ratios = self._speed_hold.ratios
         self._loads = within_period(system.periodic_loads, self._ratios, period.turns)
         self._last: Array | None = None
         self._change = float("inf")
@@ -180,13 +180,13 @@ class SteadySearch:
         wave = radius[:, None] * result.force[:, -steps:]
         mean = float(radius[0] * result.force[0].mean())
         torque_error = 0.0 if self.torque is None else self.torque - mean
-        self.balanced_drive = self.drive - self._held.inertia * self._held.drift(mean_speed, span)
+        self.balanced_drive = self.drive - self._speed_hold.inertia * self._speed_hold.drift(mean_speed, span)
         self._test(wave, mean, torque_error, mean_speed)
         if not self.steady:
             self._correct(mean_speed, span, torque_error)
         return result
 
-    def held(self, periods: int, tables: Array) -> Block:
+    def uncorrected(self, periods: int, tables: Array) -> Block:
         """March some periods without corrections."""
         return self.march.advance(self._given(periods), drags=DragTables(torque=tables))
 
@@ -203,12 +203,12 @@ class SteadySearch:
         """Least and greatest force (n_meshes, periods, 2) in each of so many periods further on [N]; the march itself
         stays where it is."""
         march, drags = self.march.continued(self.march.system, self.march.model), DragTables(torque=tables)
-        found = []
+        blocks = []
         for first in range(0, periods, AT_ONCE):
             given = self._given(min(AT_ONCE, periods - first), march)
             waves = march.advance(given, drags=drags).force.reshape(len(march.laws), -1, self._period.steps)
-            found.append(np.stack((waves.min(axis=2), waves.max(axis=2)), axis=2))
-        return np.concatenate(found, axis=1)
+            blocks.append(np.stack((waves.min(axis=2), waves.max(axis=2)), axis=2))
+        return np.concatenate(blocks, axis=1)
 
     def _given(self, periods: int, marched: TimeMarch | None = None) -> Array:
         """Commands over some periods: drive torque and twist as they are."""
@@ -230,17 +230,17 @@ class SteadySearch:
             decay = min(change / self._change, 0.95) if self._change > 0.0 else 0.0
             self._change = change
             self.residual = max(change, change * decay / (1.0 - decay))
-            held = (
+            balanced = (
                 abs(torque_error) <= 1e-4 * abs(mean)
                 and abs(mean_speed / self.speed - 1.0) <= 1e-6
                 and abs(self.balanced_drive - self.drive) <= 1e-4 * abs(self.drive)
             )
-            self._quiet = self._quiet + 1 if self.residual <= self.tolerance and held else 0
+            self._quiet = self._quiet + 1 if self.residual <= self.tolerance and balanced else 0
             self.steady = self._quiet >= 2
         self._last = wave
 
     def _correct(self, mean_speed: float, span: float, torque_error: float) -> None:
-        change = self._held.correction(mean_speed, span)
+        change = self._speed_hold.correction(mean_speed, span)
         self.drive += change.drive_torque
         self.march.kick(change.kick)
         self.twist += 0.5 * torque_error / self._stiffness
@@ -509,7 +509,7 @@ class TimeIntegration:
         if self.settings.period == "mesh":
             before = march.accounts()
             shown = max(per_block, 2 * LONGEST) if search.steady else SHOWN_PERIODS
-            block = search.held(shown, tables)
+            block = search.uncorrected(shown, tables)
             motion = kind_of(repeats_after(block.force, period.steps))
             work = march.accounts().since(before)
             if not motion.periods:
@@ -580,10 +580,10 @@ class TimeIntegration:
         )
 
 
-def _restarted(start: PeriodicResponse, speed: float, ratios: Array, held: DriveState | None) -> DriveState:
-    """Return the end of ``start`` brought to another speed (and to a held twist)."""
+def _restarted(start: PeriodicResponse, speed: float, ratios: Array, wound: DriveState | None) -> DriveState:
+    """Return the end of ``start`` brought to another speed (and to the twist of ``wound``)."""
     speeds = start.end.speeds + (speed - start.speed) * ratios
-    twist = start.twist if held is None else held.twist
+    twist = start.twist if wound is None else wound.twist
     return DriveState(angles=start.end.angles, speeds=speeds, twist=twist)
 
 

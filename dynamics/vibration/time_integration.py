@@ -135,12 +135,12 @@ class TimeMarch:
             turning = start.speeds[pinions[mesh]], start.speeds[wheels[mesh]]
             for back in range(3):
                 # the steps before are those of a steady rotation
-                now = [angle - back * self.step * speed for angle, speed in zip(angles, turning)]
-                x = law.base_radius_1 * now[0] - law.base_radius_2 * now[1]
-                reaction = self._reaction(mesh, now[0], x + law.offset, *turning)
+                turned = [angle - back * self.step * speed for angle, speed in zip(angles, turning)]
+                x = law.base_radius_1 * turned[0] - law.base_radius_2 * turned[1]
+                reaction = self._reaction(mesh, turned[0], x + law.offset, *turning)
                 ports[mesh, 2 * back : 2 * back + 2] = reaction.torque_1[0], reaction.torque_2[0]
                 if back == 0:
-                    ports[mesh, 6:8] = x, now[0]
+                    ports[mesh, 6:8] = x, turned[0]
                     ports[mesh, 10:] = turning
                     ports[mesh, 8:10] = self._outer_given(mesh, x + law.offset, reaction)
                 if accounts and back == 0:
@@ -223,7 +223,7 @@ class TimeMarch:
         left = np.outer(fade(n_samples, self._apart_since, sample_time), self._apart)
         past = fade(1, self._apart_since - 1, sample_time)[0] * self._apart
         asked = np.tile(self._carried.offset - past, (n_samples, 1)) if offsets is None else offsets
-        held = np.ascontiguousarray(asked + left)
+        imposed = np.ascontiguousarray(asked + left)
         drag_laws = kernels.DragLaws(
             torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
         )
@@ -233,11 +233,11 @@ class TimeMarch:
             part = slice(first, min(first + SEGMENT, n_samples))
             count = part.stop - part.start
             if self._following is not None:
-                now = self.state()
+                state = self.state()
                 times = sample_time * np.arange(1.0, count + 1.0)
-                given[part, 4:] = self._following.ahead(now.angles, now.speeds, times)
+                given[part, 4:] = self._following.ahead(state.angles, state.speeds, times)
             commands = kernels.Commands(
-                given=given[part], offsets=held[part], control=control, drags=drag_laws
+                given=given[part], offsets=imposed[part], control=control, drags=drag_laws
             )
             histories.append(np.empty((n_meshes, 7 if self._record_all else 2, count * self.substeps)))
             all_samples.append(np.empty((count, 2 * n_slow + n_drags + 1)))
@@ -358,9 +358,9 @@ class TimeMarch:
         their own."""
         approach, angle = self._carried.ports[mesh, 6:8]
         reach, sides = approach + self._carried.offset[mesh], self.model.wrench_numbers[:, 0]
-        here = self._reaction(mesh, angle, reach)
-        if len(sides) == 0 or (here.force_front if sides[mesh] > 0.0 else here.force_back)[0] > 0.0:
-            return float(here.energy[0])
+        reaction = self._reaction(mesh, angle, reach)
+        if len(sides) == 0 or (reaction.force_front if sides[mesh] > 0.0 else reaction.force_back)[0] > 0.0:
+            return float(reaction.energy[0])
         moved = reach - sides[mesh] * self._carried.apart[0, mesh]
         return float(self._reaction(mesh, angle, moved).energy[0])
 

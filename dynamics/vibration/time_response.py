@@ -88,21 +88,21 @@ def split_lift_off(
     cuts = np.sort(np.asarray(times, float))
     middle = windows.time - 0.5 * windows.duration
     piece = np.searchsorted(cuts, middle, side="right")
-    found = []
+    pieces = []
     for whole in intervals:
         inside = (middle > whole.start) & (middle < whole.end)
         for part in np.unique(piece[inside]):
-            own = np.flatnonzero(inside & (piece == part))
-            found.append(
+            members = np.flatnonzero(inside & (piece == part))
+            pieces.append(
                 LiftOff(
                     mesh=whole.mesh,
-                    start=float(windows.time[own[0]] - windows.duration),
-                    end=float(windows.time[own[-1]]),
-                    out_of_contact=float(windows.out_of_contact[whole.mesh, own].mean()),
-                    longest_gap=float(windows.longest_gap[whole.mesh, own].max()),
+                    start=float(windows.time[members[0]] - windows.duration),
+                    end=float(windows.time[members[-1]]),
+                    out_of_contact=float(windows.out_of_contact[whole.mesh, members].mean()),
+                    longest_gap=float(windows.longest_gap[whole.mesh, members].max()),
                 )
             )
-    return tuple(found)
+    return tuple(pieces)
 
 
 class WindowStatistics:
@@ -167,14 +167,14 @@ class WindowStatistics:
     def lift_off(self, start: float) -> tuple[LiftOff, ...]:
         """Return intervals of windows whose longest gap exceeds the asked share of the mesh period."""
         windows = self.windows(start)
-        found = []
+        intervals = []
         for mesh, meshes_per_turn in enumerate(self._meshes_per_turn):
             with np.errstate(divide="ignore"):
                 mesh_period = 2.0 * pi / (np.abs(windows.speed) * meshes_per_turn)
             lost = np.concatenate(([False], windows.longest_gap[mesh] > self._share * mesh_period, [False]))
             edges = np.flatnonzero(np.diff(lost.astype(int)))
             for a, b in zip(edges[::2], edges[1::2]):
-                found.append(
+                intervals.append(
                     LiftOff(
                         mesh=mesh,
                         start=start + float(a) * windows.duration,
@@ -183,7 +183,7 @@ class WindowStatistics:
                         longest_gap=float(windows.longest_gap[mesh, a:b].max()),
                     )
                 )
-        return tuple(sorted(found, key=lambda one: (one.start, one.mesh)))
+        return tuple(sorted(intervals, key=lambda interval: (interval.start, interval.mesh)))
 
     def _gaps(self, mesh: int, free: NDArray[np.bool_], starts: NDArray[np.int64]) -> Array:
         """Longest time without contact that ends in, or runs through, each window; carried over from block to block."""
@@ -195,7 +195,7 @@ class WindowStatistics:
             length = (b - a) * self._step + (carried if a == 0 else 0.0)
             if b == len(free):
                 self._open[mesh] = length
-            first, last = (int(np.searchsorted(starts, at, side="right")) - 1 for at in (a, b - 1))
+            first, last = (int(np.searchsorted(starts, edge, side="right")) - 1 for edge in (a, b - 1))
             longest[first : last + 1] = np.maximum(longest[first : last + 1], length)
         return longest
 
@@ -228,15 +228,19 @@ def turning_start(system: LinearSystem, laws: Sequence[MeshLaw], speed: float) -
     ratios = pinion_ratios(system, laws)
     n = len(ratios)
     values, load, speeds = [], np.zeros(n), np.zeros(n)
-    for one in system.periodic_loads:
-        own = float(ratios[one.dof]) * speed
-        values.append(float(one.at(np.zeros(1), own)[0]))
-        for part in one.parts:
-            force = part.at_speed(own) * np.exp(-1j * part.phase) * _balanced(system, ratios, one.load)
-            omega = part.order * own
+    for periodic in system.periodic_loads:
+        line_speed = float(ratios[periodic.dof]) * speed
+        values.append(float(periodic.at(np.zeros(1), line_speed)[0]))
+        for part in periodic.parts:
+            force = (
+                part.at_speed(line_speed)
+                * np.exp(-1j * part.phase)
+                * _balanced(system, ratios, periodic.load)
+            )
+            omega = part.order * line_speed
             motion = _forced(system, laws, ratios, force, omega) if omega else np.zeros(n)
-            held = force + omega**2 * system.inertia @ motion - 1j * omega * system.damping @ motion
-            load += held.real
+            static = force + omega**2 * system.inertia @ motion - 1j * omega * system.damping @ motion
+            load += static.real
             speeds += (1j * omega * motion).real
     return TurningStart(values=np.array(values), load=load, speeds=speeds)
 
@@ -258,8 +262,8 @@ def _forced(
         stiffness += law.mean_stiffness * np.outer(row, row)
     still = system.inertia @ ratios
     scale = np.abs(stiffness).max() / np.abs(np.outer(still, still)).max()
-    held = stiffness + scale * np.outer(still, still)
-    return np.asarray(np.linalg.solve(held - omega**2 * system.inertia + 1j * omega * system.damping, force))
+    fixed = stiffness + scale * np.outer(still, still)
+    return np.asarray(np.linalg.solve(fixed - omega**2 * system.inertia + 1j * omega * system.damping, force))
 
 
 DEFAULT_SAMPLING = Sampling()
@@ -358,7 +362,11 @@ class TimeResponse:
             drag_torque={name: torque[samples] for name, torque in self.drag_torque.items()},
             torque=self.torque[:, : int((time - begin) / self.torque_step)],
             windows=replace(self.windows, **kept),
-            lift_off=tuple(replace(one, end=min(one.end, time)) for one in self.lift_off if one.start < time),
+            lift_off=tuple(
+                replace(interval, end=min(interval.end, time))
+                for interval in self.lift_off
+                if interval.start < time
+            ),
             energy=None,
             sections=sections,
             warnings=(*self.warnings, f"what comes after {time:.2f} s was not evaluated: {reason}"),
@@ -449,14 +457,14 @@ def run_schedule(
     models = {id(system): march.model}
     readers: dict[int, StateReader] = {}
 
-    def watched(own: TimeMarch, speed: float) -> TimeMarch:
+    def watched(started: TimeMarch, speed: float) -> TimeMarch:
         """The march with the sections asked for read in it, from a speed of the first pinion on."""
         if sampling.sections is not None:
-            key = id(own.system)
+            key = id(started.system)
             if key not in readers:
-                readers[key] = StateReader(sampling.sections(speed), own.model, own.propagator)
-            own.watch(readers[key])
-        return own
+                readers[key] = StateReader(sampling.sections(speed), started.model, started.propagator)
+            started.watch(readers[key])
+        return started
 
     watched(march, abs(float(command.speed[0])))
     n_periodic = len(system.periodic_loads)
@@ -489,29 +497,29 @@ def run_schedule(
     for first, count, limit in _chunks(command.time, limits, n_samples, sample_rate, per_window):
         limit_at[first : first + count] = limit
         control = replace(control, torque_limit=limit)
-        at = command.time[0] + np.arange(first, first + count + 1) / sample_rate
-        target = np.interp(at, command.time, command.speed) * drive_ratio
+        times = command.time[0] + np.arange(first, first + count + 1) / sample_rate
+        target = np.interp(times, command.time, command.speed) * drive_ratio
         given = np.zeros((count, 4 + n_periodic))
         given[:, 0] = inertia * np.diff(target) * sample_rate
         if command.twist is not None:
-            given[:, 1] = np.interp(at[1:], command.time, command.twist)
+            given[:, 1] = np.interp(times[1:], command.time, command.twist)
         given[:, 2] = target[1:]
         if command.torque is not None:
-            asked = np.interp(at[1:], command.time, command.torque)
+            asked = np.interp(times[1:], command.time, command.torque)
             given[:, 3] = asked
             given[:, 1] = np.interp(asked, *feed_forward)
         offsets = None
         if command.offsets is not None:
-            offsets = np.column_stack([np.interp(at[1:], command.time, row) for row in command.offsets.T])
+            offsets = np.column_stack([np.interp(times[1:], command.time, row) for row in command.offsets.T])
         block = march.advance(
             given, offsets=offsets, speed_control=control, torque_control=bracing, drags=tables
         )
-        now = abs(float(block.slow_speed[-1, 0])) / drive_ratio
-        band = drivetrain.at(now)
+        end_speed = abs(float(block.slow_speed[-1, 0])) / drive_ratio
+        band = drivetrain.at(end_speed)
         if band is not march.system:
             if id(band) not in models:
                 models[id(band)] = march_model(band, laws, names, sampling.cutoff, rises)
-            march = watched(march.continued(band, models[id(band)], block.force.mean(axis=1)), now)
+            march = watched(march.continued(band, models[id(band)], block.force.mean(axis=1)), end_speed)
         dynamic = radius * block.force
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
         if readers:

@@ -99,8 +99,8 @@ def join(elements: FiniteElements, contact: Contact) -> SurfaceJoint:
     if not (np.isfinite(reach) and reach > 0.0):
         raise ConditionError(f"{_place(contact)}: reach = {reach:g} m must be above 0 m")
     pairs = _candidates(first, second, reach)
-    at, ref_a, ref_b, weights = _common_points(first, second, pairs, reach)
-    weights = weights * _stretch(points, a.facets, first, at[:, 0], ref_a)
+    index, ref_a, ref_b, weights = _common_points(first, second, pairs, reach)
+    weights = weights * _stretch(points, a.facets, first, index[:, 0], ref_a)
     touching = float(weights.sum())
     smaller = min(a.area, b.area)
     if touching < contact.least_coverage * smaller or touching == 0.0:
@@ -111,8 +111,8 @@ def join(elements: FiniteElements, contact: Contact) -> SurfaceJoint:
     n_nodes = len(points)
     return SurfaceJoint(
         weights,
-        _interpolation(a, first.facet[at[:, 0]], ref_a, n_nodes),
-        _interpolation(b, second.facet[at[:, 1]], ref_b, n_nodes),
+        _interpolation(a, first.facet[index[:, 0]], ref_a, n_nodes),
+        _interpolation(b, second.facet[index[:, 1]], ref_b, n_nodes),
         touching / a.area,
         touching / b.area,
     )
@@ -137,8 +137,8 @@ def _candidates(first: FacetTriangles, second: FacetTriangles, reach: float) -> 
     """(k, 2) pairs of triangles that are near and face each other."""
     radius = first.radius + second.radius.max() + reach
     near = cKDTree(second.centre).query_ball_point(first.centre, radius, return_sorted=True)
-    i = np.repeat(np.arange(len(near)), [len(found) for found in near])
-    j = np.concatenate([np.asarray(found, dtype=np.int64) for found in near] or [np.empty(0, np.int64)])
+    i = np.repeat(np.arange(len(near)), [len(others) for others in near])
+    j = np.concatenate([np.asarray(others, dtype=np.int64) for others in near] or [np.empty(0, np.int64)])
     facing = np.einsum("nd,nd->n", first.normal[i], second.normal[j]) < OPPOSED
     return np.column_stack([i[facing], j[facing]]).astype(np.int32)
 
@@ -181,13 +181,17 @@ def _barycentric(triangles: FloatArray, places: FloatArray) -> FloatArray:
 
 
 def _stretch(
-    points: FloatArray, facets: IndexArray, triangles: FacetTriangles, at: IndexArray, reference: FloatArray
+    points: FloatArray,
+    facets: IndexArray,
+    triangles: FacetTriangles,
+    index: IndexArray,
+    reference: FloatArray,
 ) -> FloatArray:
     """(n,) area of the curved facet over the area of its flat triangle, at reference points."""
     slopes = SIDES[facets.shape[1]].gradients(reference)
-    tangents = np.einsum("nak,nad->nkd", slopes, points[facets[triangles.facet[at]]])
+    tangents = np.einsum("nak,nad->nkd", slopes, points[facets[triangles.facet[index]]])
     curved = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
-    return np.asarray(curved * triangles.reference_area[at] / triangles.area[at])
+    return np.asarray(curved * triangles.reference_area[index] / triangles.area[index])
 
 
 def _interpolation(

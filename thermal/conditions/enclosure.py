@@ -95,8 +95,8 @@ class EnclosureTerms:
     def links(self) -> list[tuple[str, str]]:
         """Pairs of surfaces that exchange heat."""
         names = self.enclosure.surfaces
-        at = np.argwhere(self.transfer > 1e-12)
-        return [(names[i], names[j]) for i, j in at if i != j]
+        pairs = np.argwhere(self.transfer > 1e-12)
+        return [(names[i], names[j]) for i, j in pairs if i != j]
 
     def irradiation(self, temperature: FloatArray) -> FloatArray:
         """(n,) G [W/m2]"""

@@ -47,15 +47,15 @@ def sorted_in(corners: Floats, low: Floats, size: Floats, counts: Integers) -> t
     for cell in range(len(start) - 1):
         start[cell + 1] += start[cell]
     fill = start[:-1].copy()
-    found = np.empty(start[-1], dtype=np.int64)
+    listed = np.empty(start[-1], dtype=np.int64)
     for t in range(n):
         for i in range(first[t, 0], last[t, 0] + 1):
             for j in range(first[t, 1], last[t, 1] + 1):
                 for k in range(first[t, 2], last[t, 2] + 1):
                     cell = (i * counts[1] + j) * counts[2] + k
-                    found[fill[cell]] = t
+                    listed[fill[cell]] = t
                     fill[cell] += 1
-    return start, found
+    return start, listed
 
 
 @njit(cache=True)
@@ -77,7 +77,7 @@ def first_hits(
     start, listed = cells
     hits = np.full(len(origins), -1, dtype=np.int64)
     step = np.empty(3, dtype=np.int64)
-    at = np.empty(3, dtype=np.int64)
+    index = np.empty(3, dtype=np.int64)
     reach = np.empty(3)
     rise = np.empty(3)
     touching = -1e-9 * (size[0] * counts[0] + size[1] * counts[1] + size[2] * counts[2])
@@ -86,18 +86,18 @@ def first_hits(
         dx, dy, dz = directions[r]
         for axis in range(3):
             place, along = origins[r, axis] - low[axis], directions[r, axis]
-            at[axis] = min(max(int(place / size[axis]), 0), counts[axis] - 1)
+            index[axis] = min(max(int(place / size[axis]), 0), counts[axis] - 1)
             if along > 0.0:
                 step[axis], rise[axis] = 1, size[axis] / along
-                reach[axis] = ((at[axis] + 1) * size[axis] - place) / along
+                reach[axis] = ((index[axis] + 1) * size[axis] - place) / along
             elif along < 0.0:
                 step[axis], rise[axis] = -1, -size[axis] / along
-                reach[axis] = (at[axis] * size[axis] - place) / along
+                reach[axis] = (index[axis] * size[axis] - place) / along
             else:
                 step[axis], rise[axis], reach[axis] = 0, np.inf, np.inf
         nearest = np.inf
         while True:
-            cell = (at[0] * counts[1] + at[1]) * counts[2] + at[2]
+            cell = (index[0] * counts[1] + index[1]) * counts[2] + index[2]
             for place_in_list in range(start[cell], start[cell + 1]):
                 t = listed[place_in_list]
                 ax, ay, az = corners[t, 0]
@@ -121,8 +121,8 @@ def first_hits(
             axis = 0 if reach[0] <= reach[1] and reach[0] <= reach[2] else (1 if reach[1] <= reach[2] else 2)
             if nearest <= reach[axis] or not np.isfinite(reach[axis]):
                 break
-            at[axis] += step[axis]
-            if at[axis] < 0 or at[axis] >= counts[axis]:
+            index[axis] += step[axis]
+            if index[axis] < 0 or index[axis] >= counts[axis]:
                 break
             reach[axis] += rise[axis]
     return hits

@@ -144,9 +144,9 @@ def check_networks(networks: Sequence[StreamNetwork]) -> None:
         _check_flows(network)
 
 
-def _require_place(what: str, name: str, among: set[str]) -> None:
+def _require_place(label: str, name: str, among: set[str]) -> None:
     if name not in among:
-        raise ConditionError(f"{what}: unknown place {name!r}; known: {', '.join(sorted(among))}")
+        raise ConditionError(f"{label}: unknown place {name!r}; known: {', '.join(sorted(among))}")
 
 
 def _check_ends(network: StreamNetwork) -> None:

@@ -173,7 +173,7 @@ def heat_balance(
     volumes : volume of a stream network -> outlet temperature [K]
     """
     elements = setup.elements
-    held = held_by(elements, conditions)
+    holders = held_by(elements, conditions)
     numbers = _volume_numbers(elements, conditions)
     rows: list[HeatFlow] = []
     for condition in conditions:
@@ -192,7 +192,7 @@ def heat_balance(
                 rows.extend(network_rows(elements, condition, temperature, volumes or {}, numbers))
             case PrescribedTemperature():
                 surface = elements.surfaces[condition.surface]
-                power = float(np.sum(reactions[surface.nodes] / held[surface.nodes]))
+                power = float(np.sum(reactions[surface.nodes] / holders[surface.nodes]))
                 rows.append(surface_row(surface, condition.surface, condition.kind, power, temperature))
             case SurfaceSource():
                 surface = elements.surfaces[condition.surface]

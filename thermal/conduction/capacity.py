@@ -138,16 +138,16 @@ class VariableConduction:
         """
         result = np.empty_like(temperature)
         for number, (name, law) in enumerate(self._laws):
-            mine = self._body == number
-            at = temperature[mine]
-            found = np.broadcast_to(law(at), at.shape)
-            bad = ~(np.isfinite(found) & (found > 0.0))
+            of_law = self._body == number
+            local = temperature[of_law]
+            conductivity = np.broadcast_to(law(local), local.shape)
+            bad = ~(np.isfinite(conductivity) & (conductivity > 0.0))
             if bad.any():
                 raise ConditionError(
-                    f"conductivity of body {name!r} is {found[bad][0]} W/(m K) at {at[bad][0]:.6g} K; it must be "
-                    "positive at every temperature that occurs: limit the law to its range"
+                    f"conductivity of body {name!r} is {conductivity[bad][0]} W/(m K) at {local[bad][0]:.6g} K; it "
+                    "must be positive at every temperature that occurs: limit the law to its range"
                 )
-            result[mine] = found
+            result[of_law] = conductivity
         return result
 
     def heat_out(self, temperature: FloatArray) -> FloatArray:
@@ -173,8 +173,8 @@ class VariableConduction:
     def slope(self, temperature: FloatArray) -> Operator:
         """The operator x -> int k' x grad T . grad N_a."""
         fine = self._elements.fine
-        at = fine.at_points(temperature, self._cells)
-        rise = (self.value(at + DIFFERENCE) - self.value(at - DIFFERENCE)) / (2.0 * DIFFERENCE)
+        local = fine.at_points(temperature, self._cells)
+        rise = (self.value(local + DIFFERENCE) - self.value(local - DIFFERENCE)) / (2.0 * DIFFERENCE)
         flux = _scaled(rise, fine.gradient(temperature, self._cells))
 
         def apply(x: FloatArray) -> FloatArray:

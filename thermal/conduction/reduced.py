@@ -376,9 +376,9 @@ class Projection:
         residual = self.matrix @ a - self.source
         for condition in self.conditions:
             if isinstance(condition, Film | Exchange | Contact):
-                found = self._coefficient(condition, a)
-                assert found is not None
-                residual += found.value * self.unit(condition, a)
+                law = self._coefficient(condition, a)
+                assert law is not None
+                residual += law.value * self.unit(condition, a)
             elif isinstance(condition, Radiation):
                 surface = self.reduced.surface(condition.surface)
                 flux = (surface.points @ a) ** 4 - condition.surroundings_temperature**4
@@ -397,9 +397,9 @@ class Projection:
         jacobian = self.matrix.copy()
         for condition in self.conditions:
             if isinstance(condition, Film | Exchange | Contact):
-                found = self._coefficient(condition, a)
-                assert found is not None
-                jacobian += found.value * self._mass(condition)
+                law = self._coefficient(condition, a)
+                assert law is not None
+                jacobian += law.value * self._mass(condition)
                 slope = self._law_slope(condition, a)
                 if slope.any():
                     jacobian += np.outer(self.unit(condition, a), slope)
@@ -448,13 +448,13 @@ class Projection:
     def step(self, residual: FloatArray, factor: Factor, a: FloatArray) -> FloatArray:
         """(m,) Newton step."""
         gap = [float(row @ a) - temperature for row, temperature in self.held]
-        found = lu_solve(factor, -np.append(residual, gap), check_finite=False)
-        self.multipliers = found[len(residual) :]
-        return np.asarray(found[: len(residual)])
+        solution = lu_solve(factor, -np.append(residual, gap), check_finite=False)
+        self.multipliers = solution[len(residual) :]
+        return np.asarray(solution[: len(residual)])
 
     def links(self, a: FloatArray) -> list[Link]:
         """Every local conductance at coefficients ``a``: films, radiation, exchanges, contacts."""
-        found: list[Link] = []
+        links: list[Link] = []
         nothing = np.zeros(self.reduced.size)
         for condition in self.conditions:
             if isinstance(condition, Film):
@@ -463,19 +463,19 @@ class Projection:
                 assert law is not None
                 excess = surface.area * (float(surface.mean @ a) - condition.fluid_temperature)
                 slope = law.value * surface.load + excess * self._law_slope(condition, a)
-                found.append(Link(condition, law.value * self.unit(condition, a), law.value * excess, slope))
+                links.append(Link(condition, law.value * self.unit(condition, a), law.value * excess, slope))
             elif isinstance(condition, Exchange | Contact):
                 law = self._coefficient(condition, a)
                 assert law is not None
-                found.append(Link(condition, law.value * self.unit(condition, a), 0.0, nothing))
+                links.append(Link(condition, law.value * self.unit(condition, a), 0.0, nothing))
             elif isinstance(condition, Radiation):
                 surface = self.reduced.surface(condition.surface)
                 flux = (surface.points @ a) ** 4 - condition.surroundings_temperature**4
                 column = condition.emissivity * STEFAN_BOLTZMANN * (surface.weights * flux) @ surface.points
-                found.append(Link(condition, np.asarray(column), 0.0, nothing))
+                links.append(Link(condition, np.asarray(column), 0.0, nothing))
             elif isinstance(condition, Enclosure):
-                found.append(Link(condition, self.enclosures[condition].heat_out(a), 0.0, nothing))
-        return found
+                links.append(Link(condition, self.enclosures[condition].heat_out(a), 0.0, nothing))
+        return links
 
     def answers(self, a: FloatArray, loads: FloatArray) -> FloatArray:
         """(m, k) changes of the field by loads (m, k) [W] on the shapes, with the exact Jacobian."""
@@ -487,17 +487,17 @@ class Projection:
     def balance(self, a: FloatArray) -> HeatBalance:
         """Rows of the heat balance at coefficients ``a``, two for an exchange or contact."""
         rows: list[HeatFlow] = []
-        held = iter(self.multipliers)
+        multipliers = iter(self.multipliers)
         for condition in self.conditions:
-            found = self._coefficient(condition, a)
+            law = self._coefficient(condition, a)
             match condition:
                 case Film():
                     surface = self.reduced.surface(condition.surface)
-                    assert found is not None
+                    assert law is not None
                     excess = condition.fluid_temperature - float(surface.mean @ a)
                     rows.append(
                         self._row(
-                            condition.surface, condition.kind, found.value * surface.area * excess, a, found
+                            condition.surface, condition.kind, law.value * surface.area * excess, a, law
                         )
                     )
                 case Radiation():
@@ -510,18 +510,18 @@ class Projection:
                     for name, power in zip(condition.surfaces, powers.tolist(), strict=True):
                         rows.append(self._row(name, condition.kind, power, a))
                 case Exchange() | Contact():
-                    assert found is not None
+                    assert law is not None
                     first, second = self._means(condition)
                     area = (
                         self.reduced.joint(condition).area
                         if isinstance(condition, Contact)
                         else self.reduced.surface(condition.surface_a).area
                     )
-                    power = found.value * area * float((second - first) @ a)
-                    rows.append(self._row(condition.surface_a, condition.kind, power, a, found))
-                    rows.append(self._row(condition.surface_b, condition.kind, -power, a, found))
+                    power = law.value * area * float((second - first) @ a)
+                    rows.append(self._row(condition.surface_a, condition.kind, power, a, law))
+                    rows.append(self._row(condition.surface_b, condition.kind, -power, a, law))
                 case PrescribedTemperature():
-                    rows.append(self._row(condition.surface, condition.kind, float(next(held)), a))
+                    rows.append(self._row(condition.surface, condition.kind, float(next(multipliers)), a))
                 case SurfaceSource():
                     rows.append(self._row(condition.surface, condition.kind, condition.power, a))
                 case BodySource():
@@ -537,14 +537,14 @@ class Projection:
     def _row(
         self, surface: str, kind: str, power: float, a: FloatArray, coefficient: FilmCoefficient | None = None
     ) -> HeatFlow:
-        own = self.reduced.surface(surface)
+        face = self.reduced.surface(surface)
         return HeatFlow(
             surface=surface,
             kind=kind,
             power=power,
-            area=own.area,
-            mean_temperature=float(own.mean @ a),
-            piece=own.piece,
+            area=face.area,
+            mean_temperature=float(face.mean @ a),
+            piece=face.piece,
             coefficient=coefficient,
         )
 

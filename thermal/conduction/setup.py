@@ -128,10 +128,10 @@ def check_heat_paths(
     )
 
 
-def _require_known(what: str, name: str, known: Collection[str]) -> None:
+def _require_known(kind: str, name: str, known: Collection[str]) -> None:
     if name not in known:
         near = get_close_matches(name, known, n=3, cutoff=0.4) or sorted(known)[:5]
-        raise ConditionError(f"unknown {what} {name!r}; nearest: {', '.join(near)}")
+        raise ConditionError(f"unknown {kind} {name!r}; nearest: {', '.join(near)}")
 
 
 def _values(condition: Condition) -> Iterator[tuple[str, float, bool]]:
@@ -172,20 +172,20 @@ def _check_combinations(conditions: Sequence[Condition]) -> None:
     for condition in conditions:
         for name in surfaces_of(condition):
             on.setdefault(name, []).append(condition)
-    for name, found in on.items():
-        alone = [c for c in found if isinstance(c, Adiabatic | PrescribedTemperature)]
+    for name, on_surface in on.items():
+        alone = [c for c in on_surface if isinstance(c, Adiabatic | PrescribedTemperature)]
         if alone and isinstance(alone[0], PrescribedTemperature):
-            found = [c for c in found if not isinstance(c, Enclosure)]
-        if alone and len(found) > 1:
-            others = ", ".join(type(c).__name__ for c in found if c is not alone[0])
+            on_surface = [c for c in on_surface if not isinstance(c, Enclosure)]
+        if alone and len(on_surface) > 1:
+            others = ", ".join(type(c).__name__ for c in on_surface if c is not alone[0])
             raise ConditionError(
                 f"surface {name!r} is {type(alone[0]).__name__} and carries {others} as well; keep one"
             )
     seen: set[tuple[object, ...]] = set()
-    for what, place, kind in _rows(conditions):
-        if (what, place, kind) in seen:
-            raise ConditionError(f"{place}: two {what} of kind {kind!r}; give each a kind of its own")
-        seen.add((what, place, kind))
+    for booked, place, kind in _rows(conditions):
+        if (booked, place, kind) in seen:
+            raise ConditionError(f"{place}: two {booked} of kind {kind!r}; give each a kind of its own")
+        seen.add((booked, place, kind))
 
 
 def _rows(conditions: Sequence[Condition]) -> Iterator[tuple[str, str, str]]:
@@ -221,12 +221,12 @@ def _check_open(elements: FiniteElements, conditions: Sequence[Condition]) -> No
 
 
 def _check_prescribed(elements: FiniteElements, conditions: Sequence[Condition]) -> None:
-    held: dict[int, tuple[str, float]] = {}
+    prescribed: dict[int, tuple[str, float]] = {}
     for condition in conditions:
         if not isinstance(condition, PrescribedTemperature):
             continue
         for node in elements.surfaces[condition.surface].nodes.tolist():
-            name, value = held.setdefault(node, (condition.surface, condition.temperature))
+            name, value = prescribed.setdefault(node, (condition.surface, condition.temperature))
             if value != condition.temperature:
                 raise ConditionError(
                     f"surfaces {name!r} at {value:g} K and {condition.surface!r} at "
@@ -331,15 +331,15 @@ def audit_conditions(conditions: Iterable[Condition], wall_excess: float = 50.0)
     """
     listed = list(conditions)
     radiating = {c.surface for c in listed if isinstance(c, Radiation) and c.emissivity > 0.0}
-    found = []
+    sentences = []
     for film in listed:
         if isinstance(film, Film):
             text = radiation_counted_twice(
                 film.surface, film.coefficient_at(wall_excess), film.surface in radiating
             )
             if text is not None:
-                found.append(text)
-    return tuple(found)
+                sentences.append(text)
+    return tuple(sentences)
 
 
 USUAL = 293.15

@@ -152,22 +152,22 @@ class VolumeTerms:
         s, m = len(self.films), len(self.volumes)
         by_mean, by_volume = np.zeros((s, s)), np.zeros((s, m))
         for i, (film, t, v) in enumerate(zip(self.films, means, volumes[self.of_film], strict=True)):
-            for target, at, dt, dv in (
+            for target, column, dt, dv in (
                 (by_mean, i, DIFFERENCE, 0.0),
                 (by_volume, int(self.of_film[i]), 0.0, DIFFERENCE),
             ):
                 rise = _value(film, t + dt, v + dv) - _value(film, t - dt, v - dv)
-                target[i, at] = rise / (2.0 * DIFFERENCE)
+                target[i, column] = rise / (2.0 * DIFFERENCE)
         slope = np.array([inlet_share_slope(n) if p else 0.0 for n, p in zip(state.units, self.plug)])
         per_unit = slope * (state.inlet - volumes) / np.where(self.plug, self.rate, 1.0)
         heated = per_unit[:, None] * (self.member * self.area)
         local = state.share[:, None] * self.inlet_matrix + np.diag(1.0 - state.share)
-        own = (1.0 - self.supply_share)[:, None]
+        unsupplied = (1.0 - self.supply_share)[:, None]
         return Slopes(
             by_mean,
             by_volume,
-            own * (heated @ by_mean)[self.of_film],
-            own * (heated @ by_volume + local)[self.of_film],
+            unsupplied * (heated @ by_mean)[self.of_film],
+            unsupplied * (heated @ by_volume + local)[self.of_film],
         )
 
     def volume_block(

@@ -290,10 +290,10 @@ def length_mean(
     x, volume = elements.at_points(elements.mesh.points[:, 0], cells)
     values, _ = elements.at_points(temperature, cells)
     edges = np.linspace(min(start, end), max(start, end), slices + 1)
-    at = np.searchsorted(edges, x) - 1
-    inside = (at >= 0) & (at < slices)
-    weight = np.bincount(at[inside], volume[inside], minlength=slices)
-    heat = np.bincount(at[inside], (values * volume)[inside], minlength=slices)
+    slice_of = np.searchsorted(edges, x) - 1
+    inside = (slice_of >= 0) & (slice_of < slices)
+    weight = np.bincount(slice_of[inside], volume[inside], minlength=slices)
+    heat = np.bincount(slice_of[inside], (values * volume)[inside], minlength=slices)
     filled = weight > 0.0
     if not filled.any():
         return float(values @ volume / volume.sum())

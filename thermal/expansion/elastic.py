@@ -127,16 +127,16 @@ class ElasticSetup:
         fine = elements.fine.elasticity(young, poisson)
         self.free = FreePieces.of(elements, fixed)
         """Pieces on six determinate supports, solved without them."""
-        held = fixed & ~self.free.nodes[:, None]
-        self._held_rows = _rows_of(elements, fine, held)
-        self._held = held.ravel()
-        held_corners = held[elements.corners].ravel()
-        self.matrix = constrain(elements.fine.block_matrix(fine), self._held, overwrite=True)
-        coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners, overwrite=True)
+        constrained = fixed & ~self.free.nodes[:, None]
+        self._constrained_rows = _rows_of(elements, fine, constrained)
+        self._constrained = constrained.ravel()
+        fixed_corners = constrained[elements.corners].ravel()
+        self.matrix = constrain(elements.fine.block_matrix(fine), self._constrained, overwrite=True)
+        coarse_matrix = constrain(linear_stiffness(elements, young, poisson), fixed_corners, overwrite=True)
         modes = rigid_modes(elements.mesh.points[elements.corners])
         self.multigrid = TwoLevelMultigrid(
-            HeldMatrix(self.matrix, self._held),
-            HeldMatrix(coarse_matrix, held_corners),
+            HeldMatrix(self.matrix, self._constrained),
+            HeldMatrix(coarse_matrix, fixed_corners),
             elements.prolongation,
             modes,
         )
@@ -162,23 +162,23 @@ class ElasticSetup:
             energy (Fischer, Comput. Methods Appl. Mech. Eng. 163 (1998) 193)
         """
         load = self.load(temperature, reference)
-        right = np.where(self._held, 0.0, load.ravel())
+        right = np.where(self._constrained, 0.0, load.ravel())
         solution = self._solved(right, _combination(known, right), tolerance)
         values = self.free.onto_supports(solution.values.reshape(-1, 3))
-        rows, columns, blocks = self._held_rows
+        rows, columns, blocks = self._constrained_rows
         forces = np.zeros_like(values)
         np.add.at(forces, rows, np.einsum("kij,kj->ki", blocks, values[columns]))
-        reactions = np.where(self._held.reshape(-1, 3), forces - load, 0.0)
+        reactions = np.where(self._constrained.reshape(-1, 3), forces - load, 0.0)
         reactions += self.free.reactions(load)
-        found = (*known, Known(right, solution.values))[-MOST_KNOWN:]
-        return Displacement(values, reactions, solution.residuals, found)
+        latest = (*known, Known(right, solution.values))[-MOST_KNOWN:]
+        return Displacement(values, reactions, solution.residuals, latest)
 
     def deflection(self, load: FloatArray, tolerance: float = 1e-8) -> FloatArray:
         """Displacement (n_nodes, 3) [m] under nodal forces (n_nodes, 3) [N]; those on free pieces must balance.
 
         Raises ThermalNotConverged with its residuals.
         """
-        solution = self._solved(np.where(self._held, 0.0, load.ravel()), None, tolerance)
+        solution = self._solved(np.where(self._constrained, 0.0, load.ravel()), None, tolerance)
         return self.free.onto_supports(solution.values.reshape(-1, 3))
 
     def _solved(self, load: FloatArray, start: FloatArray | None, tolerance: float) -> LinearSolution:
@@ -188,13 +188,13 @@ class ElasticSetup:
         except ThermalNotConverged as stalled:
             if len(load) > DIRECT:
                 raise
-            held = self._held | self.free.pins.ravel()
-            matrix = sparse.csr_array(constrain(self.matrix, held))
+            constrained = self._constrained | self.free.pins.ravel()
+            matrix = sparse.csr_array(constrain(self.matrix, constrained))
             try:
                 factor = DirectFactor(matrix, self.elements.mesh.points, np.arange(0, len(load), 3))
             except LinAlgError:
                 raise stalled from None
-            values = factor(np.where(held, 0.0, load))
+            values = factor(np.where(constrained, 0.0, load))
             left = float(np.linalg.norm(load - self.matrix @ values) / np.linalg.norm(load))
             return LinearSolution(values, (*stalled.residuals, left))
 
@@ -248,8 +248,8 @@ def _rows_of(
     """Rows, columns and blocks of the matrix entries whose row has a held direction."""
     level = elements.fine
     rows = np.repeat(np.arange(level.n_nodes, dtype=np.int32), np.diff(level.indptr))
-    held: BoolArray = np.asarray(fixed.any(axis=1))
-    chosen = np.flatnonzero(held[rows])
+    constrained: BoolArray = np.asarray(fixed.any(axis=1))
+    chosen = np.flatnonzero(constrained[rows])
     return rows[chosen], level.indices[chosen], blocks[chosen]
 
 
@@ -359,11 +359,11 @@ def three_two_one(points: FloatArray, nodes: IndexArray) -> list[tuple[int, tupl
     points : (n_nodes, 3) [m]. The first node is held in x, y and z, the second across its line to the first,
     the third across the plane of the three. Raises ElasticError if all nodes lie on one line.
     """
-    at = points[nodes]
-    first = int(np.argmax(np.linalg.norm(at - at.mean(axis=0), axis=1)))
-    second = int(np.argmax(np.linalg.norm(at - at[first], axis=1)))
-    a, b = at[first], at[second]
-    normals = np.cross(b - a, at - a)
+    places = points[nodes]
+    first = int(np.argmax(np.linalg.norm(places - places.mean(axis=0), axis=1)))
+    second = int(np.argmax(np.linalg.norm(places - places[first], axis=1)))
+    a, b = places[first], places[second]
+    normals = np.cross(b - a, places - a)
     third = int(np.argmax(np.linalg.norm(normals, axis=1)))
     if np.linalg.norm(normals[third]) <= 1e-9 * float((b - a) @ (b - a)):
         raise ElasticError("support surface: all its nodes lie on one line; choose a surface with an extent")
@@ -380,11 +380,11 @@ def check_held(elements: FiniteElements, fixed: BoolArray) -> None:
     """Check that every connected piece has six held directions or more (ElasticError)."""
     mesh = elements.mesh
     piece = elements.piece_of_node
-    held = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
-    for number in np.flatnonzero(held < 6):
+    count = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
+    for number in np.flatnonzero(count < 6):
         names = [b for b, cells in mesh.bodies.items() if (elements.components[cells] == number).any()]
         raise ElasticError(
-            f"body {', '.join(names)} is held in {held[number]:.0f} directions; a piece needs at least six"
+            f"body {', '.join(names)} is held in {count[number]:.0f} directions; a piece needs at least six"
         )
 
 
@@ -403,9 +403,9 @@ class FreePieces:
     def of(cls, elements: FiniteElements, fixed: BoolArray) -> "FreePieces":
         """Find them; fixed : (n_nodes, 3) held directions."""
         piece = elements.piece_of_node
-        held = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
+        count = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
         points = elements.mesh.points
-        members = (np.flatnonzero(piece == number).astype(np.int32) for number in np.flatnonzero(held == 6))
+        members = (np.flatnonzero(piece == number).astype(np.int32) for number in np.flatnonzero(count == 6))
         determinate = (nodes for nodes in members if _is_determinate(points[nodes], fixed[nodes]))
         return cls(points, fixed, tuple(determinate))
 
@@ -426,8 +426,8 @@ class FreePieces:
         """Displacement (n_nodes, 3) [m] with every piece moved rigidly so that its supports stand still."""
         moved = displacement.copy()
         for nodes in self.members:
-            modes, held = _motions(self.points[nodes]), self.fixed[nodes].ravel()
-            shares = np.linalg.solve(modes[held], displacement[nodes].ravel()[held])
+            modes, fixed = _motions(self.points[nodes]), self.fixed[nodes].ravel()
+            shares = np.linalg.solve(modes[fixed], displacement[nodes].ravel()[fixed])
             moved[nodes] -= (modes @ shares).reshape(-1, 3)
         return np.where(self.pins, 0.0, moved)
 
@@ -435,9 +435,9 @@ class FreePieces:
         """Forces (n_nodes, 3) [N] with which six supports balance what ``load`` lacks to equilibrium."""
         result = np.zeros_like(load)
         for nodes in self.members:
-            modes, held = _motions(self.points[nodes]), self.fixed[nodes]
-            forces = np.zeros(held.shape)
-            forces[held] = np.linalg.solve(modes[held.ravel()].T, -(modes.T @ load[nodes].ravel()))
+            modes, fixed = _motions(self.points[nodes]), self.fixed[nodes]
+            forces = np.zeros(fixed.shape)
+            forces[fixed] = np.linalg.solve(modes[fixed.ravel()].T, -(modes.T @ load[nodes].ravel()))
             result[nodes] = forces
         return result
 

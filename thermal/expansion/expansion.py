@@ -238,9 +238,9 @@ class DeformedGeometry:
     def _rigid(self, surface: str) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Centre, mean shift [m] and rotation [rad] of a surface."""
         face = self.surfaces[surface]
-        at = face.at_points(self.points).reshape(-1, 3)
+        places = face.at_points(self.points).reshape(-1, 3)
         moved = face.at_points(self.displacement).reshape(-1, 3)
-        return rigid_motion(at, moved, face.weights.ravel())
+        return rigid_motion(places, moved, face.weights.ravel())
 
     def _move(self, piece: int, centre: FloatArray, shift: FloatArray, rotation: FloatArray) -> None:
         """Add a small rigid motion about ``centre`` to one piece."""
@@ -360,12 +360,12 @@ class DeformedGeometry:
 
     def centre_distances(self) -> tuple[CentreDistance, ...]:
         """Read the axes of all pairs of gears that face each other."""
-        found = []
+        distances = []
         for a, b in combinations(self.model.gears, 2):
             overlap = 0.5 * (a.face_width + b.face_width) - abs(a.centre[0] - b.centre[0])
             if a.shaft != b.shaft and overlap > 0.0:
-                found.append(self._centre_distance(a, b))
-        return tuple(found)
+                distances.append(self._centre_distance(a, b))
+        return tuple(distances)
 
     def _centre_distance(self, a: GearStation, b: GearStation) -> CentreDistance:
         plane = 0.5 * (a.centre[0] + b.centre[0])

@@ -64,8 +64,8 @@ class Cylinder:
         across = np.column_stack(rest)
         radius = np.hypot(across[:, 0], across[:, 1])
         cos, sin = (across / radius[:, None]).T
-        one = np.ones_like(cos)
-        basis = np.column_stack([one, cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
+        unit = np.ones_like(cos)
+        basis = np.column_stack([unit, cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
         basis = np.hstack([basis, along[:, None] * basis[:, :3]])
         return cls(
             surface=surface,
@@ -73,7 +73,7 @@ class Cylinder:
             sin=sin,
             off=_radius(surface, points, centre) - radius,
             radial=_fit(basis, area),
-            axial=_fit(np.column_stack([one, along, cos, sin]), area),
+            axial=_fit(np.column_stack([unit, along, cos, sin]), area),
             turn=area / radius / area.sum(),
         )
 
@@ -195,11 +195,11 @@ class ExpansionSetup:
 
     def cylinder(self, surface: str, centre: Point) -> Cylinder:
         """A cylindrical surface about ``centre``, its fit found once."""
-        found = self._cylinders.get((surface, centre))
-        if found is None:
+        cylinder = self._cylinders.get((surface, centre))
+        if cylinder is None:
             face, points = self.elements.surfaces[surface], self.model.mesh.points
-            found = self._cylinders[surface, centre] = Cylinder.of(face, points, centre)
-        return found
+            cylinder = self._cylinders[surface, centre] = Cylinder.of(face, points, centre)
+        return cylinder
 
     def expansion_of(self, surface: str) -> float:
         """Expansion coefficient [1/K] of the body a surface bounds."""
@@ -212,17 +212,17 @@ class ExpansionSetup:
 
     def section(self, surface: str, centre: Point, x: float) -> CylinderSection:
         """Cross-section ``x`` [m] of a cylindrical surface about ``centre``, at the angles `ROUND`."""
-        found = self._sections.get((surface, centre, x))
-        if found is None:
+        section = self._sections.get((surface, centre, x))
+        if section is None:
             face, points = self.elements.surfaces[surface], self.model.mesh.points
-            found = self._sections[surface, centre, x] = CylinderSection.of(face, points, centre, ROUND, x)
-        return found
+            section = self._sections[surface, centre, x] = CylinderSection.of(face, points, centre, ROUND, x)
+        return section
 
     def _piece_of(self, body: str) -> int:
-        found = np.unique(self.elements.components[self.model.mesh.bodies[body]])
-        if len(found) > 1:
-            raise ElasticError(f"body {body!r} falls into {len(found)} pieces; make them separate bodies")
-        return int(found[0])
+        pieces = np.unique(self.elements.components[self.model.mesh.bodies[body]])
+        if len(pieces) > 1:
+            raise ElasticError(f"body {body!r} falls into {len(pieces)} pieces; make them separate bodies")
+        return int(pieces[0])
 
     def _pieces(self) -> dict[str, int]:
         """Shaft name -> piece; every piece must be the housing's, what stands on it, or one shaft's."""
@@ -253,10 +253,12 @@ class ExpansionSetup:
 
 
 def _locating(model: GearboxModel, shaft: ShaftStation) -> BearingStation:
-    found = [b for b in model.bearings if b.shaft == shaft.name and b.locating]
-    if len(found) != 1:
-        raise ElasticError(f"shaft {shaft.name!r} has {len(found)} locating bearings; it needs exactly one")
-    return found[0]
+    bearings = [b for b in model.bearings if b.shaft == shaft.name and b.locating]
+    if len(bearings) != 1:
+        raise ElasticError(
+            f"shaft {shaft.name!r} has {len(bearings)} locating bearings; it needs exactly one"
+        )
+    return bearings[0]
 
 
 def _check_stations(model: GearboxModel) -> None:

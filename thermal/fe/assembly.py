@@ -48,11 +48,11 @@ def _jacobian(points: Floats, nodes: Integers, slopes: Floats, inverse: Floats) 
     det = xr * c0 + xs * c1 + xt * c2
     if det == 0.0:
         return det
-    one = 1.0 / det
-    inverse[0, 0], inverse[1, 0], inverse[2, 0] = c0 * one, c1 * one, c2 * one
-    inverse[0, 1], inverse[0, 2] = (xt * zs - xs * zt) * one, (xs * yt - xt * ys) * one
-    inverse[1, 1], inverse[1, 2] = (xr * zt - xt * zr) * one, (xt * yr - xr * yt) * one
-    inverse[2, 1], inverse[2, 2] = (xs * zr - xr * zs) * one, (xr * ys - xs * yr) * one
+    factor = 1.0 / det
+    inverse[0, 0], inverse[1, 0], inverse[2, 0] = c0 * factor, c1 * factor, c2 * factor
+    inverse[0, 1], inverse[0, 2] = (xt * zs - xs * zt) * factor, (xs * yt - xt * ys) * factor
+    inverse[1, 1], inverse[1, 2] = (xr * zt - xt * zr) * factor, (xt * yr - xr * yt) * factor
+    inverse[2, 1], inverse[2, 2] = (xs * zr - xr * zs) * factor, (xr * ys - xs * yr) * factor
     return det
 
 
@@ -125,9 +125,9 @@ def _conduction_rows(
     n_q, _, n_local = slopes.shape
     sums = np.empty(n_local)
     for row in range(first, last):
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            a = around[at] - e * n_local
+        for slot in range(start[row], start[row + 1]):
+            e = around[slot] // n_local
+            a = around[slot] - e * n_local
             sums[:] = 0.0
             for q in range(n_q):
                 factor = conductivity[e, q] * volumes[e, q]
@@ -176,9 +176,9 @@ def _elasticity_rows(
     gradients = np.empty((3, n_local))
     sums = np.empty((3, 3, n_local))
     for row in range(first, last):
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            a = around[at] - e * n_local
+        for slot in range(start[row], start[row + 1]):
+            e = around[slot] // n_local
+            a = around[slot] - e * n_local
             sums[:] = 0.0
             for q in range(n_q):
                 _gradients(inverse[e, q], slopes[q], gradients)
@@ -278,10 +278,10 @@ def facet_slots(facets: Integers, indptr: Integers, indices: Integers) -> Intege
         for a in range(n_local):
             row = facets[f, a]
             for b in range(n_local):
-                at = indptr[row]
-                while indices[at] != facets[f, b]:
-                    at += 1
-                slots[f, a, b] = at
+                entry = indptr[row]
+                while indices[entry] != facets[f, b]:
+                    entry += 1
+                slots[f, a, b] = entry
     return slots
 
 

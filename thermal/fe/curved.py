@@ -55,7 +55,7 @@ def linear_stiffness(elements: FiniteElements, young: FloatArray, poisson: Float
     )
     stiffness = level.block_matrix(level.elasticity(young[bent], poisson[bent]))
     way = sparse.kron(sparse.csr_array(elements.prolongation)[nodes], np.eye(3), format="csr")
-    own = sparse.bsr_array(way.T @ sparse.csr_array(stiffness) @ way, blocksize=(3, 3))
-    whole = sparse.bsr_array(matrix + own)
+    curved = sparse.bsr_array(way.T @ sparse.csr_array(stiffness) @ way, blocksize=(3, 3))
+    whole = sparse.bsr_array(matrix + curved)
     whole.sort_indices()
     return whole

@@ -91,12 +91,12 @@ class DirectFactor:
         columns = residual.reshape(len(residual), -1)
         x = np.asfortranarray(columns[self._order])
         for front in self._fronts:
-            own = dtrsm(1.0, front.diagonal, x[front.first : front.end], lower=1)
-            x[front.first : front.end] = own
-            x[front.rows] -= front.below @ own
+            block = dtrsm(1.0, front.diagonal, x[front.first : front.end], lower=1)
+            x[front.first : front.end] = block
+            x[front.rows] -= front.below @ block
         for front in reversed(self._fronts):
-            own = x[front.first : front.end] - front.below.T @ x[front.rows]
-            x[front.first : front.end] = dtrsm(1.0, front.diagonal, own, lower=1, trans_a=1)
+            block = x[front.first : front.end] - front.below.T @ x[front.rows]
+            x[front.first : front.end] = dtrsm(1.0, front.diagonal, block, lower=1, trans_a=1)
         solution = np.empty_like(x)
         solution[self._order] = x
         if self._correction is not None:
@@ -115,13 +115,13 @@ def _eliminated(
     entries = slice(lower.indptr[first], lower.indptr[end])
     rows = lower.indices[entries]
     columns = np.repeat(np.arange(end - first), np.diff(lower.indptr[first : end + 1]))
-    touched = np.unique(np.concatenate([rows, *(at for at, _ in parts)]))
+    touched = np.unique(np.concatenate([rows, *(part_rows for part_rows, _ in parts)]))
     beyond = touched[touched >= end]
-    own = np.concatenate([np.arange(first, end), beyond])
-    dense = np.zeros((len(own), len(own)), order="F")
-    dense[np.searchsorted(own, rows), columns] = lower.data[entries]
-    for at, remainder in parts:
-        places = np.searchsorted(own, at)
+    unknowns = np.concatenate([np.arange(first, end), beyond])
+    dense = np.zeros((len(unknowns), len(unknowns)), order="F")
+    dense[np.searchsorted(unknowns, rows), columns] = lower.data[entries]
+    for part_rows, remainder in parts:
+        places = np.searchsorted(unknowns, part_rows)
         dense[np.ix_(places, places)] += remainder
     count = end - first
     diagonal, failed = dpotrf(dense[:count, :count], lower=1)
@@ -179,14 +179,14 @@ def _dissect(order: list[Separator], nodes: Indices, graph: sparse.csr_array, po
     graph : between the nodes; points : of all nodes
     """
     cut = None if len(nodes) <= LEAF else _best_cut(graph, points[nodes])
-    parts, own = list[int](), nodes
+    parts, separating = list[int](), nodes
     if cut is not None:
         separator, low = cut
-        own = nodes[separator]
+        separating = nodes[separator]
         for side in (low & ~separator, ~low & ~separator):
             if side.any():
                 parts.append(_dissect(order, nodes[side], graph[side][:, side], points))
-    order.append(Separator(own, tuple(parts)))
+    order.append(Separator(separating, tuple(parts)))
     return len(order) - 1
 
 

@@ -27,7 +27,7 @@ LEFT = 0.8
 
 _results: OrderedDict[Hashable, Any] = OrderedDict()
 """By function and arguments, what was used last at the end."""
-_held = 0
+_bytes_kept = 0
 """Bytes of all results, those that two share counted for each that came since the last count over all."""
 
 
@@ -49,10 +49,10 @@ def kept_as(key: Hashable, make: Callable[[], T]) -> T:
         return cast(T, _results[key])
     made = make()
     _results[key] = made
-    global _held
-    _held += _bytes([key, made], set())
-    if _held > LIMIT:
-        _held = _forget_oldest()
+    global _bytes_kept
+    _bytes_kept += _bytes([key, made], set())
+    if _bytes_kept > LIMIT:
+        _bytes_kept = _forget_oldest()
     return made
 
 
@@ -60,8 +60,8 @@ def _forget_oldest() -> int:
     """Drop what lies beyond the share that is left, counted from the result that was used last; bytes of the others."""
     seen: set[int] = set()
     total = 0
-    for number, (key, found) in enumerate(reversed(list(_results.items()))):
-        size = _bytes([key, found], seen)
+    for number, (key, result) in enumerate(reversed(list(_results.items()))):
+        size = _bytes([key, result], seen)
         if total + size > LEFT * LIMIT and number > 0:
             _results.pop(key, None)
         else:

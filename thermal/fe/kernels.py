@@ -64,8 +64,8 @@ def _count_columns(cells: Integers, start: Integers, around: Integers, counts: I
     n_nodes, n_local = len(start) - 1, cells.shape[1]
     seen = np.full(n_nodes, -1, dtype=np.int32)
     for row in range(n_nodes):
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
+        for slot in range(start[row], start[row + 1]):
+            e = around[slot] // n_local
             for b in range(n_local):
                 column = cells[e, b]
                 if seen[column] != row:
@@ -85,8 +85,8 @@ def _list_columns(
     seen = np.full(n_nodes, -1, dtype=np.int32)
     fill = indptr[:-1].copy()
     for row in range(n_nodes):
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
+        for slot in range(start[row], start[row + 1]):
+            e = around[slot] // n_local
             for b in range(n_local):
                 column = cells[e, b]
                 if seen[column] != row:
@@ -104,11 +104,11 @@ def _place_pairs(
     place = np.empty(n_nodes, dtype=np.int32)
     for row in range(n_nodes):
         begin = indptr[row]
-        for at in range(begin, indptr[row + 1]):
-            place[indices[at]] = at - begin
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            a = around[at] - e * n_local
+        for entry in range(begin, indptr[row + 1]):
+            place[indices[entry]] = entry - begin
+        for slot in range(start[row], start[row + 1]):
+            e = around[slot] // n_local
+            a = around[slot] - e * n_local
             for b in range(n_local):
                 offsets[e, a, b] = place[cells[e, b]]
 
@@ -138,8 +138,8 @@ def scalar_rows(
     """Rows of y = A x for scalar entries; data : (nnz,)."""
     for row in range(first, last):
         total = y.dtype.type(0)
-        for at in range(indptr[row], indptr[row + 1]):
-            total += data[at] * x[indices[at]]
+        for entry in range(indptr[row], indptr[row + 1]):
+            total += data[entry] * x[indices[entry]]
         y[row] = total
 
 
@@ -150,9 +150,9 @@ def block_rows(
     """Rows of y = A x for 3x3 blocks; data : (nnz, 3, 3), x, y : (n, 3)."""
     for row in range(first, last):
         y0, y1, y2 = y.dtype.type(0), y.dtype.type(0), y.dtype.type(0)
-        for at in range(indptr[row], indptr[row + 1]):
-            block = data[at]
-            column = indices[at]
+        for entry in range(indptr[row], indptr[row + 1]):
+            block = data[entry]
+            column = indices[entry]
             x0, x1, x2 = x[column, 0], x[column, 1], x[column, 2]
             y0 += block[0, 0] * x0 + block[0, 1] * x1 + block[0, 2] * x2
             y1 += block[1, 0] * x0 + block[1, 1] * x1 + block[1, 2] * x2
@@ -207,11 +207,11 @@ def diagonal_blocks(indptr: Integers, indices: Integers, data: Numbers) -> Numbe
     """(n, 3, 3) blocks on the diagonal; data : (nnz, 3, 3)."""
     blocks = np.zeros((len(indptr) - 1, 3, 3), dtype=data.dtype)
     for row in range(len(indptr) - 1):
-        for at in range(indptr[row], indptr[row + 1]):
-            if indices[at] == row:
+        for entry in range(indptr[row], indptr[row + 1]):
+            if indices[entry] == row:
                 for i in range(3):
                     for j in range(3):
-                        blocks[row, i, j] = data[at, i, j]
+                        blocks[row, i, j] = data[entry, i, j]
     return blocks
 
 
@@ -220,12 +220,12 @@ def hold(indptr: Integers, indices: Integers, data: Numbers, fixed: NDArray[np.b
     """Set rows and columns of fixed unknowns to zero but for the diagonal; data : (nnz, b, b), fixed : (n, b)."""
     b = fixed.shape[1]
     for row in range(len(indptr) - 1):
-        for at in range(indptr[row], indptr[row + 1]):
-            column = indices[at]
+        for entry in range(indptr[row], indptr[row + 1]):
+            column = indices[entry]
             for i in range(b):
                 for j in range(b):
                     if (fixed[row, i] or fixed[column, j]) and not (row == column and i == j):
-                        data[at, i, j] = 0.0
+                        data[entry, i, j] = 0.0
 
 
 @njit(cache=True)
@@ -233,8 +233,8 @@ def row_sizes(indptr: Integers, data: NDArray[np.float64]) -> NDArray[np.float64
     """(n,) sum of the sizes of the entries of every row; data : (nnz,)."""
     sizes = np.zeros(len(indptr) - 1)
     for row in range(len(sizes)):
-        for at in range(indptr[row], indptr[row + 1]):
-            sizes[row] += abs(data[at])
+        for entry in range(indptr[row], indptr[row + 1]):
+            sizes[row] += abs(data[entry])
     return sizes
 
 
@@ -251,31 +251,31 @@ def aggregates(indptr: Integers, indices: Integers, strong: NDArray[np.bool_]) -
     count = 0
     for row in range(n):
         free, neighbours = group[row] < 0, 0
-        for at in range(indptr[row], indptr[row + 1]):
-            if strong[at] and indices[at] != row:
+        for entry in range(indptr[row], indptr[row + 1]):
+            if strong[entry] and indices[entry] != row:
                 neighbours += 1
-                free = free and group[indices[at]] < 0
+                free = free and group[indices[entry]] < 0
         if free and neighbours > 0:
             group[row] = count
-            for at in range(indptr[row], indptr[row + 1]):
-                if strong[at]:
-                    group[indices[at]] = count
+            for entry in range(indptr[row], indptr[row + 1]):
+                if strong[entry]:
+                    group[indices[entry]] = count
             count += 1
     first_pass = group.copy()
     for row in range(n):
         if group[row] < 0:
-            for at in range(indptr[row], indptr[row + 1]):
-                if strong[at] and first_pass[indices[at]] >= 0:
-                    group[row] = first_pass[indices[at]]
+            for entry in range(indptr[row], indptr[row + 1]):
+                if strong[entry] and first_pass[indices[entry]] >= 0:
+                    group[row] = first_pass[indices[entry]]
                     break
     for row in range(n):
         if group[row] < 0:
             neighbours = 0
-            for at in range(indptr[row], indptr[row + 1]):
-                if strong[at] and indices[at] != row:
+            for entry in range(indptr[row], indptr[row + 1]):
+                if strong[entry] and indices[entry] != row:
                     neighbours += 1
-                    if group[indices[at]] < 0:
-                        group[indices[at]] = count
+                    if group[indices[entry]] < 0:
+                        group[indices[entry]] = count
             if neighbours > 0:
                 group[row] = count
                 count += 1
@@ -294,20 +294,20 @@ def tied_pairs(
     n, b = len(indptr) - 1, data.shape[1]
     diagonal = np.zeros(n)
     for row in range(n):
-        for at in range(indptr[row], indptr[row + 1]):
-            if indices[at] == row:
+        for entry in range(indptr[row], indptr[row + 1]):
+            if indices[entry] == row:
                 for i in range(b):
                     for j in range(b):
-                        diagonal[row] += data[at, i, j] ** 2
+                        diagonal[row] += data[entry, i, j] ** 2
     first, second, strength = [], [], []
     for row in range(n):
-        for at in range(indptr[row], indptr[row + 1]):
-            column = indices[at]
+        for entry in range(indptr[row], indptr[row + 1]):
+            column = indices[entry]
             if column > row:
                 size = 0.0
                 for i in range(b):
                     for j in range(b):
-                        size += data[at, i, j] ** 2
+                        size += data[entry, i, j] ** 2
                 scale = np.sqrt(diagonal[row] * diagonal[column])
                 if size > limit * limit * scale:
                     first.append(row)
@@ -352,12 +352,12 @@ def group_blocks(
     b = data.shape[1]
     blocks = np.zeros((count, size * b, size * b))
     for group in range(count):
-        for mine in range(size):
-            row = members[group, mine]
-            for at in range(indptr[row], indptr[row + 1]):
+        for member in range(size):
+            row = members[group, member]
+            for entry in range(indptr[row], indptr[row + 1]):
                 for other in range(size):
-                    if members[group, other] == indices[at]:
+                    if members[group, other] == indices[entry]:
                         for i in range(b):
                             for j in range(b):
-                                blocks[group, mine * b + i, other * b + j] = data[at, i, j]
+                                blocks[group, member * b + i, other * b + j] = data[entry, i, j]
     return blocks

@@ -228,13 +228,13 @@ def whole_surfaces(mesh: NamedMesh, surface_corners: Mapping[str, IndexArray]) -
     n_corners = mesh.shape.side.n_corners
     surfaces = {}
     for name, corners in surface_corners.items():
-        at, found = mesh.facets.find(facet_keys(corners[:, :n_corners], len(mesh.points)))
-        if lost := np.count_nonzero(~found):
+        index, known = mesh.facets.find(facet_keys(corners[:, :n_corners], len(mesh.points)))
+        if lost := np.count_nonzero(~known):
             raise MeshError(
-                f"surface {name!r}: {lost} of {len(at)} facets are no side of any cell; "
+                f"surface {name!r}: {lost} of {len(index)} facets are no side of any cell; "
                 "take surfaces and cells from the same mesh"
             )
-        surfaces[name] = mesh.facets.nodes_at(at).astype(np.int32)
+        surfaces[name] = mesh.facets.nodes_at(index).astype(np.int32)
     return surfaces
 
 
@@ -405,10 +405,10 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
     covered = np.zeros(len(table.keys), dtype=np.int64)
     interfaces = set()
     for name, nodes in mesh.surfaces.items():
-        at, _ = table.find(facet_keys(nodes[:, :n_corners], len(mesh.points)))
-        outward = _same_side(nodes, table.nodes_at(at), n_corners)
-        inner = ~on_boundary[at]
-        second = np.minimum(at + 1, len(table.keys) - 1)
+        index, _ = table.find(facet_keys(nodes[:, :n_corners], len(mesh.points)))
+        outward = _same_side(nodes, table.nodes_at(index), n_corners)
+        inner = ~on_boundary[index]
+        second = np.minimum(index + 1, len(table.keys) - 1)
         outward |= inner & _same_side(nodes, table.nodes_at(second), n_corners)
         if not outward.all():
             raise MeshError(
@@ -419,7 +419,7 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
             raise MeshError(f"surface {name!r} lies partly on the boundary, partly inside; split it in two")
         if inner.any():
             interfaces.add(name)
-        np.add.at(covered, at, 1)
+        np.add.at(covered, index, 1)
     if (covered > 1).any():
         raise MeshError(f"{np.count_nonzero(covered > 1)} facets belong to two surfaces; assign each once")
     open_facets = table.nodes_at(np.flatnonzero(on_boundary & (covered == 0)))

@@ -70,8 +70,8 @@ class LowRank:
         """Whether both factors differ from those of another by less than ``SAME`` of their size."""
         pairs = ((self.left, other.left), (self.right, other.right))
         return all(
-            mine.shape == theirs.shape and norm(mine - theirs) <= SAME * norm(theirs)
-            for mine, theirs in pairs
+            factor.shape == others.shape and norm(factor - others) <= SAME * norm(others)
+            for factor, others in pairs
         )
 
     def under(self, down: sparse.csr_array) -> "LowRank":
@@ -344,12 +344,12 @@ def _dense_factor(matrix: Matrix, modes: FloatArray) -> tuple[FloatArray, bool]:
     scale = float(np.abs(dense.diagonal()).max())
     _, piece = sparse.csgraph.connected_components(sparse.csr_array(matrix), directed=False)
     for number in range(int(piece.max()) + 1):
-        mine = np.flatnonzero(piece == number)
-        vectors, sizes, _ = np.linalg.svd(modes[mine], full_matrices=False)
+        members = np.flatnonzero(piece == number)
+        vectors, sizes, _ = np.linalg.svd(modes[members], full_matrices=False)
         vectors = vectors[:, sizes > LOOSE * max(float(sizes.max(initial=0.0)), 1e-300)]
-        energies, turns = np.linalg.eigh(vectors.T @ dense[np.ix_(mine, mine)] @ vectors)
+        energies, turns = np.linalg.eigh(vectors.T @ dense[np.ix_(members, members)] @ vectors)
         loose = (vectors @ turns)[:, energies < LOOSE * scale]
-        dense[np.ix_(mine, mine)] += scale * loose @ loose.T
+        dense[np.ix_(members, members)] += scale * loose @ loose.T
     return cho_factor(dense.astype(np.float64), lower=True)
 
 

@@ -84,10 +84,10 @@ def recovered_gradient(
     matrix = np.zeros((len(corners), TERMS**2))
     right = np.zeros((len(corners), 3 * TERMS))
     for column in range(shape.n_corners):
-        mine = patch[:, column]
-        terms = _terms(at_points - mesh.points[local[:, column]][:, None], size[mine][:, None])
+        numbers = patch[:, column]
+        terms = _terms(at_points - mesh.points[local[:, column]][:, None], size[numbers][:, None])
         into = sparse.csr_array(
-            (np.ones(len(cells)), (mine, np.arange(len(cells)))), shape=(len(corners), len(cells))
+            (np.ones(len(cells)), (numbers, np.arange(len(cells)))), shape=(len(corners), len(cells))
         )
         turned = terms.transpose(0, 2, 1)
         matrix += np.asarray(into @ (turned @ terms).reshape(len(cells), -1))
@@ -125,9 +125,9 @@ def _averaged(
     points, shape = elements.mesh.points, elements.shape
     nodes = np.unique(local)
     values, weights = np.zeros((len(nodes), 3)), np.zeros(len(nodes))
-    own = np.searchsorted(nodes, patches.corners)
-    values[own] = patches.weight[:, None] * patches.polynomial[:, 0]
-    weights[own] = patches.weight
+    corners = np.searchsorted(nodes, patches.corners)
+    values[corners] = patches.weight[:, None] * patches.polynomial[:, 0]
+    weights[corners] = patches.weight
     poor = (patches.weight < 1.0)[patch]
     everyone = tuple(range(shape.n_corners))
     chosen = [
@@ -141,11 +141,11 @@ def _averaged(
     for node, parents, cells in chosen:
         place = np.searchsorted(nodes, local[cells, node])
         for parent in parents:
-            mine = patch[cells, parent]
-            weight = patches.weight[mine]
-            found = patches.at(mine, points[local[cells, node]] - points[patches.corners[mine]])
+            numbers = patch[cells, parent]
+            weight = patches.weight[numbers]
+            gradient = patches.at(numbers, points[local[cells, node]] - points[patches.corners[numbers]])
             for direction in range(3):
-                values[:, direction] += np.bincount(place, weight * found[:, direction], len(nodes))
+                values[:, direction] += np.bincount(place, weight * gradient[:, direction], len(nodes))
             weights += np.bincount(place, weight, len(nodes))
     return nodes.astype(np.int32), values / weights[:, None]
 

@@ -133,18 +133,18 @@ def series(first: FilmLaw, second: FilmLaw) -> FilmLaw:
     """
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
-        one, two = first(wall, fluid), second(wall, fluid)
-        total = one.value + two.value
-        inputs = {f"first.{name}": number for name, number in one.inputs.items()}
-        inputs |= {f"second.{name}": number for name, number in two.inputs.items()}
+        film_a, film_b = first(wall, fluid), second(wall, fluid)
+        total = film_a.value + film_b.value
+        inputs = {f"first.{name}": number for name, number in film_a.inputs.items()}
+        inputs |= {f"second.{name}": number for name, number in film_b.inputs.items()}
         return FilmCoefficient(
-            value=one.value * two.value / total if total > 0.0 else 0.0,
-            formula=f"series({one.formula}, {two.formula})",
-            inputs=inputs | {"first": one.value, "second": two.value},
-            valid_range=f"{one.valid_range}; {two.valid_range}",
-            source=f"P2 Formula 3; {one.source}; {two.source}",
-            warnings=one.warnings + two.warnings,
-            radiation_included=one.radiation_included or two.radiation_included,
+            value=film_a.value * film_b.value / total if total > 0.0 else 0.0,
+            formula=f"series({film_a.formula}, {film_b.formula})",
+            inputs=inputs | {"first": film_a.value, "second": film_b.value},
+            valid_range=f"{film_a.valid_range}; {film_b.valid_range}",
+            source=f"P2 Formula 3; {film_a.source}; {film_b.source}",
+            warnings=film_a.warnings + film_b.warnings,
+            radiation_included=film_a.radiation_included or film_b.radiation_included,
         )
 
     return law

@@ -85,8 +85,8 @@ class FaceRule:
         return all(shape.holds(points) for shape in self.shapes)
 
 
-def _direction(what: str, vector: Point) -> FloatArray:
+def _direction(key: str, vector: Point) -> FloatArray:
     length = float(np.linalg.norm(vector))
     if not (np.isfinite(length) and length > 0.0):
-        raise FaceRuleError(f"{what} = {vector} must be longer than 0; give a direction, e.g. (1, 0, 0)")
+        raise FaceRuleError(f"{key} = {vector} must be longer than 0; give a direction, e.g. (1, 0, 0)")
     return np.asarray(vector) / length

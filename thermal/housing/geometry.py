@@ -229,12 +229,12 @@ class HousingGeometry:
             "floor": self.shaft_height - self.floor_thickness,
             "top": self.height - self.top_thickness - self.shaft_height,
         }
-        radii = {what: radius for side in SIDES for what, radius in self._radii(shaft, side).items()}
-        for what, radius in radii.items():
+        radii = {part: radius for side in SIDES for part, radius in self._radii(shaft, side).items()}
+        for part, radius in radii.items():
             for wall, distance in room.items():
                 if radius + MINIMUM_LAND > distance:
                     raise GeometryError(
-                        f"shaft {shaft.name}: radius {radius:g} m of its {what} does not fit the "
+                        f"shaft {shaft.name}: radius {radius:g} m of its {part} does not fit the "
                         f"{distance:g} m between axis and {wall}; move the axis or enlarge the housing"
                     )
         if self.one_chamber != (shaft.seal_diameter == 0.0):
@@ -293,7 +293,7 @@ class HousingGeometry:
         distance = abs(first.y - second.y)
         needed = max(
             sum(
-                max(radius for what, radius in self._radii(shaft, side).items() if what != "gear")
+                max(radius for part, radius in self._radii(shaft, side).items() if part != "gear")
                 for shaft in (first, second)
             )
             for side in SIDES

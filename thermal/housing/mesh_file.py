@@ -73,13 +73,13 @@ def _check_whole(path: Path) -> None:
 def _has_line(content: bytes, words: str) -> bool:
     """Whether a line consists of ``words``; ten times as fast as a pattern that looks at every line."""
     wanted = words.encode()
-    at = content.find(wanted)
-    while at >= 0:
-        line = content[at - 1 : at] in (b"", b"\n", b"\r")
-        rest = content[at + len(wanted) : at + len(wanted) + 1]
+    start = content.find(wanted)
+    while start >= 0:
+        line = content[start - 1 : start] in (b"", b"\n", b"\r")
+        rest = content[start + len(wanted) : start + len(wanted) + 1]
         if line and (not rest or rest.isspace()):
             return True
-        at = content.find(wanted, at + 1)
+        start = content.find(wanted, start + 1)
     return False
 
 
@@ -98,8 +98,8 @@ def collected_mesh(gmsh: ModuleType, name: str) -> NamedMesh:
     bodies: dict[str, IndexArray] = {}
     start = 0
     for body, entities in volumes.items():
-        found = [gmsh.model.mesh.getElementsByType(kind, entity)[1] for entity in entities]
-        block = index[np.concatenate(found).view(np.int64).reshape(-1, shape.n_nodes)]
+        elements = [gmsh.model.mesh.getElementsByType(kind, entity)[1] for entity in entities]
+        block = index[np.concatenate(elements).view(np.int64).reshape(-1, shape.n_nodes)]
         blocks.append(block[:, list(shape.gmsh_order)])
         bodies[body] = np.arange(start, start + len(block), dtype=np.int32)
         start += len(block)
@@ -130,10 +130,10 @@ def collected_mesh(gmsh: ModuleType, name: str) -> NamedMesh:
 
 def _cell_kind(gmsh: ModuleType, name: str) -> tuple[CellElement, int]:
     """The one kind of volume element of the file."""
-    found = [int(kind) for kind in gmsh.model.mesh.getElementTypes(3)]
-    if len(found) == 1 and found[0] in KINDS:
-        return KINDS[found[0]], found[0]
-    names = [gmsh.model.mesh.getElementProperties(kind)[0] for kind in found]
+    kinds = [int(kind) for kind in gmsh.model.mesh.getElementTypes(3)]
+    if len(kinds) == 1 and kinds[0] in KINDS:
+        return KINDS[kinds[0]], kinds[0]
+    names = [gmsh.model.mesh.getElementProperties(kind)[0] for kind in kinds]
     raise MeshError(
         f"{name}: volume elements are {' and '.join(names) or 'missing'}; mesh all volumes with one kind of second "
         "order: 10-node tetrahedra, or hexahedra of 20 or 27 nodes (gmsh: Mesh.ElementOrder = 2)"
@@ -142,37 +142,37 @@ def _cell_kind(gmsh: ModuleType, name: str) -> tuple[CellElement, int]:
 
 def _named_entities(gmsh: ModuleType, name: str, dimension: int) -> dict[str, list[int]]:
     """Physical name -> entities of volumes (3) or surfaces (2), each of which may have one name only."""
-    what = {3: "volume", 2: "surface"}[dimension]
+    kind = {3: "volume", 2: "surface"}[dimension]
     names: dict[int, list[str]] = {}
     unnamed = []
     for _, group in gmsh.model.getPhysicalGroups(dimension):
         label = gmsh.model.getPhysicalName(dimension, group)
         if not label:
-            unnamed.append(f"physical {what} {group}")
+            unnamed.append(f"physical {kind} {group}")
         for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
             names.setdefault(int(entity), []).append(label or str(group))
     if dimension == 3:
         all_volumes = {tag for _, tag in gmsh.model.getEntities(3)}
         unnamed += [f"volume {tag}" for tag in sorted(all_volumes - set(names))]
-    doubled = [f"{what} {tag} ({', '.join(found)})" for tag, found in names.items() if len(found) > 1]
+    doubled = [f"{kind} {tag} ({', '.join(labels)})" for tag, labels in names.items() if len(labels) > 1]
     if unnamed or doubled or not names:
         faults = [f"without a name: {_listed(unnamed)}"] if unnamed else []
         faults += [f"with two names: {_listed(doubled)}"] if doubled else []
         raise MeshError(
-            f"{name}: {'; '.join(faults) or f'no physical {what}s'}; put every {what} into one physical group "
+            f"{name}: {'; '.join(faults) or f'no physical {kind}s'}; put every {kind} into one physical group "
             "with a name"
         )
     sorted_names = sorted({labels[0] for labels in names.values()})
-    return {label: [tag for tag, found in names.items() if found[0] == label] for label in sorted_names}
+    return {label: [tag for tag, labels in names.items() if labels[0] == label] for label in sorted_names}
 
 
 def _facets(gmsh: ModuleType, entity: int, index: IndexArray) -> IndexArray:
     """Corner nodes of the facets of one surface, in packed numbers; triangles and quadrilaterals."""
     corners = []
     kinds, _, nodes = gmsh.model.mesh.getElements(2, entity)
-    for kind, found in zip(kinds, nodes):
+    for kind, node_tags in zip(kinds, nodes):
         _, _, _, count, _, primary = gmsh.model.mesh.getElementProperties(int(kind))
-        corners.append(index[found.astype(np.int64).reshape(-1, count)[:, :primary]])
+        corners.append(index[node_tags.astype(np.int64).reshape(-1, count)[:, :primary]])
     return np.concatenate(corners) if corners else np.empty((0, 3), dtype=np.int32)
 
 
@@ -182,8 +182,8 @@ def _check_pieces(name: str, cells: IndexArray, bodies: Mapping[str, IndexArray]
     cells : (n_cells, n_corners)
     """
     broken = []
-    for body, mine in bodies.items():
-        sizes = np.sort(np.bincount(_pieces(cells[mine], n_nodes)))[::-1]
+    for body, of_body in bodies.items():
+        sizes = np.sort(np.bincount(_pieces(cells[of_body], n_nodes)))[::-1]
         if len(sizes) > 1:
             broken.append(
                 f"body {body!r} in {len(sizes)} pieces of {_listed([str(size) for size in sizes])} cells"
@@ -218,23 +218,23 @@ def _check_boundary(name: str, mesh: NamedMesh, surfaces: Mapping[str, IndexArra
     points, table, side = mesh.points, mesh.facets, mesh.shape.side.n_corners
     named = {label: facet_keys(facets[:, :side], len(points)) for label, facets in surfaces.items()}
     rows = {label: table.find(keys) for label, keys in named.items()}
-    for label, (at, known) in rows.items():
-        if lost := len(at) - np.count_nonzero(known):
+    for label, (index, known) in rows.items():
+        if lost := len(index) - np.count_nonzero(known):
             raise MeshError(
-                f"{name}: surface {label!r}: {lost} of {len(at)} facets are no side of any cell; mesh surfaces and "
+                f"{name}: surface {label!r}: {lost} of {len(index)} facets are no side of any cell; mesh surfaces and "
                 "volumes together, all of second order"
             )
     everything = np.concatenate(list(named.values()))
     keys, count = np.unique(everything, return_counts=True)
     twice = keys[count > 1]
     if len(twice):
-        found = [label for label, own in named.items() if np.isin(own, twice).any()]
+        doubled = [label for label, label_keys in named.items() if np.isin(label_keys, twice).any()]
         raise MeshError(
-            f"{name}: {len(twice)} facets lie twice in the surfaces {', '.join(found)}; name every face once"
+            f"{name}: {len(twice)} facets lie twice in the surfaces {', '.join(doubled)}; name every face once"
         )
     bare = table.on_boundary
-    for at, _ in rows.values():
-        bare[at] = False
+    for index, _ in rows.values():
+        bare[index] = False
     if bare.any():
         facets = table.nodes_at(np.flatnonzero(bare))[:, :side]
         raise MeshError(
@@ -246,12 +246,12 @@ def _check_boundary(name: str, mesh: NamedMesh, surfaces: Mapping[str, IndexArra
 def _patches(points: FloatArray, facets: IndexArray) -> list[str]:
     """Connected patches of facets with number and place, largest first."""
     label = _pieces(facets, len(points))
-    found = []
+    patches = []
     for patch in np.argsort(-np.bincount(label), kind="stable"):
-        mine = facets[label == patch]
-        x, y, z = points[np.unique(mine)].mean(axis=0)
-        found.append(f"{len(mine)} about ({x:.4g}, {y:.4g}, {z:.4g}) m")
-    return found
+        members = facets[label == patch]
+        x, y, z = points[np.unique(members)].mean(axis=0)
+        patches.append(f"{len(members)} about ({x:.4g}, {y:.4g}, {z:.4g}) m")
+    return patches
 
 
 def _listed(items: list[str]) -> str:

@@ -19,33 +19,33 @@ class GeometryError(ThermalInputError):
     """A gearbox that cannot be built; the message names the quantity, its value, the limit and the remedy."""
 
 
-def require_positive(record: object, *names: str) -> None:
-    """Raises GeometryError for a length of ``record`` that is not above 0."""
+def require_positive(part: object, *names: str) -> None:
+    """Raises GeometryError for a length of ``part`` that is not above 0."""
     for name in names:
-        value = getattr(record, name)
+        value = getattr(part, name)
         if not (math.isfinite(value) and value > 0.0):
             raise GeometryError(
-                f"{_label(record)}{name} = {value} m must be greater than 0; give a positive length"
+                f"{_label(part)}{name} = {value} m must be greater than 0; give a positive length"
             )
 
 
-def require_not_negative(record: object, *names: str) -> None:
-    """Raises GeometryError for a length of ``record`` below 0."""
+def require_not_negative(part: object, *names: str) -> None:
+    """Raises GeometryError for a length of ``part`` below 0."""
     for name in names:
-        value = getattr(record, name)
+        value = getattr(part, name)
         if not (math.isfinite(value) and value >= 0.0):
-            raise GeometryError(f"{_label(record)}{name} = {value} m must not be negative; give 0 or more")
+            raise GeometryError(f"{_label(part)}{name} = {value} m must not be negative; give 0 or more")
 
 
-def _label(record: object) -> str:
+def _label(part: object) -> str:
     """Who owns the quantity: the shaft by name, the field, the gear; nothing for the housing itself."""
     labels = {
-        "ShaftGeometry": f"shaft {getattr(record, 'name', '')}: ",
+        "ShaftGeometry": f"shaft {getattr(part, 'name', '')}: ",
         "EndBearing": "bearing: ",
         "GearDisc": "gear: ",
         "ClampingField": "field: ",
     }
-    return labels.get(type(record).__name__, "")
+    return labels.get(type(part).__name__, "")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -186,7 +186,7 @@ def shaft_faces(geometry: HousingGeometry, shaft: ShaftGeometry) -> list[NamedFa
         for side, x in zip(SIDES, seat):
             name = f"gear_{shaft.name}_side_{side}"
             add(name, AxialPatch(axis, (inner, outer), (x, x)), ring_area(inner, outer))
-    return [NamedFace(name, tuple(found), areas[name]) for name, found in patches.items()]
+    return [NamedFace(name, tuple(group), areas[name]) for name, group in patches.items()]
 
 
 def _shoulder_owner(geometry: HousingGeometry, shaft: ShaftGeometry, first: str, second: str) -> str:

@@ -150,8 +150,8 @@ def _distinct(nodes: IndexArray, n_nodes: int) -> IndexArray:
 def _elements(gmsh: ModuleType, kind: int, tag: int, index: IndexArray) -> IndexArray:
     """Nodes of the elements of one type on one entity, in gmsh's order."""
     nodes = {TETRAHEDRON_10: 10, TRIANGLE_6: 6}[kind]
-    _, found = gmsh.model.mesh.getElementsByType(kind, tag)
-    return np.asarray(index[found.astype(np.int64).reshape(-1, nodes)])
+    _, node_tags = gmsh.model.mesh.getElementsByType(kind, tag)
+    return np.asarray(index[node_tags.astype(np.int64).reshape(-1, nodes)])
 
 
 def _free_nodes(gmsh: ModuleType, index: IndexArray, points: FloatArray) -> NDArray[np.bool_]:
@@ -187,24 +187,24 @@ def _name_triangles(
         if not outside.any():
             continue
         on_face = points[_distinct(corners, len(points))]
-        found = [
+        names = [
             face.name for face in faces if any(patch.holds(on_face, TOLERANCE) for patch in face.patches)
         ]
-        if len(found) != 1 or not outside.all():
+        if len(names) != 1 or not outside.all():
             raise MeshError(
                 f"{name}: face {tag} about {on_face.mean(axis=0).round(4).tolist()} m, "
                 f"{np.count_nonzero(outside)} of {len(outside)} facets on the boundary, lies on "
-                f"{found or 'no named surface'}; check for parts that touch or overlap"
+                f"{names or 'no named surface'}; check for parts that touch or overlap"
             )
-        parts[found[0]].append(corners)
-    empty = [face for face, found in parts.items() if not found]
-    total = sum(len(corners) for found in parts.values() for corners in found)
+        parts[names[0]].append(corners)
+    empty = [face for face, named in parts.items() if not named]
+    total = sum(len(corners) for named in parts.values() for corners in named)
     if empty or total != len(boundary):
         raise MeshError(
             f"{name}: {total} of {len(boundary)} boundary facets are named, surfaces without any: "
             f"{', '.join(empty) or 'none'}; check for parts that touch or overlap"
         )
-    return {face: np.concatenate(found) for face, found in parts.items()}
+    return {face: np.concatenate(named) for face, named in parts.items()}
 
 
 SAME = 1e-6
@@ -398,8 +398,8 @@ def shaft_size(g: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> Si
         around = max(radius, min(3.0 * radius, thinnest))
         on = [
             most
-            for own, start, end, most in limits
-            if abs(radius - own) < SAME and start - SAME < x < end + SAME
+            for surface_radius, start, end, most in limits
+            if abs(radius - surface_radius) < SAME and start - SAME < x < end + SAME
         ]
         if shaft.gear is not None:
             first, last = g.gear_limits(shaft)

@@ -243,28 +243,28 @@ def fitted_model(mesh: NamedMesh, geometry: HousingGeometry) -> GearboxModel:
             mesh=mesh, shafts=(), bearings=(), seals=(), gears=(), fixed_body="", foot_surface="",
             no_expansion=f"clearances need {missing}",
         )  # fmt: skip
-    at = {name: fit_cylinder(mesh.points[np.unique(nodes[:, : mesh.shape.side.n_corners])])
+    fits = {name: fit_cylinder(mesh.points[np.unique(nodes[:, : mesh.shape.side.n_corners])])
           for name, nodes in mesh.surfaces.items()}  # fmt: skip
     field = "field" in mesh.bodies
     return GearboxModel(
         mesh=mesh,
         shafts=tuple(
-            replace(s, axis=(0.0, *at[_journal(geometry, s.name)].centre[1:]),
-                    start=at[s.start_surface].centre[0], end=at[s.end_surface].centre[0])
+            replace(s, axis=(0.0, *fits[_journal(geometry, s.name)].centre[1:]),
+                    start=fits[s.start_surface].centre[0], end=fits[s.end_surface].centre[0])
             for s in shaft_stations(geometry)
         ),
         bearings=tuple(
-            replace(b, centre=at[b.bore_surface].centre, diameter=2.0 * at[b.journal_surface].radius,
-                    width=at[b.bore_surface].length)
+            replace(b, centre=fits[b.bore_surface].centre, diameter=2.0 * fits[b.journal_surface].radius,
+                    width=fits[b.bore_surface].length)
             for b in bearing_stations(geometry)
         ),
         seals=tuple(
-            replace(s, centre=at[s.bore_surface].centre, shaft_diameter=2.0 * at[s.shaft_surface].radius)
+            replace(s, centre=fits[s.bore_surface].centre, shaft_diameter=2.0 * fits[s.shaft_surface].radius)
             for s in seal_stations(geometry)
             if {s.bore_surface, s.shaft_surface} <= set(mesh.surfaces)
         ),
         gears=tuple(
-            replace(g, centre=at[g.rim_surface].centre, face_width=at[g.rim_surface].length)
+            replace(g, centre=fits[g.rim_surface].centre, face_width=fits[g.rim_surface].length)
             for g in gear_stations(geometry)
         ),
         fixed_body="field" if field else "housing",

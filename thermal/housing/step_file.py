@@ -75,7 +75,7 @@ def _corners(entities: dict[int, tuple[str, str]], face: str) -> FloatArray:
     below = {
         "FACE_BOUND": 1, "FACE_OUTER_BOUND": 1, "EDGE_LOOP": 1, "ORIENTED_EDGE": 3, "VERTEX_POINT": 1,
     }  # fmt: skip
-    found, seen = [], set()
+    corners, seen = [], set()
     waiting = _references(_arguments(face)[1]) if len(_arguments(face)) > 1 else []
     while waiting:
         number = waiting.pop()
@@ -85,12 +85,12 @@ def _corners(entities: dict[int, tuple[str, str]], face: str) -> FloatArray:
         kind, body = entities[number]
         parts = _arguments(body)
         if kind == "CARTESIAN_POINT":
-            found.append([float(value) for value in parts[1].strip(" ()\n").split(",")])
+            corners.append([float(value) for value in parts[1].strip(" ()\n").split(",")])
         elif kind == "EDGE_CURVE":
             waiting += _references(parts[1]) + _references(parts[2])
         elif kind in below:
             waiting += _references(parts[below[kind]])
-    return np.array(found, dtype=np.float64).reshape(-1, 3)
+    return np.array(corners, dtype=np.float64).reshape(-1, 3)
 
 
 def _references(text: str) -> list[int]:
@@ -233,29 +233,29 @@ def read_step(path: Path, rules: Mapping[str, Sequence[FaceRule]], size: float, 
 
 def named_faces(faces: Sequence[StepFace], rules: Mapping[str, Sequence[FaceRule]]) -> FaceNames:
     """Give every face its name: that of the file, or of the rule that picks it."""
-    found: dict[int, dict[str, None]] = {
+    names_of: dict[int, dict[str, None]] = {
         face.number: {face.name: None} if face.name else {} for face in faces
     }
     idle = []
-    for name, own in rules.items():
-        for count, rule in enumerate(own, 1):
+    for name, face_rules in rules.items():
+        for count, rule in enumerate(face_rules, 1):
             picked = [face.number for face in faces if rule.holds(face.points)]
             if not picked:
                 idle.append(f"rule {count} of faces.{name} picks no face")
             for number in picked:
-                found[number][name] = None
+                names_of[number][name] = None
     surfaces: dict[str, tuple[int, ...]] = {}
-    for number, names in found.items():
+    for number, names in names_of.items():
         if len(names) == 1:
             (only,) = names
             surfaces[only] = (*surfaces.get(only, ()), number)
     return FaceNames(
         surfaces=surfaces,
-        unnamed=tuple(face for face in faces if not found[face.number]),
+        unnamed=tuple(face for face in faces if not names_of[face.number]),
         doubled=tuple(
-            f"{face.described} is {' and '.join(found[face.number])}"
+            f"{face.described} is {' and '.join(names_of[face.number])}"
             for face in faces
-            if len(found[face.number]) > 1
+            if len(names_of[face.number]) > 1
         ),
         idle=tuple(idle),
     )
@@ -310,8 +310,8 @@ def _check_solid(gmsh: ModuleType, name: str) -> None:
     """There is one solid, and every edge lies between two faces or is the seam of one."""
     solids, faces = gmsh.model.getEntities(3), gmsh.model.getEntities(2)
     if not solids:
-        what = f"{len(faces)} faces that enclose no solid" if faces else "no solid"
-        raise MeshError(f"{name}: holds {what}; close the part in CAD and export it as one solid")
+        content = f"{len(faces)} faces that enclose no solid" if faces else "no solid"
+        raise MeshError(f"{name}: holds {content}; close the part in CAD and export it as one solid")
     if len(solids) > 1:
         listed = []
         for solid in solids:

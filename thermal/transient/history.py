@@ -143,9 +143,9 @@ class EnergyAccount:
     def store(self, rise: FloatArray, volumes: Mapping[str, float]) -> None:
         """Add what the bodies take up when the nodes warm by ``rise`` (n_nodes,) [K], and volumes [J]."""
         for body, cells in self._elements.mesh.bodies.items():
-            at, weights = self._elements.at_points(rise, cells)
+            rises, weights = self._elements.at_points(rise, cells)
             order = np.sort(cells)
-            per_cell = self._capacity[body] * (at * weights).reshape(len(order), -1).sum(axis=1)
+            per_cell = self._capacity[body] * (rises * weights).reshape(len(order), -1).sum(axis=1)
             self._stored[body] = self._stored.get(body, 0.0) + float(per_cell.sum())
             by_piece = np.bincount(self._elements.components[order], per_cell)
             for piece in np.unique(self._piece[body]).tolist():
@@ -411,10 +411,10 @@ class _Run:
             return
         given = self._stepper.capacity.matrix.sum(axis=0) * rise
         elements = self._setup.elements
-        held = held_by(elements, problem.conditions)
+        holders = held_by(elements, problem.conditions)
         for condition in problem.prescribed:
             surface = elements.surfaces[condition.surface]
-            energy = float((given[surface.nodes] / held[surface.nodes]).sum())
+            energy = float((given[surface.nodes] / holders[surface.nodes]).sum())
             self._account.give(condition.surface, condition.kind, surface.piece, energy)
         self._account.store(rise, {})
         self._temperature = self._temperature + rise
