@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field, field_validator, model_validator
 
+from dynamics.rotor.rolling_kinds import ROLLING_KINDS, CatalogueBearing
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import (
@@ -35,7 +36,11 @@ from rigdesign.case.losses import LossFactor
 
 if TYPE_CHECKING:
     from dynamics.rotor.bearing import Bearing
-    from dynamics.rotor.rolling_catalogue import CatalogueBearing
+
+    RollingKindName: TypeAlias = str
+else:
+    RollingKindName = Literal[tuple(ROLLING_KINDS)]
+"""Kinds that the solver has, one choice each."""
 
 # What surrounds a bearing, for the kinds of bearings of the case. SI units.
 
@@ -83,7 +88,7 @@ class BearingSeats:
 class CatalogueNumbers(Part):
     """Numbers of a bearing as its catalogue prints them."""
 
-    kind: Literal["deep_groove_ball", "cylindrical_roller", "tapered_roller", "angular_contact_ball"]
+    kind: RollingKindName
     """Kind of bearing."""
     series: Text
     """Dimension series, for the coefficients of its friction, e.g. ``62``, ``2``, ``302``, ``72B``."""
@@ -135,7 +140,7 @@ class CatalogueNumbers(Part):
 
 
 @cache
-def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> "CatalogueBearing":
+def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> CatalogueBearing:
     """Numbers of a tabled bearing, or those of the case.
 
     Raises
@@ -143,7 +148,7 @@ def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> "Catal
     BearingError
         A designation that is not tabled, numbers that do not go together.
     """
-    from dynamics.rotor.rolling_catalogue import CatalogueBearing, catalogue_bearing
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
     if numbers is None:
         return catalogue_bearing(designation)
@@ -260,7 +265,7 @@ class RollingBearingInput(Part):
         return self
 
     @property
-    def data(self) -> "CatalogueBearing":
+    def data(self) -> CatalogueBearing:
         """Numbers of its catalogue."""
         return catalogue_data(self.designation or "", self.catalogue)
 
@@ -323,13 +328,11 @@ class RollingBearingInput(Part):
     @property
     def holds_axially(self) -> bool:
         """It takes up what its partner induces: by its contact angle, or where it locates the shaft."""
-        return self.data.locating and (self.locating or self.data.contact_angle > 0.0)
+        return self.data.carries_axial_load and (self.locating or self.data.contact_angle > 0.0)
 
     def induced_axial_load(self, radial: float) -> float:
         """Axial force that a radial load produces inside the bearing [N]; 0 without a contact angle."""
-        from dynamics.rotor.rolling_state import induced_axial_load
-
-        return induced_axial_load(self.data, radial)
+        return self.data.rules.induced_axial_load(self.data, radial)
 
     def as_it_runs(self, place: BearingPlace) -> "Bearing":
         """The bearing for the solver at its place; BearingError where that is impossible."""
@@ -388,7 +391,7 @@ class RollingBearingInput(Part):
     def own_faults(self, at: str) -> Iterator[Fault]:
         """What is wrong with it whatever stands around it."""
         data = self.data
-        if self.locating and not data.locating:
+        if self.locating and not data.carries_axial_load:
             yield Fault(
                 f"{at}.locating", "true", f"{data.designation} carries no axial load: its rings move past each other",
                 "let the other bearing locate the shaft, or take NJ, NUP or a ball bearing",

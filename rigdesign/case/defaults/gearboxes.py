@@ -1,5 +1,6 @@
 """Defaults of gears, meshes, their oil, bearings and seals."""
 
+from dynamics.rotor.rolling_kinds import ROLLING_KINDS
 from rigdesign.case.defaults.rule import (
     Filling,
     RawTree,
@@ -218,12 +219,13 @@ def _held_by_teeth(tree: RawTree, box: str, shaft: str | None) -> bool:
 
 
 def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
-    """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
-    found, own = (
-        tabled(tree, box, bearing),
-        f"gearboxes.{box}.bearings.{bearing}.catalogue.carries_axial_load",
-    )
-    return tree.at(own) is not False if found is None else found.locating
+    """Whether a bearing may be locating: any but those whose rings move past each other."""
+    found, numbers = tabled(tree, box, bearing), f"gearboxes.{box}.bearings.{bearing}.catalogue"
+    if found is not None:
+        return found.carries_axial_load
+    kind = ROLLING_KINDS.get(tree.text(f"{numbers}.kind") or "")
+    able = kind is None or kind.carries_axial_load
+    return able and tree.at(f"{numbers}.carries_axial_load") is not False
 
 
 @book.default("gearboxes.*.bearings.*.radial_damping")
