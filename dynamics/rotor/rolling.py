@@ -158,6 +158,11 @@ class RollingBearing:
                 raise BearingError(
                     f"rolling bearing: {name} = {value!r}: must be one of {', '.join(options)}"
                 )
+        if self.law not in self.data.rules.friction_sources:
+            raise self.data.wrong(
+                "law", repr(self.law),
+                f"has no coefficients for its kind; take {' or '.join(self.data.rules.friction_sources)}",
+            )  # fmt: skip
         if not (self.seal_torque >= 0.0 and math.isfinite(self.seal_torque)):
             raise BearingError(
                 f"rolling bearing: seal_torque = {self.seal_torque:.6g} N m: must be finite and not negative"

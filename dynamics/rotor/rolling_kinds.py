@@ -204,7 +204,7 @@ class RollingKind(ABC):
     contact: ClassVar[iso281_2007.Contact]
     """Of the rolling elements."""
     series: ClassVar[tuple[str, ...]]
-    """Dimension series for which both friction laws have coefficients."""
+    """Dimension series for which its friction laws have coefficients."""
     rexs_type: ClassVar[str] = ""
     """Type in a REXS file; empty for a kind that is not read from one."""
     carries_axial_load: ClassVar[bool] = True
@@ -217,15 +217,8 @@ class RollingKind(ABC):
     """Whether it has a contact angle with the factors e, Y, Y_0."""
     clearance_classes: ClassVar[iso5753_1_2009.Table | None] = None
     """Classes of the radial internal clearance; None for a kind whose clearance is set at assembly."""
-    skf_constants: ClassVar[skf.KindConstants]
-    """Of the friction law ``skf``."""
-    palmgren_constants: ClassVar[Mapping[str, palmgren.Coefficients]]
-    """Of the friction law ``iso_tr_14179_2``, by series."""
-    friction_sources: ClassVar[Mapping[FrictionLaw, str]] = {
-        "iso_tr_14179_2": "ISO/TR 14179-2 (Palmgren), f_0 and f_1 of DIN 732-2",
-        "skf": "SKF General Catalogue 6000, four-source model",
-    }
-    """Document behind the friction, by law."""
+    friction_sources: ClassVar[Mapping[FrictionLaw, str]]
+    """Document behind the friction, by the laws that the kind has."""
 
     def check(self, bearing: CatalogueBearing) -> None:
         """Raise BearingError for numbers that the kind cannot have."""
@@ -266,18 +259,41 @@ class RollingKind(ABC):
         load: float = 1e3 * bearing.minimum_load_factor * product ** (2.0 / 3.0) * size
         return load
 
-    def axial_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
-        """Sentences about an axial load that the bearing should not have: name, value, limit, remedy."""
+    def load_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
+        """Sentences about loads that the bearing should not have: name, value, limit, remedy."""
         yield from ()
 
     def contact_angle(self, axial_limit: float) -> float | None:
         """Contact angle [rad] that follows from e; None where it does not."""
         return None
 
+    @abstractmethod
     def friction(
         self, law: FrictionLaw, bearing: CatalogueBearing, given: FrictionConditions
     ) -> FrictionTorque:
-        """Friction torque of the open bearing by ``law``."""
+        """Friction torque of the open bearing by one of its laws."""
+
+
+ROLLING_KINDS: dict[str, RollingKind] = {}
+"""Every kind by its name."""
+
+
+class TwoLawKind(RollingKind):
+    """A kind with the four sources of SKF and Palmgren's law."""
+
+    skf_constants: ClassVar[skf.KindConstants]
+    """Of the friction law ``skf``."""
+    palmgren_constants: ClassVar[Mapping[str, palmgren.Coefficients]]
+    """Of the friction law ``iso_tr_14179_2``, by series."""
+    friction_sources: ClassVar[Mapping[FrictionLaw, str]] = {
+        "iso_tr_14179_2": "ISO/TR 14179-2 (Palmgren), f_0 and f_1 of DIN 732-2",
+        "skf": "SKF General Catalogue 6000, four-source model",
+    }
+
+    def friction(
+        self, law: FrictionLaw, bearing: CatalogueBearing, given: FrictionConditions
+    ) -> FrictionTorque:
+        """Friction torque of the open bearing."""
         return self._skf(bearing, given) if law == "skf" else self._palmgren(bearing, given)
 
     @abstractmethod
@@ -310,10 +326,6 @@ class RollingKind(ABC):
         )
 
 
-ROLLING_KINDS: dict[str, RollingKind] = {}
-"""Every kind by its name."""
-
-
 K = TypeVar("K", bound=RollingKind)
 
 
@@ -323,7 +335,7 @@ def _registered(kind: type[K]) -> type[K]:
 
 
 @_registered
-class DeepGrooveBall(RollingKind):
+class DeepGrooveBall(TwoLawKind):
     """Deep groove ball bearing, single row."""
 
     name = "deep_groove_ball"
@@ -356,7 +368,7 @@ class DeepGrooveBall(RollingKind):
         """0.6 F_r + 0.5 F_a, at least F_r."""
         return max(radial, 0.6 * radial + 0.5 * axial)
 
-    def axial_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
+    def load_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
         """Axial load above half of C_0."""
         if axial > LARGEST_AXIAL_SHARE * bearing.static_rating:
             yield (
@@ -388,7 +400,7 @@ class DeepGrooveBall(RollingKind):
 
 
 @_registered
-class CylindricalRoller(RollingKind):
+class CylindricalRoller(TwoLawKind):
     """Cylindrical roller bearing with cage, single row."""
 
     name = "cylindrical_roller"
@@ -432,7 +444,7 @@ class CylindricalRoller(RollingKind):
         size = (bearing.mean_diameter * 10.0) ** 2
         return 1e3 * bearing.minimum_load_factor * (6.0 + 4.0 * speed / bearing.reference_speed) * size
 
-    def axial_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
+    def load_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
         """Axial load above half of the radial one."""
         if axial > LARGEST_AXIAL_SHARE * radial:
             yield (
@@ -451,7 +463,7 @@ class CylindricalRoller(RollingKind):
 
 
 @_registered
-class TaperedRoller(RollingKind):
+class TaperedRoller(TwoLawKind):
     """Tapered roller bearing, single row."""
 
     name = "tapered_roller"
@@ -501,7 +513,7 @@ class TaperedRoller(RollingKind):
 
 
 @_registered
-class AngularContactBall(RollingKind):
+class AngularContactBall(TwoLawKind):
     """Angular contact ball bearing of 40 degrees, single row."""
 
     name = "angular_contact_ball"

@@ -187,7 +187,7 @@ def limit_warnings(state: RollingState, data: CatalogueBearing, *, drag_in_bath:
 
 def _axial_warnings(state: RollingState, data: CatalogueBearing) -> Iterator[str]:
     axial, stiffness = state.axial_load, state.stiffness
-    yield from data.rules.axial_warnings(data, state.load, axial)
+    yield from data.rules.load_warnings(data, state.load, axial)
     if stiffness.held_axially and state.load > 0.0:
         yield (
             f"axial load = {axial:.0f} N: below the {stiffness.axial_load:.0f} N the radial load induces; the "

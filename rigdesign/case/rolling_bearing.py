@@ -121,11 +121,11 @@ class CatalogueNumbers(Part):
     minimum_load_factor: float = Field(default=0.0, ge=0.0)
     """Minimum load factor k_r of ball and cylindrical roller bearings; 0 asks for no least load."""
     inner_raceway: Gap = 0.0
-    """Raceway diameter F of a cylindrical roller bearing."""
+    """Raceway diameter F of rollers without contact angle."""
     outer_raceway: Gap = 0.0
-    """Raceway diameter E of a cylindrical roller bearing."""
+    """Raceway diameter E of rollers without contact angle."""
     carries_axial_load: bool = True
-    """False for NU and N."""
+    """False for NU and N; kinds that never do carry none anyway."""
 
     @model_validator(mode="after")
     def _computable(self) -> "CatalogueNumbers":
@@ -395,6 +395,12 @@ class RollingBearingInput(Part):
             yield Fault(
                 f"{at}.locating", "true", f"{data.designation} carries no axial load: its rings move past each other",
                 "let the other bearing locate the shaft, or take NJ, NUP or a ball bearing",
+            )  # fmt: skip
+        if self.friction_law not in data.rules.friction_sources:
+            yield Fault(
+                f"{at}.friction_law", f'"{self.friction_law}"',
+                f"has no coefficients for a {data.kind.replace('_', ' ')} bearing",
+                f"take {' or '.join(data.rules.friction_sources)}",
             )  # fmt: skip
         if self.oil_level is not None and self.oil_level > data.outside_diameter:
             yield Fault(

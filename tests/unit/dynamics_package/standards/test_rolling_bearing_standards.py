@@ -8,7 +8,7 @@ import pytest
 from dynamics.errors import DynamicsInputError
 from dynamics.rotor.rolling_catalogue import catalogue_bearing
 from dynamics.rotor.rolling_clearance import class_clearance
-from dynamics.rotor.rolling_kinds import ROLLING_KINDS
+from dynamics.rotor.rolling_kinds import CylindricalRoller, DeepGrooveBall
 from dynamics.standards import iso76_2006, iso281_2007, iso5753_1_2009
 from dynamics.standards import iso_tr_14179_2_2001 as palmgren
 from dynamics.standards import skf_friction_2006 as skf
@@ -114,8 +114,7 @@ def test_palmgren_load_dependent_torque_of_the_same_bearing() -> None:
     """6220: C_0 = 93 kN, 20 kN radial, 6 kN axial, M_1 = 1148 N mm."""
     row = palmgren.DEEP_GROOVE_BALL["62"]
     f_1 = palmgren.f_1(row, 20e3, 93e3)
-    ball = catalogue_bearing("6210")  # of any size: the load of the kind
-    load = ball.rules.palmgren_load(ball, 20e3, 6e3)
+    load = DeepGrooveBall().palmgren_load(catalogue_bearing("6210"), 20e3, 6e3)  # the same for all sizes
     assert palmgren.T_VL1(f_1, load, 140.0) == pytest.approx(1148.0, rel=0.01)
 
 
@@ -161,10 +160,10 @@ def test_skf_mixed_friction_at_both_ends() -> None:
 
 def test_skf_drag_grows_with_level_and_stops_when_submerged() -> None:
     size = skf.Size(40.0, 80.0, 18.0)
-    for kind in ("deep_groove_ball", "cylindrical_roller"):
-        constants = ROLLING_KINDS[kind].skf_constants
+    for kind in (DeepGrooveBall, CylindricalRoller):
         drags = [
-            skf.M_drag(constants, size, level, 3000.0) for level in (0.0, 5.0, 10.0, 30.0, 60.0, 72.0, 80.0)
+            skf.M_drag(kind.skf_constants, size, level, 3000.0)
+            for level in (0.0, 5.0, 10.0, 30.0, 60.0, 72.0, 80.0)
         ]
         assert drags[0] == 0.0
         assert all(low < high for low, high in pairwise(drags[:6]))
