@@ -554,6 +554,83 @@ class AngularContactBall(TwoLawKind):
         return max(radial, axial - 0.1 * radial)
 
 
+@_registered
+class NeedleRoller(RollingKind):
+    """Needle roller bearing with machined rings and cage, single row.
+
+    Its rings and needles move past each other: it carries no axial load, another bearing has to guide the shaft. SKF
+    has no constants of the four-source model for it, only a constant coefficient M = 0.5 mu P d (Rolling bearings,
+    chapter Friction, table 1: 0.0020 for needle roller bearings with a cage; P near 0.1 C, good lubrication, normal
+    operating conditions), which holds the usual drag of its oil as well. Loads: SKF, needle roller bearings: P = P_0 =
+    F_r, least load 0.02 C. Clearance classes are those of cylindrical roller bearings (from memory).
+    """
+
+    name = "needle_roller"
+    contact = "roller"
+    series = ("48", "49", "59", "69")
+    carries_axial_load = False
+    prints_raceways = True
+    clearance_classes = iso5753_1_2009.CYLINDRICAL_ROLLER
+    friction_sources: ClassVar[Mapping[FrictionLaw, str]] = {
+        "skf": "SKF Rolling bearings, constant coefficient of friction",
+    }
+    mu = 0.0020
+    """Constant coefficient of friction, on the radius of the bore [-]."""
+    needle_share = 0.2
+    """Needle diameter over D - d where E is not given; assumed. With F and C_0 given, the length of the needles does
+    not depend on it, their stiffness is inversely proportional."""
+    load_range = (0.05, 0.2)
+    """P / C in which the coefficient is taken to hold; assumed about the 0.1 of SKF."""
+
+    def check(self, bearing: CatalogueBearing) -> None:
+        """Raceways between bore and outside diameter; E may be left out."""
+        inner, outer = bearing.inner_raceway, bearing.outer_raceway
+        inside = (
+            bearing.bore < inner < (outer or bearing.outside_diameter) and outer < bearing.outside_diameter
+        )
+        if bearing.rolling_elements is None and not inside:
+            raise bearing.wrong(
+                "inner_raceway, outer_raceway", f"{inner:.6g}, {outer:.6g} m",
+                "must lie between bore and outside diameter; give F of the catalogue, E or the rolling elements",
+            )  # fmt: skip
+
+    def elements(self, bearing: CatalogueBearing) -> RollingElements:
+        """Needles on the raceway F; their diameter from E, or a share of the section."""
+        inner, outer = bearing.inner_raceway, bearing.outer_raceway
+        known = 0.5 * (outer - inner)
+        diameter = known if outer else self.needle_share * (bearing.outside_diameter - bearing.bore)
+        size = "raceways" if outer else "raceway F, needle diameter 0.2 (D - d) (assumed)"
+        source = f"{size}, C_0 by ISO 76 and 82 % of the pitch circle filled (assumed)"
+        return _rollers(inner + diameter, diameter, bearing.static_rating, 0.0, source)
+
+    def equivalent_load(self, bearing: CatalogueBearing, radial: float, axial: float) -> float:
+        """F_r."""
+        return radial
+
+    def static_equivalent_load(self, bearing: CatalogueBearing, radial: float, axial: float) -> float:
+        """F_r."""
+        return radial
+
+    def minimum_load(self, bearing: CatalogueBearing, speed: float, viscosity: float) -> float:
+        """0.02 C."""
+        return 0.02 * bearing.dynamic_rating
+
+    def load_warnings(self, bearing: CatalogueBearing, radial: float, axial: float) -> Iterator[str]:
+        """Load far from that at which the coefficient of friction is stated."""
+        low, high = (share * bearing.dynamic_rating for share in self.load_range)
+        if radial and not low <= radial <= high:
+            yield (
+                f"radial load = {radial:.0f} N: outside {low:.0f} to {high:.0f} N, about 0.1 C, where the constant "
+                "coefficient of friction of a needle roller bearing holds; measure its friction, or take another size"
+            )
+
+    def friction(
+        self, law: FrictionLaw, bearing: CatalogueBearing, given: FrictionConditions
+    ) -> FrictionTorque:
+        """0.5 mu P d, as rolling friction."""
+        return FrictionTorque(rolling=0.5 * self.mu * given.radial * bearing.bore)
+
+
 def _ball_diameter(
     count: int, pitch: float, static_rating: float, angle: float, f_0: float | None
 ) -> float | None:
