@@ -11,7 +11,8 @@ import math
 from collections.abc import Callable, Iterator
 
 from rigdesign.base.units import show
-from rigdesign.case.gearbox import Gearbox, injected_flow
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.losses import LOSS_KINDS
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.bearing_loads import tilt_counted
@@ -116,9 +117,7 @@ def given_losses(solved: SolvedRig, check: Check) -> Omissions:
     if solved.case.losses.basis != "input":
         return
     for name, box in solved.case.gearboxes.items():
-        wanted = ["mesh", "bearing", "windage"]
-        wanted += ["seal"] if box.seals else []
-        wanted += ["oil_acceleration"] if injected_flow(box) > 0.0 else []
+        wanted = [kind.name for kind in LOSS_KINDS.values() if kind.awaited and kind.parts_of(box)]
         given = {entry.kind for entry in solved.case.losses.given.values() if entry.gearbox == name}
         missing = [kind for kind in wanted if kind not in given]
         if missing:

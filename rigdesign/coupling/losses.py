@@ -346,7 +346,7 @@ def body_split(rig: Rig, name: str) -> HeatSplit:
 def _scaled(rig: Rig, placed: PlacedLoss) -> PlacedLoss:
     """The loss times the factor of its gearbox; friction of bearings and teeth holds theirs already."""
     factor = rig.case.gearboxes[placed.gearbox].loss_factors.of(placed.loss.kind)
-    if factor == 1.0 or placed.loss.kind in ("bearing", "mesh"):
+    if factor == 1.0 or placed.kind.of_teeth or placed.kind.at_bearings:
         return placed
     loss = placed.loss
     loss = replace(loss, power=factor * loss.power, details=loss.details | {"loss_factor": factor})
@@ -375,7 +375,4 @@ def _split(rig: Rig, placed: PlacedLoss) -> float:
     if placed.split is not None:
         return math.fsum(placed.split.into_rims)
     split = body_split(rig, placed.gearbox)
-    return {
-        "windage": split.windage_into_gears,
-        "seal": split.seal_into_shaft + split.seal_into_housing,
-    }.get(placed.loss.kind, 0.0)
+    return math.fsum(getattr(split, share) for share in placed.kind.body_shares)

@@ -374,15 +374,15 @@ def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[Boun
     for placed in losses:
         if placed.gearbox != context.name or placed.into_body == 0.0:
             continue
-        if placed.loss.kind == "windage":
-            shaft = context.box.gears[placed.part].shaft
-            sources.append(BodySource(body=f"gear_{shaft}", power=placed.into_body, kind="windage"))
-        elif placed.loss.kind == "seal":
-            sources += _seal_sources(context, placed)
-        elif placed.loss.kind == "bearing":
-            sources += seat_sources(
-                context.rig, placed.name, context.bearings[placed.name], placed.loss.power
-            )
+        match placed.kind.heats:
+            case "gear":
+                body = f"gear_{context.box.gears[placed.part].shaft}"
+                sources.append(BodySource(body=body, power=placed.into_body, kind=placed.loss.kind))
+            case "seal":
+                sources += _seal_sources(context, placed)
+            case "seats":
+                state = context.bearings[placed.name]
+                sources += seat_sources(context.rig, placed.name, state, placed.loss.power)
     return sources
 
 
