@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from dynamics.losses.oil_jet import JET_ANGLES, OilJet
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Clearance, Name, Part, Share, Title, Torque, Usual, fault
+from rigdesign.case.fields import Name, Part, Share, Title, Usual, fault
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
@@ -21,6 +21,7 @@ from rigdesign.case.lubrication import (
     OilState,
     SplashOil,
 )
+from rigdesign.case.seals import Seals
 from rigdesign.properties.oil import Oil
 
 # How each power loss of a gearbox divides between its bodies and its oil.
@@ -76,26 +77,6 @@ class HeatSplit(Part):
                 "write shares whose sum is at most 1; the rest goes into the oil",
             )
         return self
-
-
-class Seals(Part):
-    """Seals of one shaft: where it passes the walls of the chamber, and where it leaves the gearbox.
-
-    A wall of the chamber always is a gap of ``radial_gap``; ``kind`` says what seals the shaft where it leaves, one
-    seal a side. A gearbox without a housing has no walls: its shafts leave it towards couplings, motor and parts of
-    other gearboxes.
-    """
-
-    shaft: Name
-    """Shaft that they seal."""
-    kind: Literal["contactless", "radial_lip"] = "contactless"
-    """What seals the shaft where it leaves the gearbox: a gap without contact, or a radial lip."""
-    radial_gap: Annotated[Clearance, Usual(1.5e-3, 0.03, "shaft diameter")]
-    """Half the difference of bore and shaft diameter as drawn; thermal expansion changes it."""
-    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm")]
-    """Axial movement of the shaft the seals take without touching."""
-    rubbing_torque: Annotated[Torque, Usual(1e-5, 0.03, "test torque")] = 0.0
-    """Friction torque of seals that touch, of all seals of the shaft together, on top of what ``kind`` loses."""
 
 
 class Gearbox(Part):

@@ -75,7 +75,7 @@ def thrust(solved: SolvedRig, name: str, box: Gearbox) -> bool:
 
 def sealed(solved: SolvedRig, name: str, box: Gearbox) -> bool:
     """One of these with seals without contact."""
-    return unexpanded(solved, name, box) and any(seals.kind == "contactless" for seals in box.seals.values())
+    return unexpanded(solved, name, box) and any(not seals.end.touches for seals in box.seals.values())
 
 
 def with_play(solved: SolvedRig, name: str, box: Gearbox) -> bool:

@@ -8,12 +8,13 @@ from typing import Protocol
 from dynamics.gear.pair import GearPair
 from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss, ToothPath, mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import oil_acceleration
-from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
+from dynamics.losses.seal_loss import SealGap
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.rotor.bearing import BearingState
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import ZERO_CELSIUS
-from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet
+from rigdesign.case.gearbox import Gearbox, HeatSplit, mesh_jet
+from rigdesign.case.seals import WALL, Seals
 from rigdesign.coupling.bearing_loads import constant_drag
 from rigdesign.coupling.bearing_seats import body_shares
 from rigdesign.coupling.flank_heat import churning, mesh_split
@@ -326,11 +327,12 @@ def _seal_losses(
     mist = chamber_mist(rig, box_name, coupling_state)
     found = []
     for seal in shaft_seals(rig, box_name, seals.shaft):
-        if seal.leaves and seals.kind == "radial_lip":
-            found.append((seal, lip_seal_loss(place, seal.diameter, omega)))
-        elif seal.length is not None:
+        gap = None
+        if seal.length is not None:
             gap = SealGap(radius=0.5 * seal.diameter, gap=seals.radial_gap, length=seal.length)
-            loss = gap_seal_loss(place, gap, omega, mist.density, mist.viscosity)
+        end = seals.end if seal.leaves else WALL
+        loss = end.loss(place, seal.diameter, omega, gap, mist)
+        if loss is not None:
             found.append((seal, loss))
     return found
 

@@ -21,6 +21,7 @@ from rigdesign.case.defaults.rule import (
     tabled,
 )
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+from rigdesign.case.seals import END_SEALS, WALL
 
 book = RuleBook()
 THIN_RIM, WHOLE_DEPTH = 1.2, 2.25
@@ -397,9 +398,8 @@ def _seal_gap(tree: RawTree, box: str, seal: str) -> Filling:
 
 @book.default("gearboxes.*.seals.*.axial_travel")
 def _seal_travel(tree: RawTree, box: str, seal: str) -> Filling:
-    if tree.text(f"gearboxes.{box}.seals.{seal}.kind") == "radial_lip":
-        return assumed("3 mm", "a lip slides along its shaft", "1 mm", "5 mm")
-    return assumed("1 mm", "axial gap of a labyrinth", "0.5 mm", "1.5 mm")
+    kind = END_SEALS.get(tree.text(f"gearboxes.{box}.seals.{seal}.kind") or "", WALL)
+    return assumed(*kind.usual_travel)
 
 
 @book.default("gearboxes.*.heat_split.windage_into_gears")
