@@ -115,17 +115,17 @@ class Gearbox(Part):
     @property
     def jets(self) -> JetOil | None:
         """Oil injected at the meshes; None where the gears dip."""
-        return self.oil if isinstance(self.oil, JetOil) else None
+        return self.oil.jets
 
     @property
     def sump(self) -> DipOil | None:
         """Sump into which the gears dip; None where oil is injected."""
-        return self.oil if isinstance(self.oil, DipOil) else None
+        return self.oil.sump
 
     @property
     def fed_bearings(self) -> FedOil | None:
         """Oil fed to the bearings; None where they live on splash or grease."""
-        return self.bearing_oil if isinstance(self.bearing_oil, FedOil) else None
+        return self.bearing_oil.fed
 
     @property
     def feeds(self) -> Mapping[str, tuple[JetOil | FedOil, int]]:
@@ -140,17 +140,17 @@ class Gearbox(Part):
     @property
     def bearing_oil_name(self) -> str:
         """Oil of the bearings: that of the gears where it is thrown on them."""
-        return self.oil.oil if isinstance(self.bearing_oil, SplashOil) else self.bearing_oil.oil
+        return self.bearing_oil.oil_name(self.oil.oil)
 
     @property
     def splash_share(self) -> float:
         """Share of the oil that gears lift or jets inject which passes each bearing; 0 where none is thrown on them."""
-        return self.bearing_oil.splash_share if isinstance(self.bearing_oil, SplashOil) else 0.0
+        return self.bearing_oil.splash_share
 
     @property
     def gear_oil_temperature(self) -> float | None:
         """Temperature at which the oil of the gears is fed or its sump is held [K]; None for a free sump."""
-        return self.oil.inlet_temperature if isinstance(self.oil, JetOil) else self.oil.sump_temperature
+        return self.oil.temperature
 
     @property
     def stated_oil_temperatures(self) -> tuple[float, ...]:

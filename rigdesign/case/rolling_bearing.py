@@ -33,6 +33,7 @@ from rigdesign.case.fields import (
     fault,
 )
 from rigdesign.case.losses import LossFactor
+from rigdesign.case.lubrication import BearingOil
 
 if TYPE_CHECKING:
     from dynamics.rotor.bearing import Bearing
@@ -56,7 +57,7 @@ class BearingPlace:
     """
 
     clearance: float
-    lubrication: Literal["fed", "splash", "grease"]
+    lubrication: BearingOil
     sump_level: float | None = None
     seat_factors: tuple[float, float] = (1.0, 1.0)
 
@@ -339,12 +340,11 @@ class RollingBearingInput(Part):
         from dynamics.rotor.rolling import RollingBearing, SeatConductances, housing_path, shaft_path
 
         level = self._oil_level(place)
-        bath = {"fed": "oil_jet", "grease": "grease", "splash": "oil_bath" if level else "oil_spot"}
         data = self.data
         return RollingBearing(
             data=data,
             law=self.friction_law,
-            lubrication=bath[place.lubrication],  # type: ignore[arg-type]
+            lubrication=place.lubrication.rolling_supply(level),
             oil_level=level or None,
             oil_kind=self.oil_kind,
             clearance=place.clearance,
