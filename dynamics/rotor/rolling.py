@@ -21,26 +21,19 @@ from dynamics.rotor.bearing import (
     BearingOperation,
     HeatStar,
 )
-from dynamics.rotor.rolling_catalogue import CatalogueBearing
-from dynamics.rotor.rolling_row import COMMON_GROOVE, BallGroove, RowOfElements, contact_law
-from dynamics.rotor.rolling_state import (
+from dynamics.rotor.rolling_friction import (
     LAWS,
     LUBRICATIONS,
     OIL_KINDS,
-    SOURCES,
     FrictionConditions,
     FrictionLaw,
     FrictionTorque,
-    LifeConditions,
     Lubrication,
     OilKind,
-    RollingState,
-    check_axial,
-    friction_torque,
-    limit_warnings,
-    minimum_load,
-    rating_life,
 )
+from dynamics.rotor.rolling_kinds import CatalogueBearing
+from dynamics.rotor.rolling_row import COMMON_GROOVE, BallGroove, RowOfElements, contact_law
+from dynamics.rotor.rolling_state import LifeConditions, RollingState, limit_warnings, rating_life
 from dynamics.rotor.rolling_stiffness import bearing_stiffness
 from dynamics.standards import iso281_2007
 
@@ -165,6 +158,11 @@ class RollingBearing:
                 raise BearingError(
                     f"rolling bearing: {name} = {value!r}: must be one of {', '.join(options)}"
                 )
+        if self.law not in self.data.rules.friction_sources:
+            raise self.data.wrong(
+                "law", repr(self.law),
+                f"has no coefficients for its kind; take {' or '.join(self.data.rules.friction_sources)}",
+            )  # fmt: skip
         if not (self.seal_torque >= 0.0 and math.isfinite(self.seal_torque)):
             raise BearingError(
                 f"rolling bearing: seal_torque = {self.seal_torque:.6g} N m: must be finite and not negative"
@@ -199,7 +197,7 @@ class RollingBearing:
         BearingError : axial load on a bearing that carries none, or nothing that carries the heat
         BearingNotConvergedError : the temperature would leave that without friction by more than 400 K
         """
-        check_axial(self.data, operation.axial_load)
+        self.data.check_axial(operation.axial_load)
         paths = self._paths(operation)
         carried = paths.total
         if carried == 0.0:
@@ -241,7 +239,7 @@ class RollingBearing:
         return self.contamination
 
     def _friction(self, operation: BearingOperation, temperature: float) -> FrictionTorque:
-        open_bearing = friction_torque(
+        open_bearing = self.data.rules.friction(
             self.law,
             self.data,
             FrictionConditions(
@@ -348,7 +346,7 @@ def _state(
             reliability=bearing.reliability,
         ),
     )
-    carried_axially = 0.0 if data.kind == "cylindrical_roller" else operation.axial_load
+    carried_axially = 0.0 if data.elements.straight else operation.axial_load
     stiffness = bearing_stiffness(bearing.row, operation.load, carried_axially)
     state = RollingState(
         load=operation.load,
@@ -388,10 +386,10 @@ def _state(
         load_utilisation=life.equivalent_load / data.dynamic_rating,
         speed_utilisation=omega / data.limiting_speed,
         reference_speed_utilisation=omega / data.reference_speed,
-        minimum_load=minimum_load(data, omega, viscosity / oil.density),
+        minimum_load=data.rules.minimum_load(data, omega, viscosity / oil.density),
         stiffness=stiffness,
         row=bearing.row,
-        source=SOURCES[bearing.law],
+        source=data.rules.friction_sources[bearing.law],
         warnings=(),
     )
     bath = bearing.lubrication == "oil_bath"

@@ -10,8 +10,9 @@ thick-walled cylinders (Lame); with one material this is the formula of the NSK 
 import math
 from dataclasses import dataclass
 
+from dynamics.errors import DynamicsInputError
 from dynamics.rotor.bearing import BearingError
-from dynamics.rotor.rolling_catalogue import CatalogueBearing
+from dynamics.rotor.rolling_kinds import CatalogueBearing
 from dynamics.standards import iso5753_1_2009
 from dynamics.standards.iso5753_1_2009 import ClearanceClass
 
@@ -88,9 +89,13 @@ def class_clearance(bearing: CatalogueBearing, clearance_class: ClearanceClass) 
 
     Raises DynamicsInputError for a kind or a bore without a class.
     """
-    least, largest = iso5753_1_2009.radial_internal_clearance(
-        bearing.kind, bearing.bore * 1e3, clearance_class
-    )
+    table = bearing.rules.clearance_classes
+    if table is None:
+        raise DynamicsInputError(
+            f"clearance class {clearance_class}: a bearing of kind {bearing.kind} has none, its clearance is set at "
+            "assembly; give the clearance itself"
+        )
+    least, largest = iso5753_1_2009.radial_internal_clearance(table, bearing.bore * 1e3, clearance_class)
     return 1e-6 * least, 1e-6 * largest
 
 

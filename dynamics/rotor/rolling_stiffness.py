@@ -62,7 +62,7 @@ def bearing_stiffness(row: RowOfElements, radial: float, axial: float) -> Bearin
     BearingError : axial load on a bearing of cylindrical rollers, whose flanges have no stiffness here
     BearingNotConvergedError : no displacement carries the load
     """
-    if row.elements.roller and row.elements.contact_angle == 0.0 and axial > 0.0:
+    if row.elements.straight and axial > 0.0:
         raise BearingError(
             f"bearing stiffness: axial load = {axial:.6g} N: rollers without contact angle carry it by their flanges; "
             "give the radial load alone"
@@ -73,7 +73,7 @@ def bearing_stiffness(row: RowOfElements, radial: float, axial: float) -> Bearin
         if held.axial_load > axial:
             return held
     free = axial > 0.0 or row.clearance < 0.0
-    return _solve((row,), radial, axial, free_axially=free and not (row.elements.roller and not angled))
+    return _solve((row,), radial, axial, free_axially=free and not row.elements.straight)
 
 
 def stiffness_at(row: RowOfElements, found: BearingStiffness, azimuth: float = 0.0) -> FloatArray:

@@ -11,9 +11,9 @@ from dynamics.errors import DynamicsInputError
 ClearanceClass = Literal["C2", "CN", "C3", "C4", "C5"]
 CLASSES: tuple[ClearanceClass, ...] = ("C2", "CN", "C3", "C4", "C5")
 
-Row = tuple[float, tuple[tuple[int, int], ...]]
+Table = tuple[tuple[float, tuple[tuple[int, int], ...]], ...]
 
-DEEP_GROOVE_BALL: tuple[Row, ...] = (
+DEEP_GROOVE_BALL: Table = (
     (10.0, ((0, 7), (2, 13), (8, 23), (14, 29), (20, 37))),
     (18.0, ((0, 9), (3, 18), (11, 25), (18, 33), (25, 45))),
     (24.0, ((0, 10), (5, 20), (13, 28), (20, 36), (28, 48))),
@@ -31,7 +31,7 @@ DEEP_GROOVE_BALL: tuple[Row, ...] = (
 )
 """Upper end of the bore range, then (minimum, maximum) of C2, CN, C3, C4, C5."""
 
-CYLINDRICAL_ROLLER: tuple[Row, ...] = (
+CYLINDRICAL_ROLLER: Table = (
     (24.0, ((0, 25), (20, 45), (35, 60), (50, 75), (65, 90))),
     (30.0, ((0, 25), (20, 45), (35, 60), (50, 75), (70, 95))),
     (40.0, ((5, 30), (25, 50), (45, 70), (60, 85), (80, 105))),
@@ -47,31 +47,21 @@ CYLINDRICAL_ROLLER: tuple[Row, ...] = (
 )
 """As above; the first row is for bores up to 24 mm."""
 
-TABLES: dict[str, tuple[Row, ...]] = {
-    "deep_groove_ball": DEEP_GROOVE_BALL,
-    "cylindrical_roller": CYLINDRICAL_ROLLER,
-}
 
-
-def radial_internal_clearance(kind: str, d: float, clearance_class: ClearanceClass) -> tuple[float, float]:
+def radial_internal_clearance(table: Table, d: float, clearance_class: ClearanceClass) -> tuple[float, float]:
     """Least and largest radial internal clearance of an unmounted bearing [um]; bore d [mm].
 
-    Raises DynamicsInputError for a kind without a table (its clearance is set at assembly) or a bore outside it.
+    Raises DynamicsInputError for a bore outside the table.
     """
-    if kind not in TABLES:
-        raise DynamicsInputError(
-            f"clearance class {clearance_class}: a bearing of kind {kind} has none, its clearance is set at assembly; "
-            "give the clearance itself"
-        )
     if clearance_class not in CLASSES:
         raise DynamicsInputError(
             f"clearance class = {clearance_class!r}: unknown; give one of {', '.join(CLASSES)}"
         )
     column = CLASSES.index(clearance_class)
-    for upper, ranges in TABLES[kind]:
+    for upper, ranges in table:
         if 0.0 < d <= upper:
             least, largest = ranges[column]
             return float(least), float(largest)
     raise DynamicsInputError(
-        f"bore = {d:.6g} mm: clearance classes are tabled up to {TABLES[kind][-1][0]:.0f} mm; give the clearance itself"
+        f"bore = {d:.6g} mm: clearance classes are tabled up to {table[-1][0]:.0f} mm; give the clearance itself"
     )

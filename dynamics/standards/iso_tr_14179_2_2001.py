@@ -166,40 +166,38 @@ class Coefficients(NamedTuple):
     exponent: float = 0.0
 
 
-COEFFICIENTS: dict[str, dict[str, Coefficients]] = {
-    "deep_groove_ball": {
-        "618": Coefficients(1.5, 0.00045, 0.5),
-        "619": Coefficients(1.75, 0.00067, 0.5),
-        "160": Coefficients(1.75, 0.00067, 0.5),
-        "60": Coefficients(1.75, 0.00067, 0.5),
-        "62": Coefficients(2.0, 0.00089, 0.5),
-        "63": Coefficients(2.0, 0.00089, 0.5),
-        "64": Coefficients(2.0, 0.00089, 0.5),
-    },
-    "angular_contact_ball": {
-        "72B": Coefficients(2.0, 0.00067, 0.33),
-        "73B": Coefficients(2.0, 0.00094, 0.33),
-    },
-    "cylindrical_roller": {
-        "10": Coefficients(2.0, 0.00020),
-        "2": Coefficients(2.0, 0.00030),
-        "3": Coefficients(2.0, 0.00035),
-        "4": Coefficients(2.0, 0.00040),
-        "22": Coefficients(3.0, 0.00040),
-        "23": Coefficients(4.0, 0.00040),
-    },
-    "tapered_roller": {
-        "302": Coefficients(3.0, 0.00040),
-        "303": Coefficients(3.0, 0.00040),
-        "313": Coefficients(3.0, 0.00040),
-        "320": Coefficients(4.5, 0.00040),
-        "322": Coefficients(4.5, 0.00040),
-        "323": Coefficients(4.5, 0.00040),
-        "329": Coefficients(4.5, 0.00040),
-        "330": Coefficients(6.0, 0.00040),
-        "331": Coefficients(6.0, 0.00040),
-        "332": Coefficients(6.0, 0.00040),
-    },
+DEEP_GROOVE_BALL: dict[str, Coefficients] = {
+    "618": Coefficients(1.5, 0.00045, 0.5),
+    "619": Coefficients(1.75, 0.00067, 0.5),
+    "160": Coefficients(1.75, 0.00067, 0.5),
+    "60": Coefficients(1.75, 0.00067, 0.5),
+    "62": Coefficients(2.0, 0.00089, 0.5),
+    "63": Coefficients(2.0, 0.00089, 0.5),
+    "64": Coefficients(2.0, 0.00089, 0.5),
+}
+ANGULAR_CONTACT_BALL: dict[str, Coefficients] = {
+    "72B": Coefficients(2.0, 0.00067, 0.33),
+    "73B": Coefficients(2.0, 0.00094, 0.33),
+}
+CYLINDRICAL_ROLLER: dict[str, Coefficients] = {
+    "10": Coefficients(2.0, 0.00020),
+    "2": Coefficients(2.0, 0.00030),
+    "3": Coefficients(2.0, 0.00035),
+    "4": Coefficients(2.0, 0.00040),
+    "22": Coefficients(3.0, 0.00040),
+    "23": Coefficients(4.0, 0.00040),
+}
+TAPERED_ROLLER: dict[str, Coefficients] = {
+    "302": Coefficients(3.0, 0.00040),
+    "303": Coefficients(3.0, 0.00040),
+    "313": Coefficients(3.0, 0.00040),
+    "320": Coefficients(4.5, 0.00040),
+    "322": Coefficients(4.5, 0.00040),
+    "323": Coefficients(4.5, 0.00040),
+    "329": Coefficients(4.5, 0.00040),
+    "330": Coefficients(6.0, 0.00040),
+    "331": Coefficients(6.0, 0.00040),
+    "332": Coefficients(6.0, 0.00040),
 }
 
 
@@ -226,14 +224,3 @@ def f_1(row: Coefficients, P_0: float, C_0: float) -> float:
     """f_1 at a static equivalent load P_0 and a static rating C_0 of the same unit."""
     value: float = row.f_1 * (P_0 / C_0) ** row.exponent if row.exponent else row.f_1
     return value
-
-
-def P_1(kind: str, F_r: float, F_a: float, Y: float) -> float:
-    """Load that decides T_VL1 [N]; Y is the axial factor of a tapered roller bearing, not read for others."""
-    if kind == "deep_groove_ball":
-        return max(F_r, 3.0 * F_a - 0.1 * F_r)
-    if kind == "angular_contact_ball":
-        return max(F_r, F_a - 0.1 * F_r)
-    if kind == "tapered_roller":
-        return max(F_r, 2.0 * Y * F_a)
-    return F_r

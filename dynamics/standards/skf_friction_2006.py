@@ -17,20 +17,20 @@ MU_BL = 0.15
 """Sliding friction coefficient of mixed lubrication, by additive package (p. 100: about 0.15); also at the start."""
 MU_EHL = {"mineral": 0.05, "synthetic": 0.04, "transmission": 0.1}
 """Sliding friction coefficient in full film by lubricant; cylindrical and tapered bearings have their own."""
-MU_EHL_KIND = {"cylindrical_roller": 0.02, "tapered_roller": 0.002}
 
 K_RS = {"oil_bath": 3e-8, "oil_jet": 3e-8, "oil_spot": 6e-8, "grease": 6e-8}
 """Starvation constant; in an oil bath only below the centre of the lowest rolling element, above it none."""
 
-K_Z = {
-    "deep_groove_ball": 3.1,
-    "angular_contact_ball": 4.4,
-    "cylindrical_roller": 5.1,
-    "tapered_roller": 6.0,
-    "spherical_roller": 5.5,
-}
-K_L = {"cylindrical_roller": 0.65, "tapered_roller": 0.7, "spherical_roller": 0.8}
-"""Geometric constants of table 5, single row, with cage."""
+
+class KindConstants(NamedTuple):
+    """Constants of a kind, single row, with cage: those of table 5, and mu_EHL of kinds with their own (p. 91).
+
+    K_L is None for balls, mu_EHL for kinds that take that of the lubricant.
+    """
+
+    K_Z: float
+    K_L: float | None = None
+    mu_EHL: float | None = None
 
 
 class BallConstants(NamedTuple):
@@ -189,13 +189,13 @@ def V_M(level: float, roller: bool) -> float:
     return values[right - 1] + max(share, 0.0) * (values[right] - values[right - 1])
 
 
-def M_drag(kind: str, size: Size, H: float, n: float) -> float:
+def M_drag(constants: KindConstants, size: Size, H: float, n: float) -> float:
     """Drag moment of a bearing in an oil bath whose level stands H [mm] above the lowest point of the outer raceway.
 
     Balls V_M K_ball d_m^5 n^2, rollers 10 V_M K_roll B d_m^4 n^2 (pp. 98-100).
     """
     d_m = size.d_m
-    K_ball = K_Z[kind] * (size.d + size.D) / (size.D - size.d) * 1e-12
-    if kind not in K_L:
+    K_ball = constants.K_Z * (size.d + size.D) / (size.D - size.d) * 1e-12
+    if constants.K_L is None:
         return V_M(H / d_m, roller=False) * K_ball * d_m**5 * n**2
-    return 10.0 * V_M(H / d_m, roller=True) * K_L[kind] * K_ball * size.B * d_m**4 * n**2
+    return 10.0 * V_M(H / d_m, roller=True) * constants.K_L * K_ball * size.B * d_m**4 * n**2

@@ -17,7 +17,7 @@ from rigdesign.case.lubrication import (
     TankCoolerInput,
     TankInput,
 )
-from rigdesign.case.rig_heat import CouplingRotorInput, MachineInput, RoomInput
+from rigdesign.case.rig_heat import MachineInput, RoomInput
 from rigdesign.oil_circuit.circuit import (
     NO_PIPE,
     Arrangement,
@@ -35,7 +35,7 @@ from rigdesign.oil_circuit.circuit import (
 )
 from rigdesign.properties.oil import Oil
 from rigdesign.rig_heat.component import (
-    CouplingRotor,
+    CouplingHeat,
     EfficiencyLoss,
     HeatSplit,
     LossMap,
@@ -249,7 +249,7 @@ class HeatParts:
     """
 
     machines: tuple[Machine, ...] = ()
-    rotors: tuple[tuple[CouplingRotor, str], ...] = ()
+    rotors: tuple[tuple[CouplingHeat, str], ...] = ()
     room: Room | None = None
 
 
@@ -263,7 +263,7 @@ def heat_parts(case: "Case") -> HeatParts:
             machines.append(_machine(name, given.machines[name]))
     for name, coupling in given.couplings.items():
         with _below_key(f"rig_heat.couplings.{name}", faults):
-            rotors.append((_rotor(name, coupling), shaft_of(case, name, coupling)))
+            rotors.append((coupling.rotor(name), shaft_of(case, name, coupling.shaft)))
     if given.room is not None:
         with _below_key("rig_heat", faults):
             room = _room(given.room, case.ambient.temperature)
@@ -272,10 +272,10 @@ def heat_parts(case: "Case") -> HeatParts:
     return HeatParts(machines=tuple(machines), rotors=tuple(rotors), room=room)
 
 
-def shaft_of(case: "Case", name: str, coupling: CouplingRotorInput) -> str:
+def shaft_of(case: "Case", name: str, stated: str | None) -> str:
     """Shaft with which a coupling turns. Raises CaseError where neither the table nor the drivetrain names one."""
-    if coupling.shaft is not None:
-        return coupling.shaft
+    if stated is not None:
+        return stated
     couplings: Mapping[str, object] = {} if case.drivetrain is None else case.drivetrain.couplings
     if case.drivetrain is None or name not in couplings:
         known = ", ".join(couplings) or "none"
@@ -303,15 +303,6 @@ def _loss(given: MachineInput) -> MachineLoss:
         [point.speed for point in points],
         [point.torque for point in points],
         [point.loss for point in points],
-    )
-
-
-def _rotor(name: str, given: CouplingRotorInput) -> CouplingRotor:
-    return CouplingRotor(
-        name=name,
-        radius=0.5 * given.diameter,
-        length=given.length,
-        hub_radius=0.5 * (given.hub_diameter or 0.0),
     )
 
 

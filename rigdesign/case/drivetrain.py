@@ -180,6 +180,11 @@ class CouplingInput(Part):
     turn, against its torsional stiffness, and bends both by half of its torque times b, all the time and twice a
     turn."""
 
+    @property
+    def alternates(self) -> bool:
+        """Whether an angle between its axes alternates its turn and its bending."""
+        return self.joint == "hooke"
+
 
 class MotorInput(Part):
     """Drive outside the power circuit."""

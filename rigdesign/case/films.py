@@ -8,13 +8,14 @@ import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Literal, get_args
+from typing import Annotated, ClassVar, Literal, Protocol, get_args
 
 from pydantic import Field, WithJsonSchema, model_validator
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import Conductivity, Length, Name, Part, Size, Text, Usual, Velocity, fault
+from thermal.conditions.boundary import BoundaryCondition
 from thermal.films import bath, convection
 from thermal.films.bath import wetted_wall_film
 from thermal.films.convection import RibArray, scaled
@@ -169,6 +170,26 @@ ROOM, WARM_WALL = 293.15, 343.15
 """Temperatures of air and wall [K] at which a law is evaluated for whether its coefficient contains radiation."""
 
 
+class Host(Protocol):
+    """Housing in a running rig, for the conditions on its surfaces."""
+
+    @property
+    def surroundings(self) -> float:
+        """Temperature of the walls of the room [K]."""
+
+    def place(self, condition: "SurfaceCondition", surface: str) -> SurfacePlace:
+        """Numbers of a surface for a film law."""
+
+    def film(self, condition: "SurfaceFilm", surface: str) -> BoundaryCondition:
+        """Film to a fluid of the case."""
+
+    def bearing_film(self, factor: float, surface: str) -> BoundaryCondition | None:
+        """Film of the bearing at a surface, its conductance times a factor; None of one that is joined to its seats."""
+
+    def flank_film(self, surface: str) -> BoundaryCondition:
+        """Film on the teeth that a rim stands for."""
+
+
 class SurfaceCondition(Part):
     """What one entry of ``boundary`` says of its surfaces."""
 
@@ -183,6 +204,20 @@ class SurfaceCondition(Part):
     @property
     def wetted_by(self) -> str | None:
         """Fluid of the case that its film exchanges heat with; None for anything else."""
+        return None
+
+    @abstractmethod
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """The condition of the temperature field; None where it adds none.
+
+        stood_for : what the stars of its surfaces stood for
+        radiation_in_film : a film to room air holds the radiation of the surface already
+        """
+
+    def against_enclosure(self, entry: str) -> tuple[str, str] | None:
+        """Why its surface cannot radiate in an enclosure, and the remedy; None where it can."""
         return None
 
     def partner_of(self, stood_for: tuple[str, ...]) -> str | None:
@@ -211,6 +246,12 @@ class SurfaceFilm(SurfaceCondition):
     def fluid_temperature_given(self, usual: float) -> float:
         """Temperature of the fluid [K]; ``usual`` is that of the case."""
         return usual
+
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """A film to its fluid."""
+        return host.film(self, surface)
 
 
 class PublishedFilm(SurfaceFilm):

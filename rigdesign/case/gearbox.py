@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from dynamics.losses.oil_jet import JET_ANGLES, OilJet
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Clearance, Name, Part, Share, Title, Torque, Usual, fault
+from rigdesign.case.fields import Name, Part, Share, Title, Usual, fault
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
@@ -21,6 +21,7 @@ from rigdesign.case.lubrication import (
     OilState,
     SplashOil,
 )
+from rigdesign.case.seals import Seals
 from rigdesign.properties.oil import Oil
 
 # How each power loss of a gearbox divides between its bodies and its oil.
@@ -78,26 +79,6 @@ class HeatSplit(Part):
         return self
 
 
-class Seals(Part):
-    """Seals of one shaft: where it passes the walls of the chamber, and where it leaves the gearbox.
-
-    A wall of the chamber always is a gap of ``radial_gap``; ``kind`` says what seals the shaft where it leaves, one
-    seal a side. A gearbox without a housing has no walls: its shafts leave it towards couplings, motor and parts of
-    other gearboxes.
-    """
-
-    shaft: Name
-    """Shaft that they seal."""
-    kind: Literal["contactless", "radial_lip"] = "contactless"
-    """What seals the shaft where it leaves the gearbox: a gap without contact, or a radial lip."""
-    radial_gap: Annotated[Clearance, Usual(1.5e-3, 0.03, "shaft diameter")]
-    """Half the difference of bore and shaft diameter as drawn; thermal expansion changes it."""
-    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm")]
-    """Axial movement of the shaft the seals take without touching."""
-    rubbing_torque: Annotated[Torque, Usual(1e-5, 0.03, "test torque")] = 0.0
-    """Friction torque of seals that touch, of all seals of the shaft together, on top of what ``kind`` loses."""
-
-
 class Gearbox(Part):
     """One gearbox of the rig."""
 
@@ -134,17 +115,17 @@ class Gearbox(Part):
     @property
     def jets(self) -> JetOil | None:
         """Oil injected at the meshes; None where the gears dip."""
-        return self.oil if isinstance(self.oil, JetOil) else None
+        return self.oil.jets
 
     @property
     def sump(self) -> DipOil | None:
         """Sump into which the gears dip; None where oil is injected."""
-        return self.oil if isinstance(self.oil, DipOil) else None
+        return self.oil.sump
 
     @property
     def fed_bearings(self) -> FedOil | None:
         """Oil fed to the bearings; None where they live on splash or grease."""
-        return self.bearing_oil if isinstance(self.bearing_oil, FedOil) else None
+        return self.bearing_oil.fed
 
     @property
     def feeds(self) -> Mapping[str, tuple[JetOil | FedOil, int]]:
@@ -159,17 +140,17 @@ class Gearbox(Part):
     @property
     def bearing_oil_name(self) -> str:
         """Oil of the bearings: that of the gears where it is thrown on them."""
-        return self.oil.oil if isinstance(self.bearing_oil, SplashOil) else self.bearing_oil.oil
+        return self.bearing_oil.oil_name(self.oil.oil)
 
     @property
     def splash_share(self) -> float:
         """Share of the oil that gears lift or jets inject which passes each bearing; 0 where none is thrown on them."""
-        return self.bearing_oil.splash_share if isinstance(self.bearing_oil, SplashOil) else 0.0
+        return self.bearing_oil.splash_share
 
     @property
     def gear_oil_temperature(self) -> float | None:
         """Temperature at which the oil of the gears is fed or its sump is held [K]; None for a free sump."""
-        return self.oil.inlet_temperature if isinstance(self.oil, JetOil) else self.oil.sump_temperature
+        return self.oil.temperature
 
     @property
     def stated_oil_temperatures(self) -> tuple[float, ...]:

@@ -4,9 +4,10 @@ from collections.abc import Iterable, Mapping
 
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.films import matched
-from rigdesign.case.gearbox import Gearbox, Seals
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
+from rigdesign.case.seals import Seals
 from thermal.housing.geometry import ClampingField, HousingGeometry
 from thermal.housing.shaft_geometry import EndBearing, GearDisc, ShaftGeometry
 

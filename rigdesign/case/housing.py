@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -31,6 +31,9 @@ from rigdesign.case.films import FilmFactor, matched
 from rigdesign.case.surface_conditions import Condition
 from rigdesign.properties.fluid import ATMOSPHERE
 from thermal.housing.face_rules import Box, Cylinder, FaceRule, Plane
+
+if TYPE_CHECKING:
+    from thermal.films.law import ExchangeLaw
 
 # Fluids of a housing besides its oil and room air: volumes of one temperature, streams, and what links them.
 #
@@ -301,6 +304,10 @@ class HousingMesh(Part):
         return {zone: size for zone, size in zones.items() if size is not None}
 
 
+AIR_JUMP = 0.37e-6
+"""Temperature jump length of air at one atmosphere [m] (Yovanovich 2005)."""
+
+
 class PressedJoint(Part):
     """Two rough metal faces under pressure (Cooper, Mikic, Yovanovich 1969)."""
 
@@ -321,13 +328,30 @@ class PressedJoint(Part):
             raise fault("roughness is zero", "write the rms roughness of both faces, e.g. 3 um")
         return self
 
+    def law(self, conductivities: tuple[float, float], air: float) -> "ExchangeLaw":
+        """Conductance between solids of two conductivities, in air of another one [W/(m K)]."""
+        from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
+
+        contact = RoughContact(
+            pressure=self.pressure, hardness=self.hardness, roughness=self.roughness, slope=self.slope
+        )
+        dry = self.filling_conductivity is None
+        filling = GapFilling(
+            conductivity=self.filling_conductivity or air, gas_parameter=AIR_JUMP if dry else 0.0
+        )
+        return pressed_joint(contact, conductivities, filling)
+
+
+FootJoint: TypeAlias = PressedJoint
+"""Joint of any kind, each with the ``law`` of its conductance; a further kind joins here."""
+
 
 class FootContact(Part):
     """Foot and field as bodies that touch: a measured or assumed conductance, or the joint it follows from."""
 
     conductance: HeatTransferCoefficient | None = None
     """Heat flux per kelvin between foot and field."""
-    joint: PressedJoint | None = None
+    joint: FootJoint | None = None
     """Joint of two rough faces from which the conductance follows."""
 
     @model_validator(mode="after")

@@ -1,14 +1,87 @@
 """How power losses are found: computed, or given by place."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias
 
 from pydantic import Field
 
 from rigdesign.case.fields import MistDensity, Name, Part, Positive, Power, Usual
 
-LossKind = Literal["mesh", "bearing", "windage", "churning", "seal", "oil_acceleration", "squeeze"]
 
+@dataclass(frozen=True, kw_only=True)
+class LossKind:
+    """A kind of loss: which parts of a gearbox have it, and where its heat and its torque go."""
+
+    name: str
+    """As results and ``losses.given`` name it."""
+    parts: Literal["meshes", "gears", "bearings", "seals"]
+    """Parts of a gearbox that lose so."""
+    needs: Literal["sump", "jets"] | None = None
+    """What the gearbox has to have for it."""
+    factor: str = ""
+    """Its key among `LossFactors`; its name when left out."""
+    given: bool = True
+    """Whether a case may give it."""
+    awaited: bool = True
+    """Whether a case that gives its losses leaves something out where it gives none."""
+    of_teeth: bool = False
+    """Friction of teeth: the mesh law brakes with it, holds its factor and its limits."""
+    at_bearings: bool = False
+    """Friction of bearings, whose state holds its factor; what enters the oil enters that of the bearings."""
+    ends_with_oil: bool = False
+    """Whether it ends where no oil is fed."""
+    heats: Literal["gear", "seal", "seats"] | None = None
+    """Bodies that take their part of it; of a mesh its split says so."""
+    body_shares: tuple[str, ...] = ()
+    """Keys of ``heat_split`` whose sum enters these bodies."""
+
+    def parts_of(self, box: "Losing") -> list[str]:
+        """Names of the parts of a gearbox that lose so."""
+        if self.needs is not None and getattr(box, self.needs) is None:
+            return []
+        return list(getattr(box, self.parts))
+
+    def braked(self, box: "Losing", part: str) -> str:
+        """Place of the gearbox at which its torque brakes a shaft: the pinion of a mesh, else the part itself."""
+        if self.parts == "meshes":
+            return box.meshes[part].pinion
+        return f"seals.{part}" if self.parts == "seals" else part
+
+
+class _Mesh(Protocol):
+    @property
+    def pinion(self) -> str: ...
+
+
+class Losing(Protocol):
+    """What a kind of loss asks of a gearbox."""
+
+    @property
+    def meshes(self) -> Mapping[str, _Mesh]:
+        """By name."""
+
+
+LOSS_KINDS = {
+    kind.name: kind
+    for kind in (
+        LossKind(name="mesh", parts="meshes", of_teeth=True),
+        LossKind(name="bearing", parts="bearings", at_bearings=True, heats="seats"),
+        LossKind(name="windage", parts="gears", heats="gear", body_shares=("windage_into_gears",)),
+        LossKind(name="churning", parts="gears", needs="sump", awaited=False),
+        LossKind(
+            name="seal", parts="seals", heats="seal", body_shares=("seal_into_shaft", "seal_into_housing")
+        ),
+        LossKind(name="oil_acceleration", parts="meshes", needs="jets", factor="jet", ends_with_oil=True),
+        LossKind(name="squeeze", parts="meshes", awaited=False, ends_with_oil=True),
+        LossKind(name="mesh_damping", parts="meshes", awaited=False, given=False),
+    )
+}
+"""Kinds of losses by name; a further kind joins here."""
+if TYPE_CHECKING:
+    GivenLossKind: TypeAlias = str
+else:
+    GivenLossKind = Literal[tuple(kind.name for kind in LOSS_KINDS.values() if kind.given)]
 
 LossFactor = Annotated[float, Field(ge=0.0, le=10.0), Usual(0.15, 7.0)]
 """Multiplies a loss: what it really is, over what its law or the case says."""
@@ -34,15 +107,8 @@ class LossFactors(Part):
 
     def of(self, kind: str) -> float:
         """Factor of a kind of loss as results name it."""
-        return {
-            "mesh": self.mesh,
-            "bearing": self.bearing,
-            "windage": self.windage,
-            "churning": self.churning,
-            "seal": self.seal,
-            "oil_acceleration": self.jet,
-            "squeeze": self.squeeze,
-        }[kind]
+        factor: float = getattr(self, LOSS_KINDS[kind].factor or kind)
+        return factor
 
 
 class GivenLoss(Part):
@@ -50,7 +116,7 @@ class GivenLoss(Part):
 
     gearbox: Name
     """Gearbox in which it arises."""
-    kind: LossKind
+    kind: GivenLossKind
     """Kind of the loss."""
     part: Name
     """Mesh, bearing, seal or gear (windage) of that gearbox."""

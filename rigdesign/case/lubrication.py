@@ -4,7 +4,7 @@ Every kind of lubrication is a class whose key ``lubrication`` has one choice, j
 """
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeAlias, TypeGuard
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, TypeGuard
 
 from pydantic import Field, Tag, model_validator
 
@@ -29,6 +29,9 @@ from rigdesign.case.fields import (
     fault,
     kind_from,
 )
+
+if TYPE_CHECKING:
+    from dynamics.rotor.rolling_friction import Lubrication
 
 
 class JetOil(Part):
@@ -56,6 +59,26 @@ class JetOil(Part):
     scuffing_temperature: Temperature | None = None
     """Contact temperature at which this oil lets gears scuff, where a test or table has it; goes before the stage."""
 
+    temperature_key: ClassVar[str] = "inlet_temperature"
+    """Key of the temperature with which its oil comes."""
+    scuffing_supply: ClassVar[str] = "injection"
+    """As ISO/TS 6336-22 names it."""
+
+    @property
+    def jets(self) -> "JetOil":
+        """Oil injected at the meshes."""
+        return self
+
+    @property
+    def sump(self) -> None:
+        """It has none."""
+        return
+
+    @property
+    def temperature(self) -> float:
+        """With which the oil comes [K]."""
+        return self.inlet_temperature
+
 
 class DipOil(Part):
     """Sump of a gearbox into which its gears dip."""
@@ -82,6 +105,26 @@ class DipOil(Part):
     scuffing_temperature: Temperature | None = None
     """Contact temperature at which this oil lets gears scuff, where a test or table has it; goes before the stage."""
 
+    temperature_key: ClassVar[str] = "sump_temperature"
+    """Key of the temperature with which its oil comes."""
+    scuffing_supply: ClassVar[str] = "dip"
+    """As ISO/TS 6336-22 names it."""
+
+    @property
+    def jets(self) -> None:
+        """It has none."""
+        return
+
+    @property
+    def sump(self) -> "DipOil":
+        """Sump into which the gears dip."""
+        return self
+
+    @property
+    def temperature(self) -> float | None:
+        """At which the sump is held [K]; None for a free one."""
+        return self.sump_temperature
+
 
 GearOil: TypeAlias = Annotated[
     Annotated[JetOil, Tag("jet")] | Annotated[DipOil, Tag("dip")], kind_from("lubrication", "jet")
@@ -103,6 +146,26 @@ class FedOil(Part):
     outlet_temperature: Temperature | None = None
     """Measured outlet; computed from the heat when left out."""
 
+    temperature_key: ClassVar[str] = "inlet_temperature"
+    """Key of the temperature with which its oil comes."""
+    splash_share: ClassVar[float] = 0.0
+    """Nothing is thrown on the bearings."""
+    takes_heat: ClassVar[bool] = True
+    """Whether it carries heat away."""
+
+    @property
+    def fed(self) -> "FedOil":
+        """Oil fed to the bearings."""
+        return self
+
+    def oil_name(self, gear_oil: str) -> str:
+        """Its oil."""
+        return self.oil
+
+    def rolling_supply(self, level: float) -> "Lubrication":
+        """How it comes to a rolling bearing; level : of oil at rest above the lowest point of its raceway [m]."""
+        return "oil_jet"
+
 
 class SplashOil(Part):
     """What the gears throw off lubricates the bearings."""
@@ -112,6 +175,24 @@ class SplashOil(Part):
     splash_share: Annotated[float, Field(ge=0.001, le=0.1)] = 0.01
     """Share of the oil that the gears lift, or the jets inject, which passes each bearing. No law predicts it."""
 
+    temperature_key: ClassVar[str] = "inlet_temperature"
+    """Key of the temperature with which its oil comes."""
+    takes_heat: ClassVar[bool] = True
+    """Whether it carries heat away."""
+
+    @property
+    def fed(self) -> None:
+        """None is fed."""
+        return
+
+    def oil_name(self, gear_oil: str) -> str:
+        """That of the gears."""
+        return gear_oil
+
+    def rolling_supply(self, level: float) -> "Lubrication":
+        """A bath as far as one stands in the bearing, else drops; level as in `FedOil.rolling_supply`."""
+        return "oil_bath" if level else "oil_spot"
+
 
 class Grease(Part):
     """Bearings packed with grease."""
@@ -120,6 +201,26 @@ class Grease(Part):
     """Selects grease."""
     oil: Text
     """Base oil of the grease: built-in oil or a name under ``oils``."""
+
+    temperature_key: ClassVar[str] = "inlet_temperature"
+    """Key of the temperature with which its oil comes."""
+    splash_share: ClassVar[float] = 0.0
+    """Nothing is thrown on the bearings."""
+    takes_heat: ClassVar[bool] = False
+    """Whether it carries heat away."""
+
+    @property
+    def fed(self) -> None:
+        """None is fed."""
+        return
+
+    def oil_name(self, gear_oil: str) -> str:
+        """Its base oil."""
+        return self.oil
+
+    def rolling_supply(self, level: float) -> "Lubrication":
+        """Grease."""
+        return "grease"
 
 
 BearingOil: TypeAlias = Annotated[

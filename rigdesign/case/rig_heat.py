@@ -27,6 +27,7 @@ from rigdesign.case.fields import (
     Usual,
     fault,
 )
+from rigdesign.rig_heat.component import CouplingRotor
 
 WATER = "water"
 """Coolant of a machine with cooling water of its own."""
@@ -102,6 +103,24 @@ class CouplingRotorInput(Part):
             )
         return self
 
+    def rotor(self, name: str) -> CouplingRotor:
+        """The coupling as the balance of heat takes it; CaseError where it cannot be."""
+        return CouplingRotor(
+            name=name,
+            radius=0.5 * self.diameter,
+            length=self.length,
+            hub_radius=0.5 * (self.hub_diameter or 0.0),
+        )
+
+    def assumptions(self, at: str) -> Iterator[AssumptionRecord]:
+        """What it assumes by leaving it out."""
+        if self.hub_diameter is None:
+            yield AssumptionRecord(
+                path=f"{at}.hub_diameter", value="0 mm",
+                reason="not stated: both faces stir air up to the axis, which counts too much windage by less than "
+                "(hub/rim)^5",
+            )  # fmt: skip
+
 
 class RoomInput(Part):
     """Room of the rig with its ventilation; it takes the heat of everything that stands in it."""
@@ -172,12 +191,7 @@ class RigHeatInput(Part):
                     "the machines before it are read",
                 )  # fmt: skip
         for name, coupling in self.couplings.items():
-            if coupling.hub_diameter is None:
-                yield AssumptionRecord(
-                    path=f"rig_heat.couplings.{name}.hub_diameter", value="0 mm",
-                    reason="not stated: both faces stir air up to the axis, which counts too much windage by less than "
-                    "(hub/rim)^5",
-                )  # fmt: skip
+            yield from coupling.assumptions(f"rig_heat.couplings.{name}")
         if self.room is not None:
             yield from _of_room(self.room, ambient)
 

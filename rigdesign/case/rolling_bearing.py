@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field, field_validator, model_validator
 
+from dynamics.rotor.rolling_kinds import ROLLING_KINDS, CatalogueBearing
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import (
@@ -32,10 +33,15 @@ from rigdesign.case.fields import (
     fault,
 )
 from rigdesign.case.losses import LossFactor
+from rigdesign.case.lubrication import BearingOil
 
 if TYPE_CHECKING:
     from dynamics.rotor.bearing import Bearing
-    from dynamics.rotor.rolling_catalogue import CatalogueBearing
+
+    RollingKindName: TypeAlias = str
+else:
+    RollingKindName = Literal[tuple(ROLLING_KINDS)]
+"""Kinds that the solver has, one choice each."""
 
 # What surrounds a bearing, for the kinds of bearings of the case. SI units.
 
@@ -51,7 +57,7 @@ class BearingPlace:
     """
 
     clearance: float
-    lubrication: Literal["fed", "splash", "grease"]
+    lubrication: BearingOil
     sump_level: float | None = None
     seat_factors: tuple[float, float] = (1.0, 1.0)
 
@@ -83,7 +89,7 @@ class BearingSeats:
 class CatalogueNumbers(Part):
     """Numbers of a bearing as its catalogue prints them."""
 
-    kind: Literal["deep_groove_ball", "cylindrical_roller", "tapered_roller", "angular_contact_ball"]
+    kind: RollingKindName
     """Kind of bearing."""
     series: Text
     """Dimension series, for the coefficients of its friction, e.g. ``62``, ``2``, ``302``, ``72B``."""
@@ -116,11 +122,11 @@ class CatalogueNumbers(Part):
     minimum_load_factor: float = Field(default=0.0, ge=0.0)
     """Minimum load factor k_r of ball and cylindrical roller bearings; 0 asks for no least load."""
     inner_raceway: Gap = 0.0
-    """Raceway diameter F of a cylindrical roller bearing."""
+    """Raceway diameter F of rollers without contact angle."""
     outer_raceway: Gap = 0.0
-    """Raceway diameter E of a cylindrical roller bearing."""
+    """Raceway diameter E of rollers without contact angle."""
     carries_axial_load: bool = True
-    """False for NU and N."""
+    """False for NU and N; kinds that never do carry none anyway."""
 
     @model_validator(mode="after")
     def _computable(self) -> "CatalogueNumbers":
@@ -135,7 +141,7 @@ class CatalogueNumbers(Part):
 
 
 @cache
-def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> "CatalogueBearing":
+def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> CatalogueBearing:
     """Numbers of a tabled bearing, or those of the case.
 
     Raises
@@ -143,7 +149,7 @@ def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> "Catal
     BearingError
         A designation that is not tabled, numbers that do not go together.
     """
-    from dynamics.rotor.rolling_catalogue import CatalogueBearing, catalogue_bearing
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
     if numbers is None:
         return catalogue_bearing(designation)
@@ -260,7 +266,7 @@ class RollingBearingInput(Part):
         return self
 
     @property
-    def data(self) -> "CatalogueBearing":
+    def data(self) -> CatalogueBearing:
         """Numbers of its catalogue."""
         return catalogue_data(self.designation or "", self.catalogue)
 
@@ -323,25 +329,22 @@ class RollingBearingInput(Part):
     @property
     def holds_axially(self) -> bool:
         """It takes up what its partner induces: by its contact angle, or where it locates the shaft."""
-        return self.data.locating and (self.locating or self.data.contact_angle > 0.0)
+        return self.data.carries_axial_load and (self.locating or self.data.contact_angle > 0.0)
 
     def induced_axial_load(self, radial: float) -> float:
         """Axial force that a radial load produces inside the bearing [N]; 0 without a contact angle."""
-        from dynamics.rotor.rolling_state import induced_axial_load
-
-        return induced_axial_load(self.data, radial)
+        return self.data.rules.induced_axial_load(self.data, radial)
 
     def as_it_runs(self, place: BearingPlace) -> "Bearing":
         """The bearing for the solver at its place; BearingError where that is impossible."""
         from dynamics.rotor.rolling import RollingBearing, SeatConductances, housing_path, shaft_path
 
         level = self._oil_level(place)
-        bath = {"fed": "oil_jet", "grease": "grease", "splash": "oil_bath" if level else "oil_spot"}
         data = self.data
         return RollingBearing(
             data=data,
             law=self.friction_law,
-            lubrication=bath[place.lubrication],  # type: ignore[arg-type]
+            lubrication=place.lubrication.rolling_supply(level),
             oil_level=level or None,
             oil_kind=self.oil_kind,
             clearance=place.clearance,
@@ -388,10 +391,16 @@ class RollingBearingInput(Part):
     def own_faults(self, at: str) -> Iterator[Fault]:
         """What is wrong with it whatever stands around it."""
         data = self.data
-        if self.locating and not data.locating:
+        if self.locating and not data.carries_axial_load:
             yield Fault(
                 f"{at}.locating", "true", f"{data.designation} carries no axial load: its rings move past each other",
                 "let the other bearing locate the shaft, or take NJ, NUP or a ball bearing",
+            )  # fmt: skip
+        if self.friction_law not in data.rules.friction_sources:
+            yield Fault(
+                f"{at}.friction_law", f'"{self.friction_law}"',
+                f"has no coefficients for a {data.kind.replace('_', ' ')} bearing",
+                f"take {' or '.join(data.rules.friction_sources)}",
             )  # fmt: skip
         if self.oil_level is not None and self.oil_level > data.outside_diameter:
             yield Fault(

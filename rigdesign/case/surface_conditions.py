@@ -26,6 +26,7 @@ from rigdesign.case.films import (
     BathFilm,
     FilmFactor,
     Fluid,
+    Host,
     HousingHeightFilm,
     PlateFilm,
     ShaftFilm,
@@ -34,6 +35,13 @@ from rigdesign.case.films import (
     SurfaceFilm,
     SurfacePlace,
     SurfaceSite,
+)
+from thermal.conditions.boundary import (
+    Adiabatic,
+    BoundaryCondition,
+    Exchange,
+    PrescribedTemperature,
+    Radiation,
 )
 from thermal.films import convection
 from thermal.films.law import ExchangeLaw, FilmLaw
@@ -184,6 +192,12 @@ class FlankFilm(SurfaceCondition):
                 'remove it, or write correlation = "constant"',
             )  # fmt: skip
 
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """Film on the teeth that the rim stands for."""
+        return host.flank_film(surface)
+
 
 class BearingFilm(SurfaceCondition):
     """Bore or journal to the lubricant film: conductance of the film, sink at film temperature."""
@@ -200,6 +214,12 @@ class BearingFilm(SurfaceCondition):
                 "surfaces", f'"{site.surface}"', "is neither bore nor journal of a bearing",
                 'law = "bearing_film" is for bearing_bore_* and shaft_*_journal_*; write another law',
             )  # fmt: skip
+
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """Film of the bearing, where it has one."""
+        return host.bearing_film(self.film_factor, surface)
 
 
 class ThermalRadiation(SurfaceCondition):
@@ -226,6 +246,27 @@ class ThermalRadiation(SurfaceCondition):
             )
         return self
 
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """Radiation to the surroundings; under a film that holds it only what the excess adds."""
+        if radiation_in_film and self.emissivity_excess == 0.0:
+            return None
+        return Radiation(
+            surface=surface,
+            emissivity=self.emissivity_excess
+            if radiation_in_film
+            else self.emissivity + self.emissivity_excess,
+            surroundings_temperature=self.surroundings_temperature or host.surroundings,
+        )
+
+    def against_enclosure(self, entry: str) -> tuple[str, str]:
+        """It radiates to the room."""
+        return (
+            f"radiates to its surroundings by boundary.{entry} already",
+            f"take it out of one of them, or give the enclosure an opening_temperature in place of {entry}",
+        )
+
 
 class SurfaceExchange(SurfaceCondition):
     """Heat from a surface to its partner, by their area means."""
@@ -245,6 +286,17 @@ class SurfaceExchange(SurfaceCondition):
         for text in stood_for:
             name = name.replace("*", text, 1)
         return name
+
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """Exchange with its partner."""
+        return Exchange(
+            surface_a=surface,
+            surface_b=self.partner_of(stood_for),
+            kind="exchange",
+            law=self.exchange_law(host.place(self, surface)),
+        )
 
 
 class GapExchange(SurfaceExchange):
@@ -311,12 +363,31 @@ class FixedTemperature(SurfaceCondition):
     temperature: Temperature
     """Temperature at which the surface is held."""
 
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """The temperature."""
+        return PrescribedTemperature(surface=surface, temperature=self.temperature)
+
 
 class Insulated(SurfaceCondition):
     """A surface that passes no heat."""
 
     law: Literal["insulated"]
     """Selects no heat flux."""
+
+    def on(
+        self, surface: str, stood_for: tuple[str, ...], host: Host, *, radiation_in_film: bool = False
+    ) -> BoundaryCondition | None:
+        """No flux."""
+        return Adiabatic(surface=surface)
+
+    def against_enclosure(self, entry: str) -> tuple[str, str]:
+        """It passes nothing."""
+        return (
+            f"passes no heat by boundary.{entry}",
+            f"take it out of {entry}: the enclosure is a condition of its own; or write a film",
+        )
 
 
 Condition = Annotated[

@@ -42,7 +42,7 @@ def _seal_gaps(solved: SolvedRig) -> Iterator[tuple[float, str]]:
             yield seal.minimum - amplitude, where + _less(amplitude)
     for name in solved.unexpanded:
         for part, seals in solved.case.gearboxes[name].seals.items():
-            if seals.kind == "contactless":
+            if not seals.end.touches:
                 found = [value for (_, seal), value in whirl.items() if seal == f"{name}.{part}"]
                 amplitude = max(found, default=0.0)
                 yield seals.radial_gap - amplitude, f"{name}.{part}, as drawn" + _less(amplitude)

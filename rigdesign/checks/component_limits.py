@@ -188,7 +188,7 @@ NO_SEAL = "no shaft of the part has such a seal: none leaves its gearbox or pass
 def _seal_velocity(solved: SolvedRig, part: str) -> Found:
     """Surface speed in the largest seal of every shaft; the gap in a wall of the chamber is no lip."""
     box, top = part.split(".")[1], max(stage.speed_end for stage in solved.case.schedule.resolved())
-    lips = {one.shaft for one in solved.case.gearboxes[box].seals.values() if one.kind == "radial_lip"}
+    lips = {one.shaft for one in solved.case.gearboxes[box].seals.values() if one.end.touches}
     speeds = [
         (0.5 * seal.diameter * solved.rig.shaft_speed(shaft, top), shaft)
         for shaft in shafts_of(solved.case, part)

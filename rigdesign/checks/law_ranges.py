@@ -34,7 +34,7 @@ def loss_findings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[Findin
     for stage, found in losses.items():
         whole = sum(placed.loss.power for placed in found)
         for placed in found:
-            outside = placed.loss.kind != "mesh"  # whose floors and caps belong to the law of its friction
+            outside = not placed.kind.of_teeth  # whose floors and caps belong to the law of its friction
             for text in placed.loss.warnings:
                 share = placed.loss.power / whole if whole and outside else 0.0
                 stages.setdefault((placed.name, text), {})[stage] = share

@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from rigdesign.base.units import show
-from rigdesign.case.gearbox import Gearbox, injected_flow
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.losses import LOSS_KINDS
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
 from rigdesign.results.check import Check
@@ -78,7 +79,7 @@ def thrust(solved: SolvedRig, name: str, box: Gearbox) -> bool:
 
 def sealed(solved: SolvedRig, name: str, box: Gearbox) -> bool:
     """One of these with seals without contact."""
-    return unexpanded(solved, name, box) and any(seals.kind == "contactless" for seals in box.seals.values())
+    return unexpanded(solved, name, box) and any(not seals.end.touches for seals in box.seals.values())
 
 
 def with_play(solved: SolvedRig, name: str, box: Gearbox) -> bool:
@@ -120,9 +121,7 @@ def given_losses(solved: SolvedRig, check: Check) -> Omissions:
     if solved.case.losses.basis != "input":
         return
     for name, box in solved.case.gearboxes.items():
-        wanted = ["mesh", "bearing", "windage"]
-        wanted += ["seal"] if box.seals else []
-        wanted += ["oil_acceleration"] if injected_flow(box) > 0.0 else []
+        wanted = [kind.name for kind in LOSS_KINDS.values() if kind.awaited and kind.parts_of(box)]
         given = {entry.kind for entry in solved.case.losses.given.values() if entry.gearbox == name}
         missing = [kind for kind in wanted if kind not in given]
         if missing:

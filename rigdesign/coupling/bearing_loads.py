@@ -339,7 +339,7 @@ def _surroundings(rig: Rig, name: str, clearance: float) -> BearingPlace:
     factors = {seat: found.factor for seat, found in bearing_seats(rig, name).items()}
     return BearingPlace(
         clearance=clearance,
-        lubrication=box.bearing_oil.lubrication,
+        lubrication=box.bearing_oil,
         sump_level=None if box.sump is None else box.sump.level,
         seat_factors=(factors.get(SHAFT, 1.0), factors.get(HOUSING, 1.0)),
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss
 from dynamics.rotor.bearing import BearingState
 from dynamics.rotor.graph import Drivetrain
-from rigdesign.case.losses import GivenLoss
+from rigdesign.case.losses import LOSS_KINDS, GivenLoss, LossKind
 from rigdesign.case.model import Case
 from rigdesign.coupling.flank_heat import MeshSplit
 from rigdesign.coupling.state import CouplingState, OperatingPoint
@@ -36,6 +36,11 @@ class PlacedLoss:
     """Of a seal loss, the share that arises where the shaft leaves the housing: next to the bearings, in their oil."""
 
     @property
+    def kind(self) -> LossKind:
+        """What its kind says of it."""
+        return LOSS_KINDS[self.loss.kind]
+
+    @property
     def rival(self) -> tuple[str, float] | None:
         """Law that differs most from the one taken and its power [W], with the loss factor of the case; None where
         there is one law, or the case gives the loss."""
@@ -57,7 +62,7 @@ class PlacedLoss:
     @property
     def into_bearing_oil(self) -> float:
         """Of ``into_oil``, what goes into the oil of the bearings [W]; the rest goes into that of the gears."""
-        return self.into_oil * (1.0 if self.loss.kind == "bearing" else self.end_share)
+        return self.into_oil * (1.0 if self.kind.at_bearings else self.end_share)
 
 
 def heat_into_gear_oil(losses: Iterable[PlacedLoss], gearbox: str, *, bearings_fed: bool) -> float:
@@ -102,7 +107,7 @@ def given_power(case: Case, point: OperatingPoint, gearbox: str, kind: str, part
         same = (entry.gearbox, entry.kind, entry.part) == (gearbox, kind, part)
         if same and (not entry.stages or point.stage in entry.stages):
             box = case.gearboxes[gearbox]
-            own = box.bearings[part].friction_factor if kind == "bearing" else 1.0
+            own = box.bearings[part].friction_factor if LOSS_KINDS[kind].at_bearings else 1.0
             return own * box.loss_factors.of(kind) * _at_speed(case, entry, point)
     return None
 
@@ -128,7 +133,8 @@ def drag_torques(losses: Sequence[PlacedLoss], rig: Rig, speed: float) -> dict[s
         return torques
     shafts = drag_shafts(rig.drivetrain)
     for placed in losses:
-        name = _drag_name(rig, placed)
+        place = placed.kind.braked(rig.case.gearboxes[placed.gearbox], placed.part)
+        name = f"{placed.gearbox}.{place}"
         omega = rig.shaft_speed(shafts[name], speed)
         if omega > 0.0:
             torques[name] = torques.get(name, 0.0) + placed.loss.power / omega
@@ -140,12 +146,3 @@ def drag_shafts(drivetrain: Drivetrain) -> dict[str, str]:
     gears = {gear.name: gear.shaft for gear in drivetrain.gears}
     bearings = {bearing.name: bearing.shaft for bearing in drivetrain.bearings}
     return gears | bearings | {place.name: place.shaft for place in drivetrain.drag_places}
-
-
-def _drag_name(rig: Rig, placed: PlacedLoss) -> str:
-    """Place of the drivetrain on which a loss acts."""
-    if placed.loss.kind in ("oil_acceleration", "squeeze"):
-        return f"{placed.gearbox}.{rig.case.gearboxes[placed.gearbox].meshes[placed.part].pinion}"
-    if placed.loss.kind == "seal":
-        return f"{placed.gearbox}.seals.{placed.part}"
-    return placed.name

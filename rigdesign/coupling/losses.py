@@ -9,13 +9,14 @@ from dynamics.gear.pair import GearPair
 from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss
 from dynamics.losses.mesh_loss import mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import oil_acceleration
-from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
+from dynamics.losses.seal_loss import SealGap
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.rotor.bearing import BearingState
 from dynamics.tooth.friction import ToothPath
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.units import ZERO_CELSIUS
-from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet
+from rigdesign.case.gearbox import Gearbox, HeatSplit, mesh_jet
+from rigdesign.case.seals import WALL, Seals
 from rigdesign.coupling.bearing_loads import constant_drag
 from rigdesign.coupling.bearing_seats import body_shares
 from rigdesign.coupling.flank_heat import churning, mesh_split
@@ -328,11 +329,12 @@ def _seal_losses(
     mist = chamber_mist(rig, box_name, coupling_state)
     found = []
     for seal in shaft_seals(rig, box_name, seals.shaft):
-        if seal.leaves and seals.kind == "radial_lip":
-            found.append((seal, lip_seal_loss(place, seal.diameter, omega)))
-        elif seal.length is not None:
+        gap = None
+        if seal.length is not None:
             gap = SealGap(radius=0.5 * seal.diameter, gap=seals.radial_gap, length=seal.length)
-            loss = gap_seal_loss(place, gap, omega, mist.density, mist.viscosity)
+        end = seals.end if seal.leaves else WALL
+        loss = end.loss(place, seal.diameter, omega, gap, mist)
+        if loss is not None:
             found.append((seal, loss))
     return found
 
@@ -348,7 +350,7 @@ def body_split(rig: Rig, name: str) -> HeatSplit:
 def _scaled(rig: Rig, placed: PlacedLoss) -> PlacedLoss:
     """The loss times the factor of its gearbox; friction of bearings and teeth holds theirs already."""
     factor = rig.case.gearboxes[placed.gearbox].loss_factors.of(placed.loss.kind)
-    if factor == 1.0 or placed.loss.kind in ("bearing", "mesh"):
+    if factor == 1.0 or placed.kind.of_teeth or placed.kind.at_bearings:
         return placed
     loss = placed.loss
     loss = replace(loss, power=factor * loss.power, details=loss.details | {"loss_factor": factor})
@@ -377,7 +379,4 @@ def _split(rig: Rig, placed: PlacedLoss) -> float:
     if placed.split is not None:
         return math.fsum(placed.split.into_rims)
     split = body_split(rig, placed.gearbox)
-    return {
-        "windage": split.windage_into_gears,
-        "seal": split.seal_into_shaft + split.seal_into_housing,
-    }.get(placed.loss.kind, 0.0)
+    return math.fsum(getattr(split, share) for share in placed.kind.body_shares)

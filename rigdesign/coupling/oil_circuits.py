@@ -25,7 +25,7 @@ from rigdesign.oil_circuit.line_balance import HeatTaken
 from rigdesign.oil_circuit.steady import SetpointNotHeldError, SteadyCircuit, steady_circuit
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed
-from rigdesign.rig_heat.component import ComponentHeat, coupling_windage, drive_train_heat, heat_by_sink
+from rigdesign.rig_heat.component import ComponentHeat, drive_train_heat, heat_by_sink
 from thermal.conduction.balance import HeatFlow
 
 FRICTION_SLOPE = 0.04
@@ -107,7 +107,7 @@ def _slope(rig: Rig, done: IterationResult, stream: OilStream) -> float:
     friction = math.fsum(
         placed.loss.power
         for placed in done.losses
-        if bearings and placed.gearbox == box and placed.loss.kind == "bearing"
+        if bearings and placed.gearbox == box and placed.kind.at_bearings
     )
     return wall_slopes(rig, done, stream)[1] + FRICTION_SLOPE * friction
 
@@ -197,10 +197,7 @@ def drive_heat(
         An operating point outside of the loss map of a machine.
     """
     parts, air = rig.heat_parts, rig.case.ambient.temperature
-    rotors = tuple(
-        coupling_windage(rotor, abs(rig.shaft_speed(shaft, point.speed)), air)
-        for rotor, shaft in parts.rotors
-    )
+    rotors = tuple(rotor.heat(abs(rig.shaft_speed(shaft, point.speed)), air) for rotor, shaft in parts.rotors)
     lost = [*(placed.loss.power for placed in losses), *(rotor.power for rotor in rotors)]
     power = max(math.fsum(lost), 0.0)
     speed = rig.driven_speed(point.speed)

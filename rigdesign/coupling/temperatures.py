@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.bearing import BearingState
-from rigdesign.case import surface_conditions as laws
-from rigdesign.case.films import SurfaceFilm
+from rigdesign.case.films import SurfaceCondition, SurfaceFilm, SurfacePlace
 from rigdesign.case.geometry import bearing_on, conditions_of
 from rigdesign.case.surface_conditions import ConstantFilm, TakenFrom
 from rigdesign.coupling.bearing_seats import bearing_seats, seat_conditions, seat_sources
-from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
+from rigdesign.coupling.flank_heat import flank_films, gear_flanks, rim_surfaces
 from rigdesign.coupling.housing_context import (
     AIR,
     BEARING_FILM,
@@ -36,13 +35,9 @@ from rigdesign.rig.oil_supply import (
     gear_oil,
 )
 from thermal.conditions.boundary import (
-    Adiabatic,
     BodySource,
     BoundaryCondition,
-    Exchange,
     Film,
-    PrescribedTemperature,
-    Radiation,
     SurfaceSource,
 )
 from thermal.conditions.enclosure import Enclosure
@@ -193,17 +188,17 @@ def boundary_conditions(
     covered = {surface for entry, surface, _ in rows if _radiation_in_film(context, entry, surface)}
     conditions: list[Condition] = [*foot_joint(rig, name), *enclosure_conditions(rig, name)]
     wetted: list[WettedSurface] = []
+    host = _Host(context)
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
-        if isinstance(condition, laws.BearingFilm) and _bearing_of(context, surface)[1].star is not None:
-            continue
-        if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
-            conditions += _excess_radiation(context, condition, surface)
-            continue
         if isinstance(condition, SurfaceFilm) and context.finds_own_temperature(condition.wetted_by):
             wetted.append(_wetted(context, condition, surface))
             continue
-        found = _condition(context, condition, surface, stood_for)
+        found = condition.on(
+            surface, stood_for, host, radiation_in_film=radiation_included and surface in covered
+        )
+        if found is None:
+            continue
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
@@ -260,32 +255,35 @@ def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:
             yield surface, condition.taken_from
 
 
-def _condition(
-    context: HousingContext, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
-) -> BoundaryCondition:
-    if isinstance(condition, laws.ThermalRadiation):
-        return _radiation(context, condition, surface, condition.emissivity + condition.emissivity_excess)
-    if isinstance(condition, laws.FixedTemperature):
-        return PrescribedTemperature(surface=surface, temperature=condition.temperature)
-    if isinstance(condition, laws.Insulated):
-        return Adiabatic(surface=surface)
-    if isinstance(condition, laws.SurfaceExchange):
-        return Exchange(
-            surface_a=surface,
-            surface_b=condition.partner_of(stood_for),
-            kind="exchange",
-            law=condition.exchange_law(context.place(condition, surface)),
-        )
-    if isinstance(condition, laws.BearingFilm):
-        return _bearing_film(context, condition, surface)
-    if isinstance(condition, laws.FlankFilm):
-        gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
+@dataclass(frozen=True)
+class _Host:
+    """What the conditions of a case ask of their housing."""
+
+    context: HousingContext
+
+    @property
+    def surroundings(self) -> float:
+        ambient = self.context.rig.case.ambient
+        return ambient.surroundings_temperature or ambient.temperature
+
+    def place(self, condition: SurfaceCondition, surface: str) -> SurfacePlace:
+        return self.context.place(condition, surface)
+
+    def film(self, condition: SurfaceFilm, surface: str) -> Film:
+        return _film(self.context, condition, surface)
+
+    def bearing_film(self, factor: float, surface: str) -> Film | None:
+        return _bearing_film(self.context, factor, surface)
+
+    def flank_film(self, surface: str) -> Film:
+        context, rims = self.context, rim_surfaces(self.context.box)
+        gear = next(gear for gear, rim in rims.items() if rim == surface)
+        condition = flank_films(context.box, rims)[gear]
         state = context.coupling_state
         chamber = ChamberOil.of(context.name, state.oil_outlet, state.oil_supply)
         flanks = gear_flanks(context.rig, context.name, gear, context.point, condition, chamber)
         film = flanks.film(surface, GEAR_OIL)
         return OilFilm(**vars(film), follows=1.0 if context.box.jets is None else 0.0)
-    return _film(context, condition, surface)
 
 
 def _film(context: HousingContext, condition: SurfaceFilm, surface: str) -> Film:
@@ -316,26 +314,14 @@ def _wetted(context: HousingContext, condition: SurfaceFilm, surface: str) -> We
     )
 
 
-def _radiation(
-    context: HousingContext, condition: laws.ThermalRadiation, surface: str, emissivity: float
-) -> Radiation:
-    ambient = context.rig.case.ambient
-    walls = condition.surroundings_temperature or ambient.surroundings_temperature or ambient.temperature
-    return Radiation(surface=surface, emissivity=emissivity, surroundings_temperature=walls)
+def _bearing_film(context: HousingContext, factor: float, surface: str) -> Film | None:
+    """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition.
 
-
-def _excess_radiation(
-    context: HousingContext, condition: laws.ThermalRadiation, surface: str
-) -> list[BoundaryCondition]:
-    """What a surface radiates beyond the radiation that its film to room air holds already."""
-    if condition.emissivity_excess == 0.0:
-        return []
-    return [_radiation(context, condition, surface, condition.emissivity_excess)]
-
-
-def _bearing_film(context: HousingContext, condition: laws.BearingFilm, surface: str) -> Film:
-    """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition."""
+    None of a bearing that is joined to its seats.
+    """
     part, state = _bearing_of(context, surface)
+    if state.star is not None:
+        return None
     oil = bearing_oil(context.rig, context.name)
     return OilFilm(
         surface=surface,
@@ -344,7 +330,7 @@ def _bearing_film(context: HousingContext, condition: laws.BearingFilm, surface:
         fluid_temperature=state.film_temperature,
         law=convection.scaled(
             convection.bearing_film(oil.conductivity(state.film_temperature), 1.0 / state.mean_inverse_gap),
-            context.housing.bearing_film_factor * condition.film_factor,
+            context.housing.bearing_film_factor * factor,
         ),
     )
 
@@ -374,15 +360,15 @@ def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[Boun
     for placed in losses:
         if placed.gearbox != context.name or placed.into_body == 0.0:
             continue
-        if placed.loss.kind == "windage":
-            shaft = context.box.gears[placed.part].shaft
-            sources.append(BodySource(body=f"gear_{shaft}", power=placed.into_body, kind="windage"))
-        elif placed.loss.kind == "seal":
-            sources += _seal_sources(context, placed)
-        elif placed.loss.kind == "bearing":
-            sources += seat_sources(
-                context.rig, placed.name, context.bearings[placed.name], placed.loss.power
-            )
+        match placed.kind.heats:
+            case "gear":
+                body = f"gear_{context.box.gears[placed.part].shaft}"
+                sources.append(BodySource(body=body, power=placed.into_body, kind=placed.loss.kind))
+            case "seal":
+                sources += _seal_sources(context, placed)
+            case "seats":
+                state = context.bearings[placed.name]
+                sources += seat_sources(context.rig, placed.name, state, placed.loss.power)
     return sources
 
 

@@ -69,7 +69,8 @@ def built_in(kind: Kind, words: Sequence[str] = ()) -> BuiltIn:
 
 
 def _bearings() -> Iterator[Row]:
-    from dynamics.rotor.rolling_catalogue import RPM, catalogue_bearing, tabled_designations
+    from dynamics.rotor.rolling_catalogue import catalogue_bearing, tabled_designations
+    from dynamics.rotor.rolling_friction import RPM
 
     for designation in tabled_designations():
         bearing = catalogue_bearing(designation)

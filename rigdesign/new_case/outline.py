@@ -122,7 +122,7 @@ def locating_sister(designation: str) -> str:
     from dynamics.rotor.bearing import BearingError
     from dynamics.rotor.rolling_catalogue import catalogue_bearing
 
-    if catalogue_bearing(designation).locating:
+    if catalogue_bearing(designation).carries_axial_load:
         return ""
     try:
         return catalogue_bearing(re.sub(r"^NU?", "NJ", designation.strip().upper())).designation

@@ -301,7 +301,7 @@ def _standard_bulk(rig: Rig, point: PointResult, box: str, own: str) -> float:
     )
     width = rig.case.gearboxes[box].meshes[own].sharing * pair.face_width
     inlet = _feed(rig, point, f"{box}.{own}").inlet
-    supply = "dip" if rig.case.gearboxes[box].jets is None else "injection"
+    supply = rig.case.gearboxes[box].oil.scuffing_supply
     warm = iso_ts_6336_22_2018.theta_M(
         inlet - ZERO_CELSIUS, 1e-3 * loss, 1e6 * pair.centre_distance * width, supply
     )

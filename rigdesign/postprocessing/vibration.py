@@ -301,7 +301,7 @@ class _Whirls:
             if placed:
                 continue
             for part, seals in box.seals.items():
-                if seals.kind == "contactless":
+                if not seals.end.touches:
                     at_bearings = [
                         _sum(whirl_at(whirls, reduced.ports[f"{box_name}.{name}"][:2], self.sense(b.shaft)))
                         for name, b in box.bearings.items()

@@ -9,7 +9,6 @@ from threadpoolctl import threadpool_limits
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.lubrication import DipOil
 from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import solve_point
@@ -204,12 +203,10 @@ def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> Non
         known = ", ".join(f"{box}.{kind}" for box in boxes for kind in STREAMS)
         raise UsageError(f"setting names oil stream {stream!r}, which the case does not have; it has {known}")
     entry = getattr(boxes[name], STREAMS[kind])
-    field = "sump_temperature" if isinstance(entry, DipOil) and key == "inlet_temperature" else key
-    if entry is None or field not in type(entry).model_fields:
-        said = "no oil" if entry is None else f"{entry.lubrication} lubrication"
-        raise UsageError(
-            f"setting names {key.replace('_', ' ')} of {stream}, which has {said} and none in the case; remove it"
-        )
+    field = entry.temperature_key if key == "inlet_temperature" else key
+    if field not in type(entry).model_fields:
+        said = f"{entry.lubrication} lubrication and none in the case; remove it"
+        raise UsageError(f"setting names {key.replace('_', ' ')} of {stream}, which has {said}")
     boxes[name] = boxes[name].model_copy(update={STREAMS[kind]: entry.model_copy(update={field: value})})
 
 

@@ -4,8 +4,9 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
+from dynamics.rotor.rolling_kinds import ROLLING_KINDS, CatalogueBearing
 from rigdesign.rexs.gear_stage import (
     SIDES,
     CaseTable,
@@ -21,9 +22,6 @@ from rigdesign.rexs.gear_stage import (
     quoted,
 )
 from rigdesign.rexs.gear_unit import UnitBearing
-
-if TYPE_CHECKING:
-    from dynamics.rotor.rolling_catalogue import BearingKind, CatalogueBearing
 
 CLASSES = ("C2", "CN", "C3", "C4", "C5")
 RPM = math.pi / 30.0
@@ -178,7 +176,7 @@ def _condition(origins: Origins, bearing: UnitBearing) -> Iterator[Entry]:
 
 
 def _catalogue(
-    origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing", *, has_to_hold: bool
+    origins: Origins, bearing: UnitBearing, sibling: CatalogueBearing, *, has_to_hold: bool
 ) -> Iterator[Entry]:
     """Numbers of the file, and what it lacks from a tabled bearing of the kind, scaled by its diameters."""
     at, data = f"bearings[{bearing.id}]", bearing.catalogue
@@ -210,23 +208,21 @@ def _catalogue(
             value = of_sibling * scale / RPM
             ends = (f'"{0.7 * value:.3g} rpm"', f'"{1.3 * value:.3g} rpm"')
             yield assumed(key, f'"{value:.3g} rpm"', f"{like}: same speed times mean diameter", *ends)
-    if has_to_hold and sibling.kind == "cylindrical_roller":
+    if has_to_hold and sibling.rules.comes_loose:
         reason = (
             "the file has no bearing that holds this shaft axially: lips, or a thrust washer, at the rear"
         )
         yield assumed("carries_axial_load", "true", reason)
-    elif sibling.kind == "cylindrical_roller" and bearing.axial_force is not None:
+    elif sibling.rules.comes_loose and bearing.axial_force is not None:
         carries = "false" if bearing.axial_force == "no_direction" else "true"
         yield origins.stated("carries_axial_load", carries, f"{at}.axial_force")
     yield from _of_kind(origins, bearing, sibling, like)
 
 
-def _of_kind(
-    origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing", like: str
-) -> Iterator[Entry]:
+def _of_kind(origins: Origins, bearing: UnitBearing, sibling: CatalogueBearing, like: str) -> Iterator[Entry]:
     """What only one kind of bearing has: raceways, contact angle and axial factors."""
     at, data = f"bearings[{bearing.id}]", bearing.catalogue
-    if sibling.kind == "cylindrical_roller":
+    if sibling.rules.prints_raceways:
         bore, outside = bearing.inner_diameter or 0.0, bearing.outer_diameter or 0.0
         section = sibling.outside_diameter - sibling.bore
         for key, raceway in (
@@ -235,7 +231,7 @@ def _of_kind(
         ):
             value = bore + (raceway - sibling.bore) / section * (outside - bore)
             yield assumed(key, millimetres(round(value, 5)), f"{like}: same share of the section height")
-    if sibling.kind in ("tapered_roller", "angular_contact_ball"):
+    if sibling.rules.has_contact_angle:
         yield _contact_angle(origins, bearing, sibling, like)
         for key, stated, of_sibling, field in (
             ("axial_limit", data.limit_e, sibling.axial_limit, "limit_e"),
@@ -253,14 +249,15 @@ def _of_kind(
                 yield assumed(key, f"{of_sibling:.9g}", f"{like}, the nearest tabled bearing of the kind")
 
 
-def _contact_angle(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBearing", like: str) -> Entry:
+def _contact_angle(origins: Origins, bearing: UnitBearing, sibling: CatalogueBearing, like: str) -> Entry:
     """Contact angle of the file; of a tapered roller bearing also by its limit e = 1.5 tan(alpha) (ISO 281)."""
     data, at = bearing.catalogue, f"bearings[{bearing.id}].catalogue"
     if data.contact_angle:
         angle = abs(data.contact_angle)
         return origins.stated("contact_angle", quantity(math.degrees(angle), "deg"), f"{at}.contact_angle")
-    if data.limit_e is not None and sibling.kind == "tapered_roller":
-        value = quantity(math.degrees(math.atan(data.limit_e / 1.5)), "deg")
+    by_limit = None if data.limit_e is None else sibling.rules.contact_angle(data.limit_e)
+    if by_limit is not None:
+        value = quantity(math.degrees(by_limit), "deg")
         return origins.stated("contact_angle", value, f"{at}.limit_e", note="e = 1.5 tan(alpha), ISO 281")
     value = quantity(math.degrees(sibling.contact_angle), "deg")
     return assumed("contact_angle", value, f"{like}, the nearest tabled bearing of the kind")
@@ -268,12 +265,7 @@ def _contact_angle(origins: Origins, bearing: UnitBearing, sibling: "CatalogueBe
 
 # Bearing of a case for one of a file: tabled, with numbers of its own, or the nearest tabled one.
 
-KIND_OF_TYPE: dict[str, "BearingKind"] = {
-    "radial_grooved_ball_bearing": "deep_groove_ball",
-    "radial_roller_bearing": "cylindrical_roller",
-    "radial_tapered_roller_bearing": "tapered_roller",
-    "angular_contact_ball_bearing": "angular_contact_ball",
-}
+KIND_OF_TYPE = {kind.rexs_type: name for name, kind in ROLLING_KINDS.items() if kind.rexs_type}
 """Type in REXS -> kind of a case."""
 SAME_BORE = 0.1
 """Difference of two bores, over the bore, up to which one bearing may replace another."""
@@ -281,7 +273,7 @@ PRINTED = 0.01
 """The same up to which a designation and a stated bore are of one bearing."""
 
 
-def tabled_bearing(bearing: UnitBearing) -> "CatalogueBearing | None":
+def tabled_bearing(bearing: UnitBearing) -> CatalogueBearing | None:
     """The tabled bearing of a designation, suffixes left out; None where the bore of the file is another one."""
     from dynamics.rotor.bearing import BearingError
     from dynamics.rotor.rolling_catalogue import catalogue_bearing
@@ -300,7 +292,7 @@ def tabled_bearing(bearing: UnitBearing) -> "CatalogueBearing | None":
     return None
 
 
-def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
+def nearest_tabled(bearing: UnitBearing) -> CatalogueBearing | None:
     """Tabled bearing of the same kind, of the same series if there is one, with the nearest diameters.
 
     None for a kind that a case does not have, and where no bore is known.
@@ -318,7 +310,7 @@ def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
             item.series != series,
             abs(math.log(item.bore / bore))
             + abs(math.log(item.outside_diameter / (outside or item.outside_diameter))),
-            not item.locating,
+            not item.carries_axial_load,
         ),
         default=None,
     )
@@ -326,17 +318,16 @@ def nearest_tabled(bearing: UnitBearing) -> "CatalogueBearing | None":
 
 def series_of(bearing: UnitBearing) -> str | None:
     """Dimension series by the designation: 62 of 6207, 2 of NJ 204; None for one without friction coefficients."""
-    from dynamics.rotor.rolling_catalogue import DESCRIBED_SERIES
 
     digits = re.search(r"\d{3,5}", bearing.catalogue.designation or "")
     kind = KIND_OF_TYPE.get(bearing.catalogue.type or "")
     if digits is None or kind is None:
         return None
     stem = digits[0][:-2]
-    return next((name for name in (stem, f"{stem}B") if name in DESCRIBED_SERIES[kind]), None)
+    return next((name for name in (stem, f"{stem}B") if name in ROLLING_KINDS[kind].series), None)
 
 
-def same_bore(bearing: UnitBearing, other: "CatalogueBearing") -> bool:
+def same_bore(bearing: UnitBearing, other: CatalogueBearing) -> bool:
     """Whether one may replace the other by their bores."""
     return bearing.inner_diameter is not None and abs(bearing.inner_diameter / other.bore - 1.0) <= SAME_BORE
 
@@ -358,7 +349,7 @@ def example_designation(diameter: float | None) -> str:
     known = [catalogue_bearing(name) for name in tabled_designations()]
     wanted = 0.04 if diameter is None else diameter
     return min(
-        (item for item in known if item.locating), key=lambda item: abs(item.bore - wanted)
+        (item for item in known if item.carries_axial_load), key=lambda item: abs(item.bore - wanted)
     ).designation
 
 
@@ -368,8 +359,8 @@ def can_hold(bearing: UnitBearing) -> bool:
         return True
     tabled, sibling = tabled_bearing(bearing), nearest_tabled(bearing)
     if tabled is not None:
-        return tabled.locating
+        return tabled.carries_axial_load
     if sibling is None:
         return bearing.axial_force in ("both_directions", "positive", "negative")
-    free = sibling.kind == "cylindrical_roller" and bearing.axial_force == "no_direction"
-    return not free if has_own_numbers(bearing) else sibling.locating
+    free = sibling.rules.comes_loose and bearing.axial_force == "no_direction"
+    return not free if has_own_numbers(bearing) else sibling.carries_axial_load

@@ -260,7 +260,7 @@ def _cross_joint(coupling: CouplingInput) -> Iterator[LoadOrder]:
     excitation by misalignment: M. Xu, R. D. Marangoni, J. Sound Vib. 176, 1994, 663.
     """
     squared = coupling.cold_angle_lateral**2 + coupling.cold_angle_vertical**2
-    if coupling.joint == "hooke" and squared:
+    if coupling.alternates and squared:
         yield LoadOrder(
             order=2.0, amplitude=0.25 * squared * coupling.torsional_stiffness, phase=0.5 * math.pi
         )

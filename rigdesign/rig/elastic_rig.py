@@ -297,7 +297,7 @@ def cross_joints(case: Case) -> Iterator[CrossJoint]:
     assert case.drivetrain is not None
     for name, coupling in case.drivetrain.couplings.items():
         slope = coupling.cold_angle_lateral, coupling.cold_angle_vertical
-        if coupling.joint == "hooke" and any(slope):
+        if coupling.alternates and any(slope):
             yield CrossJoint(coupling=name, slope=slope)
 
 

@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.housing import PressedJoint
 from rigdesign.rig.model import Rig
 from thermal.conditions.boundary import Film
 from thermal.conditions.contact import Contact
 from thermal.conduction.setup import Condition
 from thermal.films import convection
-from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
-from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw
+from thermal.films.law import FilmCoefficient, FilmLaw
 from thermal.films.still import air
 from thermal.housing.housing_surfaces import FOOT, SEAT
 
@@ -20,9 +18,6 @@ FOOT_CONTACT = "foot_contact"
 
 JOINT = "shell_conductance"
 """Among the inputs of a film behind a shell: the conductance of the joint [W/(m2 K)]."""
-
-AIR_JUMP = 0.37e-6
-"""Temperature jump length of air at one atmosphere [m] (Yovanovich 2005)."""
 
 
 def foot_joint(rig: Rig, name: str) -> list[Contact]:
@@ -36,21 +31,11 @@ def foot_joint(rig: Rig, name: str) -> list[Contact]:
         law = convection.constant(entry.conductance, rig.case.provenance(path))
     else:
         assert entry.joint is not None
-        law = _pressed(rig, entry.joint, (housing.material, housing.field.material))
+        foot, field = (
+            rig.materials[each].conductivity for each in (housing.material, housing.field.material)
+        )
+        law = entry.joint.law((foot, field), air(rig.case.ambient.temperature).conductivity)
     return [Contact(surface_a=FOOT, surface_b=SEAT, kind=FOOT_CONTACT, law=law)]
-
-
-def _pressed(rig: Rig, joint: PressedJoint, materials: tuple[str, str]) -> ExchangeLaw:
-    first, second = (rig.materials[material].conductivity for material in materials)
-    dry = joint.filling_conductivity is None
-    contact = RoughContact(
-        pressure=joint.pressure, hardness=joint.hardness, roughness=joint.roughness, slope=joint.slope
-    )
-    filling = GapFilling(
-        conductivity=joint.filling_conductivity or air(rig.case.ambient.temperature).conductivity,
-        gas_parameter=AIR_JUMP if dry else 0.0,
-    )
-    return pressed_joint(contact, (first, second), filling)
 
 
 def behind_shell(rig: Rig, name: str, surface: str, law: FilmLaw) -> FilmLaw:

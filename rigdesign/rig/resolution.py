@@ -23,7 +23,7 @@ from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.units import show
 from rigdesign.case.model import Case
 from rigdesign.case.rules.gathered import MOST_SHAFT_ELEMENTS
-from rigdesign.rig_heat.component import LossMap, Machine
+from rigdesign.rig_heat.component import Machine
 
 COUNTED_HARMONIC = 4
 """Harmonics of the mesh frequency that the shafts must follow at the highest speed."""
@@ -136,9 +136,9 @@ def refuse_uncovered_speeds(machines: Sequence[Machine], speeds: Mapping[str, fl
 
 def _uncovered(machines: Sequence[Machine], stage: str, speed: float) -> Iterator[Fault]:
     for machine in machines:
-        loss = machine.loss
-        if speed and isinstance(loss, LossMap) and not loss.holds_speed(speed):
-            low, high = (show(float(end), "speed") for end in loss.speeds[[0, -1]])
+        missed = machine.loss.missed_speeds(speed) if speed else None
+        if missed is not None:
+            low, high = (show(end, "speed") for end in missed)
             yield Fault(
                 f"rig_heat.machines.{machine.name}.loss_map", show(speed, "speed"),
                 f"is the speed of its output at stage {stage}, outside of the map, {low} to {high}",

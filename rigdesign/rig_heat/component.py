@@ -33,6 +33,9 @@ class MachineLoss(Protocol):
     def nearest(self, speed: float, torque: float) -> tuple[float, float]:
         """Operating point nearest to this one at which the loss is known."""
 
+    def missed_speeds(self, speed: float) -> tuple[float, float] | None:
+        """Ends of the speeds at which the loss is known, where this one [rad/s] is outside of them; else None."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class EfficiencyLoss:
@@ -58,6 +61,10 @@ class EfficiencyLoss:
     def nearest(self, speed: float, torque: float) -> tuple[float, float]:
         """The operating point itself."""
         return speed, torque
+
+    def missed_speeds(self, speed: float) -> None:
+        """It holds at every speed."""
+        return
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -133,10 +140,11 @@ class LossMap:
         """Operating point of the map nearest to this one."""
         return _within(self.speeds, speed), _within(self.torques, torque)
 
-    def holds_speed(self, speed: float) -> bool:
-        """Whether the map reaches a speed [rad/s] of the output."""
-        slack = SAME * float(self.speeds[-1])
-        return bool(self.speeds[0] - slack <= abs(speed) <= self.speeds[-1] + slack)
+    def missed_speeds(self, speed: float) -> tuple[float, float] | None:
+        """Ends of the map, where a speed [rad/s] of the output is outside of it."""
+        low, high = float(self.speeds[0]), float(self.speeds[-1])
+        slack = SAME * high
+        return None if low - slack <= abs(speed) <= high + slack else (low, high)
 
 
 def _within(axis: FloatArray, value: float) -> float:
@@ -208,6 +216,13 @@ def heat_by_sink(components: Iterable[ComponentHeat]) -> dict[str, float]:
     return {sink: math.fsum(values) for sink, values in parts.items()}
 
 
+class CouplingHeat(Protocol):
+    """Shaft coupling with the heat that it makes."""
+
+    def heat(self, speed: float, air_temperature: float) -> ComponentHeat:
+        """Heat [W] at a speed [rad/s] in air of a temperature [K] at one atmosphere."""
+
+
 # Windage of a shaft coupling in the air of its guard: two free faces and a smooth cylinder.
 #
 #     P = rho omega^3 R^5 C_disc / 2  +  pi C_cylinder rho omega^3 R^4 L
@@ -238,23 +253,22 @@ class CouplingRotor:
             f"{self.name}.radius", self.radius, "m", "the rim is outside of the hub", limit=self.hub_radius
         )
 
+    def heat(self, speed: float, air_temperature: float) -> ComponentHeat:
+        """Windage [W] at a speed [rad/s] in air of a temperature [K] at one atmosphere.
 
-def coupling_windage(rotor: CouplingRotor, speed: float, air_temperature: float) -> ComponentHeat:
-    """Heat of a coupling [W] at a speed [rad/s] in air of a temperature [K] at one atmosphere.
-
-    The faces are those of a disc less what the shafts cover, each with the coefficient of its own radius.
-    """
-    gas = air(air_temperature)
-    mist = Mist(density=gas.density, viscosity=gas.viscosity)
-    rim = shaft_windage(rotor.name, rotor.radius, rotor.length, speed, mist)
-    faces = _faces(rotor.radius, speed, mist) - _faces(rotor.hub_radius, speed, mist)
-    return ComponentHeat(
-        name=rotor.name,
-        power=rim.power + faces,
-        split=rotor.split,
-        source="free disc (Schlichting) and rotating cylinder (NACA Report 793)",
-        warnings=rim.warnings,
-    )
+        The faces are those of a disc less what the shafts cover, each with the coefficient of its own radius.
+        """
+        gas = air(air_temperature)
+        mist = Mist(density=gas.density, viscosity=gas.viscosity)
+        rim = shaft_windage(self.name, self.radius, self.length, speed, mist)
+        faces = _faces(self.radius, speed, mist) - _faces(self.hub_radius, speed, mist)
+        return ComponentHeat(
+            name=self.name,
+            power=rim.power + faces,
+            split=self.split,
+            source="free disc (Schlichting) and rotating cylinder (NACA Report 793)",
+            warnings=rim.warnings,
+        )
 
 
 def _faces(radius: float, speed: float, mist: Mist) -> float:

@@ -35,8 +35,6 @@ from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.setup import Condition
 from thermal.films.law import FilmCoefficient, FilmLaw
 
-OIL_ONLY = ("oil_acceleration", "squeeze")
-"""Losses that end with the oil."""
 THERMOSTAT = 1e6
 """Conductance that ties a held sump to its temperature [W/K]: 10 kW move it by 10 mK."""
 HEATER_AND_COOLER = "heater and cooler"
@@ -50,7 +48,7 @@ def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tup
 
     oil : whether the rig is fed
     """
-    losses = state.losses if oil else tuple(_dry(p) for p in state.losses if p.loss.kind not in OIL_ONLY)
+    losses = state.losses if oil else tuple(_dry(p) for p in state.losses if not p.kind.ends_with_oil)
     floor = rig.case.transient.still_film
     turning = state.point.speed > 0.0
     bodies: list[Condition] = []
@@ -91,7 +89,7 @@ def _gear_heat(rig: Rig, name: str, losses: Sequence[PlacedLoss]) -> float:
     return math.fsum(
         placed.into_oil
         for placed in losses
-        if placed.gearbox == name and not (placed.loss.kind == "bearing" and placed.part in seated)
+        if placed.gearbox == name and not (placed.kind.at_bearings and placed.part in seated)
     )
 
 
@@ -225,9 +223,9 @@ def _bearing_network(
     own = [placed for placed in losses if placed.gearbox == name]
     friction = dict.fromkeys(box.bearings, 0.0)
     for placed in own:
-        if placed.loss.kind == "bearing":
+        if placed.kind.at_bearings:
             friction[placed.part] += placed.loss.power
-    others = math.fsum(placed.into_bearing_oil for placed in own if placed.loss.kind != "bearing")
+    others = math.fsum(placed.into_bearing_oil for placed in own if not placed.kind.at_bearings)
     parts = [
         _films(BEARING_OIL, feed, fed.inlet, wetted, oil),
         *(_films(f"{BEARING_FILM}:{part}", feed, fed.inlet, wetted, oil) for part in box.bearings),
@@ -396,7 +394,7 @@ def bearing_nodes(
         star = state.bearings[full].star
         assert star is not None
         kind = f"{BEARING_FILM}:{part}"
-        friction = math.fsum(p.loss.power for p in losses if p.name == full and p.loss.kind == "bearing")
+        friction = math.fsum(p.loss.power for p in losses if p.name == full and p.kind.at_bearings)
         nodes[part] = BearingNode(
             part=part,
             volume=Volume(name=kind, power=friction),

@@ -1,5 +1,6 @@
 """Defaults of gears, meshes, their oil, bearings and seals."""
 
+from dynamics.rotor.rolling_kinds import ROLLING_KINDS
 from rigdesign.case.defaults.rule import (
     Filling,
     RawTree,
@@ -20,6 +21,7 @@ from rigdesign.case.defaults.rule import (
     tabled,
 )
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
+from rigdesign.case.seals import END_SEALS, WALL
 
 book = RuleBook()
 THIN_RIM, WHOLE_DEPTH = 1.2, 2.25
@@ -218,12 +220,13 @@ def _held_by_teeth(tree: RawTree, box: str, shaft: str | None) -> bool:
 
 
 def _holds_axially(tree: RawTree, box: str, bearing: str) -> bool:
-    """Whether a bearing may be locating: any but the cylindrical roller bearings NU and N."""
-    found, own = (
-        tabled(tree, box, bearing),
-        f"gearboxes.{box}.bearings.{bearing}.catalogue.carries_axial_load",
-    )
-    return tree.at(own) is not False if found is None else found.locating
+    """Whether a bearing may be locating: any but those whose rings move past each other."""
+    found, numbers = tabled(tree, box, bearing), f"gearboxes.{box}.bearings.{bearing}.catalogue"
+    if found is not None:
+        return found.carries_axial_load
+    kind = ROLLING_KINDS.get(tree.text(f"{numbers}.kind") or "")
+    able = kind is None or kind.carries_axial_load
+    return able and tree.at(f"{numbers}.carries_axial_load") is not False
 
 
 @book.default("gearboxes.*.bearings.*.radial_damping")
@@ -395,9 +398,8 @@ def _seal_gap(tree: RawTree, box: str, seal: str) -> Filling:
 
 @book.default("gearboxes.*.seals.*.axial_travel")
 def _seal_travel(tree: RawTree, box: str, seal: str) -> Filling:
-    if tree.text(f"gearboxes.{box}.seals.{seal}.kind") == "radial_lip":
-        return assumed("3 mm", "a lip slides along its shaft", "1 mm", "5 mm")
-    return assumed("1 mm", "axial gap of a labyrinth", "0.5 mm", "1.5 mm")
+    kind = END_SEALS.get(tree.text(f"gearboxes.{box}.seals.{seal}.kind") or "", WALL)
+    return assumed(*kind.usual_travel)
 
 
 @book.default("gearboxes.*.heat_split.windage_into_gears")

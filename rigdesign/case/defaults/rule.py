@@ -17,7 +17,7 @@ from rigdesign.base import units
 from rigdesign.case.provenance import is_marked
 
 if TYPE_CHECKING:
-    from dynamics.rotor.rolling_catalogue import CatalogueBearing
+    from dynamics.rotor.rolling_kinds import CatalogueBearing
 
 # Values of a case file before it is validated, without source, assumption and range; None where unreadable.
 

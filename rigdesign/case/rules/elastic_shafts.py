@@ -330,7 +330,7 @@ def _of_circuit(train: "DrivetrainInput") -> list[str]:
         f"drivetrain.couplings.{name}.{key}"
         for name, coupling in train.couplings.items()
         for key in OF_COUPLING
-        if key in coupling.model_fields_set and not (coupling.joint == "hooke" and key.startswith("cold"))
+        if key in coupling.model_fields_set and not (coupling.alternates and key.startswith("cold"))
     ]
 
 
@@ -398,7 +398,7 @@ def _bow(case: "Case", name: str, shaft: "ShaftInput") -> Iterator[Fault]:
 
 def _of_coupling(at: str, coupling: "CouplingInput") -> Iterator[Fault]:
     rests = {"flange_run_out": "radial_stiffness", "flange_tilt": "angular_stiffness"}
-    if coupling.joint != "hooke":
+    if not coupling.alternates:
         rests |= {"cold_angle_lateral": "angular_stiffness", "cold_angle_vertical": "angular_stiffness"}
     for key, stiffness in rests.items():
         value = getattr(coupling, key)

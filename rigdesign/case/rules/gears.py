@@ -360,7 +360,7 @@ def missing_ends(case: "Case") -> Iterator[Fault]:
 
 def _heat(at: str, here: str, box: "Gearbox", bearing: "BearingInput") -> Iterator[Fault]:
     """Grease carries no heat away: shaft or housing has to."""
-    if box.bearing_oil.lubrication != "grease":
+    if box.bearing_oil.takes_heat:
         return
     seats = (f"shaft_{bearing.shaft}_journal_{bearing.side}", f"bearing_bore_{bearing.shaft}_{bearing.side}")
     conditions = {} if box.housing is None else box.housing.boundary

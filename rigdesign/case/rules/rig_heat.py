@@ -8,10 +8,10 @@ from rigdesign.base.units import show
 from rigdesign.case.circuit_parts import heat_parts
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.films import RotatingCylinder, RotatingDisc
+from rigdesign.case.losses import LOSS_KINDS
 from rigdesign.case.rig_heat import OIL_COOLER, WATER
 
 if TYPE_CHECKING:
-    from rigdesign.case.gearbox import Gearbox
     from rigdesign.case.model import Case
 
 
@@ -128,12 +128,13 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
         if loss.gearbox not in case.gearboxes:
             yield unknown(f"{at}.gearbox", loss.gearbox, list(case.gearboxes), "gearbox")
             continue
-        parts = _parts_that_lose(case.gearboxes[loss.gearbox], loss.kind)
+        kind = LOSS_KINDS[loss.kind]
+        parts = kind.parts_of(case.gearboxes[loss.gearbox])
         if loss.part not in parts:
             yield unknown(
                 f"{at}.part", loss.part, parts, f"part with {loss.kind} loss in gearbox {loss.gearbox}"
             )
-        if losses.bearing_drag == "constant" and case.drivetrain is not None and loss.kind != "mesh":
+        if losses.bearing_drag == "constant" and case.drivetrain is not None and not kind.of_teeth:
             yield Fault(
                 f"{at}.kind", f'"{loss.kind}"', "would heat without braking: losses.bearing_drag is constant, so that "
                 "the torsional damping of the bearings is all that brakes besides the teeth",
@@ -181,15 +182,3 @@ def _media(case: "Case") -> Iterator[Fault]:
                     f"{entry}.correlation", f'"{film.correlation}"', f"is not used: medium = {written}",
                     'leave it out or write medium = "air"',
                 )  # fmt: skip
-
-
-def _parts_that_lose(box: "Gearbox", kind: str) -> list[str]:
-    return {
-        "mesh": list(box.meshes),
-        "squeeze": list(box.meshes),
-        "oil_acceleration": list(box.meshes),
-        "bearing": list(box.bearings),
-        "seal": list(box.seals),
-        "windage": list(box.gears),
-        "churning": [] if box.sump is None else list(box.gears),
-    }[kind]

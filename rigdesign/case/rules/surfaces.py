@@ -14,7 +14,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, covering, housing_geometry, wetted_surfaces
 from rigdesign.case.housing import LINKED, EnclosureInput, Housing
 from rigdesign.case.paths import nearest
-from rigdesign.case.surface_conditions import ConstantFilm, FlankFilm, Insulated, ThermalRadiation
+from rigdesign.case.surface_conditions import ConstantFilm, FlankFilm
 from thermal.conditions.view_factor_closure import EnclosureError, close_view_factors
 from thermal.errors import ThermalInputError
 from thermal.housing.housing_surfaces import exact_areas, surface_names
@@ -309,16 +309,8 @@ def _conditions(
         condition = housing.boundary[entry]
         if surface not in surfaces:
             continue
-        if isinstance(condition, ThermalRadiation):
-            yield Fault(
-                at, written(surface), f"radiates to its surroundings by boundary.{entry} already",
-                f"take it out of one of them, or give the enclosure an opening_temperature in place of {entry}",
-            )  # fmt: skip
-        elif isinstance(condition, Insulated):
-            yield Fault(
-                at, written(surface), f"passes no heat by boundary.{entry}",
-                f"take it out of {entry}: the enclosure is a condition of its own; or write a film",
-            )  # fmt: skip
+        if (against := condition.against_enclosure(entry)) is not None:
+            yield Fault(at, written(surface), *against)
 
 
 def _view_factors(

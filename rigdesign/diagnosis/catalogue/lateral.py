@@ -109,7 +109,7 @@ def couplings_out_of_true(case: Case) -> Iterator[Effect]:
                 "order 1 of both its shafts, lateral, the same at any speed below their resonances",
                 Turned(f"{at}.flange_tilt", rect(coupling.flange_tilt, coupling.flange_tilt_angle)), HEALTHY_TILT,
             )  # fmt: skip
-        if coupling.joint == "hooke":
+        if coupling.alternates:
             parts = [
                 Parameter(
                     name=f"angle {word}", unit="rad", low=-LARGEST_ANGLE, high=LARGEST_ANGLE, source=PRACTICE

@@ -18,15 +18,8 @@ from dynamics.rotor.bearing import (
 from dynamics.rotor.journal import JournalBearing
 from dynamics.rotor.rolling import RollingBearing, SeatConductances, shaft_path
 from dynamics.rotor.rolling_catalogue import catalogue_bearing
-from dynamics.rotor.rolling_state import (
-    LAWS,
-    FrictionLaw,
-    RollingState,
-    equivalent_load,
-    induced_axial_load,
-    minimum_load,
-    static_equivalent_load,
-)
+from dynamics.rotor.rolling_friction import LAWS, FrictionLaw
+from dynamics.rotor.rolling_state import RollingState
 
 RPM = math.pi / 30.0
 DENSITY, HEAT_CAPACITY, INLET = 860.0, 2000.0, 343.15
@@ -208,18 +201,18 @@ def test_equivalent_loads_by_kind() -> None:
     """X, Y, e of the catalogue chapters."""
     ball = catalogue_bearing("6208")
     axial = 0.689 * 19000.0 / 14.0
-    assert equivalent_load(ball, 1000.0, axial) == pytest.approx(0.56 * 1000.0 + 1.71 * axial)
-    assert equivalent_load(ball, 10000.0, axial) == 10000.0
-    assert static_equivalent_load(ball, 1000.0, 4000.0) == pytest.approx(2600.0)
+    assert ball.rules.equivalent_load(ball, 1000.0, axial) == pytest.approx(0.56 * 1000.0 + 1.71 * axial)
+    assert ball.rules.equivalent_load(ball, 10000.0, axial) == 10000.0
+    assert ball.rules.static_equivalent_load(ball, 1000.0, 4000.0) == pytest.approx(2600.0)
     roller = catalogue_bearing("NJ 208")
-    assert equivalent_load(roller, 1000.0, 150.0) == 1000.0
-    assert equivalent_load(roller, 1000.0, 400.0) == pytest.approx(920.0 + 240.0)
+    assert roller.rules.equivalent_load(roller, 1000.0, 150.0) == 1000.0
+    assert roller.rules.equivalent_load(roller, 1000.0, 400.0) == pytest.approx(920.0 + 240.0)
     taper = catalogue_bearing("30208")
-    assert equivalent_load(taper, 1000.0, 1000.0) == pytest.approx(400.0 + 1600.0)
-    assert static_equivalent_load(taper, 1000.0, 1000.0) == pytest.approx(500.0 + 900.0)
-    assert induced_axial_load(taper, 3200.0) == pytest.approx(1000.0)
+    assert taper.rules.equivalent_load(taper, 1000.0, 1000.0) == pytest.approx(400.0 + 1600.0)
+    assert taper.rules.static_equivalent_load(taper, 1000.0, 1000.0) == pytest.approx(500.0 + 900.0)
+    assert taper.rules.induced_axial_load(taper, 3200.0) == pytest.approx(1000.0)
     angular = catalogue_bearing("7208 B")
-    assert equivalent_load(angular, 1000.0, 2000.0) == pytest.approx(350.0 + 1140.0)
+    assert angular.rules.equivalent_load(angular, 1000.0, 2000.0) == pytest.approx(350.0 + 1140.0)
 
 
 def test_life_of_the_printed_6309() -> None:
@@ -244,9 +237,11 @@ def test_life_of_the_printed_6309() -> None:
 
 def test_minimum_loads_by_hand() -> None:
     ball, roller, taper = (catalogue_bearing(name) for name in ("6208", "NU 208", "30208"))
-    assert minimum_load(ball, 3000.0 * RPM, 20e-6) == pytest.approx(25.0 * 60.0 ** (2.0 / 3.0) * 0.36)
-    assert minimum_load(roller, 9500.0 * RPM, 20e-6) == pytest.approx(150.0 * 10.0 * 0.36)
-    assert minimum_load(taper, 0.0, 20e-6) == pytest.approx(0.02 * 61600.0)
+    assert ball.rules.minimum_load(ball, 3000.0 * RPM, 20e-6) == pytest.approx(
+        25.0 * 60.0 ** (2.0 / 3.0) * 0.36
+    )
+    assert roller.rules.minimum_load(roller, 9500.0 * RPM, 20e-6) == pytest.approx(150.0 * 10.0 * 0.36)
+    assert taper.rules.minimum_load(taper, 0.0, 20e-6) == pytest.approx(0.02 * 61600.0)
 
 
 @pytest.mark.parametrize(

@@ -9,15 +9,10 @@ import pytest
 
 from dynamics.rotor import rolling_catalogue
 from dynamics.rotor.bearing import BearingError
-from dynamics.rotor.rolling_catalogue import (
-    DESCRIBED_SERIES,
-    CatalogueBearing,
-    catalogue_bearing,
-    tabled_designations,
-)
+from dynamics.rotor.rolling_catalogue import catalogue_bearing, tabled_designations
+from dynamics.rotor.rolling_kinds import ROLLING_KINDS, CatalogueBearing, TwoLawKind
 from dynamics.rotor.rolling_row import RollingElements
 from dynamics.standards import iso76_2006, skf_friction_2006
-from dynamics.standards import iso_tr_14179_2_2001 as palmgren
 
 
 @pytest.mark.parametrize("spelling", ["NU 208 ECP", "NU 208", "nu208", "NU-208", " nu 208 ecp "])
@@ -100,9 +95,11 @@ def test_every_described_series_has_both_friction_laws() -> None:
         "cylindrical_roller": skf_friction_2006.CYLINDRICAL,
         "tapered_roller": skf_friction_2006.TAPERED,
     }
-    for kind, series in DESCRIBED_SERIES.items():
-        assert set(series) <= set(palmgren.COEFFICIENTS[kind])
-        assert kind not in skf or set(series) <= set(skf[kind])
+    kinds = {name: kind for name, kind in ROLLING_KINDS.items() if isinstance(kind, TwoLawKind)}
+    assert set(skf) <= set(kinds)
+    for name, kind in kinds.items():
+        assert set(kind.series) <= set(kind.palmgren_constants)
+        assert name not in skf or set(kind.series) <= set(skf[name])
 
 
 @pytest.mark.parametrize(

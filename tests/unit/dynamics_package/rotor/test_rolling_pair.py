@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 
 from dynamics.rotor.rolling_catalogue import catalogue_bearing
 from dynamics.rotor.rolling_row import RowOfElements, contact_law
-from dynamics.rotor.rolling_state import equivalent_load, induced_axial_load
 from dynamics.rotor.rolling_stiffness import bearing_stiffness, force_on_first, pair_axial_loads
 
 
@@ -47,12 +46,12 @@ def test_a_pair_of_tapered_bearings_with_catalogue_factors() -> None:
     """30206 (Y = 1.6) under 3200 N, 30306 (Y = 1.9) under 1900 N, 2 kN on the second: by hand 1000, 3000 N;
     P = 3200 N as 1000 < 0.37 * 3200, and 0.4 * 1900 + 1.9 * 3000 = 6460 N."""
     small, large = catalogue_bearing("30206"), catalogue_bearing("30306")
-    induced = (induced_axial_load(small, 3200.0), induced_axial_load(large, 1900.0))
+    induced = (small.rules.induced_axial_load(small, 3200.0), large.rules.induced_axial_load(large, 1900.0))
     assert induced == pytest.approx((1000.0, 500.0))
     axial = pair_axial_loads(induced, -2000.0)
     assert axial == pytest.approx((1000.0, 3000.0))
-    assert equivalent_load(small, 3200.0, axial[0]) == pytest.approx(3200.0)
-    assert equivalent_load(large, 1900.0, axial[1]) == pytest.approx(6460.0)
+    assert small.rules.equivalent_load(small, 3200.0, axial[0]) == pytest.approx(3200.0)
+    assert large.rules.equivalent_load(large, 1900.0, axial[1]) == pytest.approx(6460.0)
 
 
 def test_forces_balance_and_either_bearing_has_what_it_induces() -> None:
@@ -112,9 +111,8 @@ def test_an_elastic_pair_shares_the_axial_force_like_the_catalogue(
     elastic = _elastic_pair(designations, radial, external)
     assert elastic[0] - elastic[1] == pytest.approx(external, abs=1e-3)
     data = [catalogue_bearing(designation) for designation in designations]
-    found = pair_axial_loads(
-        (induced_axial_load(data[0], radial[0]), induced_axial_load(data[1], radial[1])), external
-    )
+    induced = [one.rules.induced_axial_load(one, load) for one, load in zip(data, radial, strict=True)]
+    found = pair_axial_loads((induced[0], induced[1]), external)
     assert all(real < own < margin * real for own, real in zip(found, elastic, strict=True))
     relieved = min((0, 1), key=lambda index: elastic[index] / radial[index])
     assert elastic[relieved] > 0.97 * radial[relieved] * math.tan(data[relieved].contact_angle)

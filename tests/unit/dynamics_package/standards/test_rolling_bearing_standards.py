@@ -6,6 +6,9 @@ from itertools import pairwise
 import pytest
 
 from dynamics.errors import DynamicsInputError
+from dynamics.rotor.rolling_catalogue import catalogue_bearing
+from dynamics.rotor.rolling_clearance import class_clearance
+from dynamics.rotor.rolling_kinds import CylindricalRoller, DeepGrooveBall
 from dynamics.standards import iso76_2006, iso281_2007, iso5753_1_2009
 from dynamics.standards import iso_tr_14179_2_2001 as palmgren
 from dynamics.standards import skf_friction_2006 as skf
@@ -103,15 +106,15 @@ def test_palmgren_torque_of_a_printed_cylindrical_roller_bearing() -> None:
 @pytest.mark.parametrize(("nu", "printed"), [(60.0, 1423.0), (39.0, 1062.0), (26.0, 824.0), (19.0, 660.0)])
 def test_palmgren_torque_of_a_printed_deep_groove_ball_bearing(nu: float, printed: float) -> None:
     """KRW catalogue p. 57: 6220 at 2200 rpm, viscosities rounded in print."""
-    row = palmgren.COEFFICIENTS["deep_groove_ball"]["62"]
+    row = palmgren.DEEP_GROOVE_BALL["62"]
     assert palmgren.T_VL0(row.f_0, nu, 2200.0, 140.0) == pytest.approx(printed, rel=0.02)
 
 
 def test_palmgren_load_dependent_torque_of_the_same_bearing() -> None:
     """6220: C_0 = 93 kN, 20 kN radial, 6 kN axial, M_1 = 1148 N mm."""
-    row = palmgren.COEFFICIENTS["deep_groove_ball"]["62"]
+    row = palmgren.DEEP_GROOVE_BALL["62"]
     f_1 = palmgren.f_1(row, 20e3, 93e3)
-    load = palmgren.P_1("deep_groove_ball", 20e3, 6e3, 0.0)
+    load = DeepGrooveBall().palmgren_load(catalogue_bearing("6210"), 20e3, 6e3)  # the same for all sizes
     assert palmgren.T_VL1(f_1, load, 140.0) == pytest.approx(1148.0, rel=0.01)
 
 
@@ -132,7 +135,7 @@ def test_skf_model_against_its_printed_example() -> None:
     assert starvation == pytest.approx(0.8, abs=0.02)
     assert rolling == pytest.approx(437.0, rel=2e-3)
     assert sliding == pytest.approx(21.7, rel=1e-3)
-    drag = skf.M_drag("spherical_roller", size, 0.041 * size.d_m, 3500.0)
+    drag = skf.M_drag(skf.KindConstants(K_Z=5.5, K_L=0.8), size, 0.041 * size.d_m, 3500.0)
     assert drag == pytest.approx(14.5, abs=0.05)
     assert shear * starvation * rolling + sliding + drag == pytest.approx(334.0, rel=0.01)
 
@@ -157,8 +160,11 @@ def test_skf_mixed_friction_at_both_ends() -> None:
 
 def test_skf_drag_grows_with_level_and_stops_when_submerged() -> None:
     size = skf.Size(40.0, 80.0, 18.0)
-    for kind in ("deep_groove_ball", "cylindrical_roller"):
-        drags = [skf.M_drag(kind, size, level, 3000.0) for level in (0.0, 5.0, 10.0, 30.0, 60.0, 72.0, 80.0)]
+    for kind in (DeepGrooveBall, CylindricalRoller):
+        drags = [
+            skf.M_drag(kind.skf_constants, size, level, 3000.0)
+            for level in (0.0, 5.0, 10.0, 30.0, 60.0, 72.0, 80.0)
+        ]
         assert drags[0] == 0.0
         assert all(low < high for low, high in pairwise(drags[:6]))
         assert drags[-1] == pytest.approx(drags[-2])
@@ -171,10 +177,19 @@ def test_drag_variable_at_the_printed_points() -> None:
 
 def test_clearance_classes_of_a_40_mm_bore() -> None:
     """NSK table 9.9 and SKF 6000 p. 513."""
-    assert iso5753_1_2009.radial_internal_clearance("deep_groove_ball", 40.0, "CN") == (6.0, 20.0)
-    assert iso5753_1_2009.radial_internal_clearance("cylindrical_roller", 40.0, "C3") == (45.0, 70.0)
-    assert iso5753_1_2009.radial_internal_clearance("cylindrical_roller", 40.001, "C3") == (50.0, 80.0)
+    assert iso5753_1_2009.radial_internal_clearance(iso5753_1_2009.DEEP_GROOVE_BALL, 40.0, "CN") == (
+        6.0,
+        20.0,
+    )
+    assert iso5753_1_2009.radial_internal_clearance(iso5753_1_2009.CYLINDRICAL_ROLLER, 40.0, "C3") == (
+        45.0,
+        70.0,
+    )
+    assert iso5753_1_2009.radial_internal_clearance(iso5753_1_2009.CYLINDRICAL_ROLLER, 40.001, "C3") == (
+        50.0,
+        80.0,
+    )
     with pytest.raises(DynamicsInputError, match="bore = 900 mm"):
-        iso5753_1_2009.radial_internal_clearance("deep_groove_ball", 900.0, "CN")
+        iso5753_1_2009.radial_internal_clearance(iso5753_1_2009.DEEP_GROOVE_BALL, 900.0, "CN")
     with pytest.raises(DynamicsInputError, match="tapered_roller has none"):
-        iso5753_1_2009.radial_internal_clearance("tapered_roller", 40.0, "CN")
+        class_clearance(catalogue_bearing("30208"), "CN")

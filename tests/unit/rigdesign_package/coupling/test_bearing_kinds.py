@@ -63,7 +63,8 @@ def test_a_journal_bearing_states_all_its_ratings() -> None:
 def test_the_stiffness_of_a_film_is_that_of_the_feed_which_the_case_states() -> None:
     """With grooves that of Lund and Thomsen at B/D 0.5 and S 0.580, K c / W = 2.67 along the load and 1.75 across;
     without the key that of ISO 7902-1, fed at the widest gap."""
-    entry = load_case(CASES / "loop_1to1").gearboxes["test"].bearings["pinion_front"]
+    box = load_case(CASES / "loop_1to1").gearboxes["test"]
+    entry = box.bearings["pinion_front"]
     assert isinstance(entry, JournalBearingInput)
     assert entry.feed == "widest_gap"
     speed, viscosity, clearance, diameter = 300.0, 0.02, 80e-6, entry.diameter
@@ -75,7 +76,7 @@ def test_the_stiffness_of_a_film_is_that_of_the_feed_which_the_case_states() -> 
     found = {}
     for feed in FEEDS:
         bearing = entry.model_copy(update={"feed": feed, "width": width}).as_it_runs(
-            BearingPlace(clearance=clearance, lubrication="fed")
+            BearingPlace(clearance=clearance, lubrication=box.bearing_oil)
         )
         state = bearing.operating_state(BearingOperation(load=load, speed=speed, oil=oil))
         assert isinstance(state, JournalState)

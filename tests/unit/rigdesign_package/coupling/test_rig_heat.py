@@ -17,7 +17,7 @@ from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.serialisation.housing import circuit_rows, rig_heat_row
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig_heat.component import CouplingRotor, coupling_windage, room_balance
+from rigdesign.rig_heat.component import CouplingRotor, room_balance
 from tests.builders.oil_circuit import PLANT, ZERO
 from tests.builders.rig_heat import ROOM, TRANSMISSION, loss_map
 
@@ -62,7 +62,7 @@ def test_the_drive_delivers_the_losses_and_every_machine_its_own(
 ) -> None:
     result = solved[1]
     rotor = CouplingRotor(name="pinion_side", radius=0.03, length=0.04)
-    windage = coupling_windage(rotor, result.point.speed, ZERO + 20.0).power
+    windage = rotor.heat(result.point.speed, ZERO + 20.0).power
     losses = math.fsum(placed.loss.power for placed in result.last.losses)
     heat = balance.heat
     assert power_of(balance, "pinion_side") == pytest.approx(windage)

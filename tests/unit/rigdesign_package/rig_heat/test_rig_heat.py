@@ -16,7 +16,6 @@ from rigdesign.rig_heat.component import (
     LossMap,
     Machine,
     Room,
-    coupling_windage,
     drive_train_heat,
     heat_by_sink,
     room_balance,
@@ -130,9 +129,7 @@ def test_coupling_windage_by_hand() -> None:
     Re = 1.204 * 1256.6 * 0.08^2 / 18.2e-6 = 5.32e5; both faces C_M near 0.146 Re^-0.2 = 0.01045 less the laminar
     middle; the rim 1 / sqrt(C) = -0.6 + 4.07 lg(Re sqrt(C)) gives C = 0.0031.
     """
-    found = coupling_windage(
-        CouplingRotor(name="test", radius=0.08, length=0.05), 12000 * math.pi / 30, ZERO + 20.0
-    )
+    found = CouplingRotor(name="test", radius=0.08, length=0.05).heat(12000 * math.pi / 30, ZERO + 20.0)
     speed, density = 12000 * math.pi / 30, 1.204
     reynolds = density * speed * 0.08**2 / 18.2e-6
     turbulent = 0.146 * reynolds**-0.2
@@ -148,9 +145,9 @@ def test_coupling_windage_by_hand() -> None:
 
 def test_windage_stands_at_rest_and_a_hub_takes_its_faces() -> None:
     whole = CouplingRotor(name="c", radius=0.08, length=0.05)
-    assert coupling_windage(whole, 0.0, 300.0).power == 0.0
+    assert whole.heat(0.0, 300.0).power == 0.0
     covered = CouplingRotor(name="c", radius=0.08, length=0.05, hub_radius=0.06)
-    assert coupling_windage(covered, 800.0, 300.0).power < coupling_windage(whole, 800.0, 300.0).power
+    assert covered.heat(800.0, 300.0).power < whole.heat(800.0, 300.0).power
 
 
 def test_room_by_hand() -> None:

@@ -7,8 +7,10 @@ from typing import Any
 
 import pytest
 
+from dynamics.losses.loss import Loss
 from rigdesign.case import load_case
 from rigdesign.checks.law_ranges import loss_findings, oil_findings
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.properties.oil import FVA_3, FVA_3A
 from rigdesign.results.result import Finding
 from rigdesign.rig.model import Rig, build_rig
@@ -70,14 +72,17 @@ def test_oil_outside_of_its_line_names_the_checks_that_rest_on_it() -> None:
 @pytest.mark.parametrize(("power", "rests"), [(40.0, True), (1.0, False)])
 def test_a_loss_outside_of_its_law_leaves_open_what_it_heats(power: float, rests: bool) -> None:
     """From a tenth of the heat on; a small one moves no temperature."""
+    outside = ("outside of its tests",)
     losses = [
-        SimpleNamespace(
-            name="test.pinion",
-            loss=SimpleNamespace(kind="windage", power=power, warnings=("outside of its tests",)),
-        ),
-        SimpleNamespace(name="test.main", loss=SimpleNamespace(kind="mesh", power=60.0, warnings=())),
+        PlacedLoss(
+            gearbox="test",
+            part=part,
+            loss=Loss(place=f"test.{part}", kind=kind, power=lost, warnings=texts),
+            into_body=0.0,
+        )
+        for part, kind, lost, texts in (("pinion", "windage", power, outside), ("main", "mesh", 60.0, ()))
     ]
-    (finding,) = loss_findings({"dwell": losses})  # type: ignore[dict-item]
+    (finding,) = loss_findings({"dwell": losses})
     assert any(fnmatchcase("temperature.gear_bulk", pattern) for pattern in finding.checks) is rests
 
 
