@@ -218,9 +218,7 @@ def _without_periodic_loads(system: LinearSystem) -> LinearSystem:
     """The system without oscillating torques; its modes stay known."""
     if not system.periodic_loads:
         return system
-    reduced = replace(system, periodic_loads=())
-    reduced.__dict__["form"] = system.form
-    return reduced
+    return replace(system, periodic_loads=(), own_coordinates=system.coordinates)
 
 
 @dataclass(frozen=True)

@@ -288,25 +288,24 @@ class FirstOrderModel:
 
     def __init__(self, reduced: ReducedRig, converged: Sequence[ConvergedPoint]) -> None:
         self._reduced, self._converged = reduced, tuple(converged)
+        self.known: list[PointSensitivities] | None = None
+        """Sensitivities of the points once they have been made."""
 
     @property
-    def known(self) -> bool:
-        """Whether the sensitivities of the points have been made."""
-        return "points" in self.__dict__
-
-    def prepare(self) -> None:
-        """Make the sensitivities of the points."""
-        _ = self.points
-
-    @cached_property
     def points(self) -> list[PointSensitivities]:
-        """Sensitivities of every point, found on all cores.
+        """Sensitivities of every point, made when they are first asked for.
 
         Raises
         ------
         UsageError
             A case whose points are not steady: their sensitivities depend on the whole warm-up.
         """
+        if self.known is None:
+            self.known = self._made()
+        return self.known
+
+    def _made(self) -> list[PointSensitivities]:
+        """Sensitivities of every point, found on all cores."""
         time = self._reduced.stated.case.ambient.warming_time
         if time is not None:
             raise UsageError(

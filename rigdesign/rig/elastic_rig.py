@@ -62,33 +62,36 @@ class ElasticDrivetrain:
 
     faces : flank of the pinion that carries in each mesh; cutoff : highest mode that is kept [Hz]
     pressed : bearings, ``gearbox.bearing``, whose rolling elements locate their shaft (`pressed_bearings`)
+    basis : this rig in the modes of one that differs in loads of its shafts alone; None: in its own modes
     """
 
     rig: ElasticRig
     faces: Mapping[str, Face]
     cutoff: float
     pressed: frozenset[str] = frozenset()
+    basis: ReducedElasticRig | None = None
 
     @cached_property
     def model(self) -> ElasticModel:
         """All freedoms, without bearings and meshes."""
-        return assemble_rig(self.rig)
+        return assemble_rig(self.rig) if self.basis is None else self.basis.model
 
     @cached_property
     def reduced(self) -> ReducedElasticRig:
         """Modes up to the cutoff with static shapes of all ports."""
-        return self._reduced(self.cutoff)
+        return self.basis or self._reduced(self.cutoff)
 
     @cached_property
     def slow(self) -> ReducedElasticRig:
         """The same with modes up to `SLOW` only: for what happens at the speed of the shafts."""
         return self.reduced if self.cutoff <= SLOW else self._reduced(SLOW)
 
-    def take_basis(self, other: "ElasticDrivetrain") -> None:
-        """Use the modes of a rig that differs in what turns with its shafts and in how its axes stand, no more; left
-        alone where that gives the shafts other nodes."""
-        if self.model.names == other.model.names:
-            self.__dict__["reduced"] = replace(other.reduced, model=self.model)
+    def with_basis_of(self, other: "ElasticDrivetrain") -> "ElasticDrivetrain":
+        """This rig in the modes of one that differs in what turns with its shafts and in how its axes stand, no more;
+        in its own where that gives the shafts other nodes."""
+        if self.model.names != other.model.names:
+            return self
+        return replace(self, basis=replace(other.reduced, model=self.model))
 
     def _reduced(self, cutoff: float) -> ReducedElasticRig:
         reference = {

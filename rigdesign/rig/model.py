@@ -88,6 +88,26 @@ class TwistingLoop:
 
 
 @dataclass(frozen=True)
+class RigParts:
+    """Derived parts of a rig that another one has computed and that hold for it too; None: computed when asked for."""
+
+    models: Mapping[str, GearboxModel] | None = None
+    conduction: Mapping[str, ConductionSetup] | None = None
+    chamber_views: ChamberViews | None = None
+    expansion: Mapping[str, ExpansionSetup] | None = None
+    geometries: Mapping[str, HousingGeometry] | None = None
+    drivetrain: Drivetrain | None = None
+    twisting: TwistingLoop | None = None
+    joints: tuple[TorsionalJoint, ...] | None = None
+    speed_ratios: Mapping[str, float] | None = None
+    mesh_forces: Mapping[str, float] | None = None
+    axes: Mapping[str, ShaftAxis] | None = None
+    topographies: Mapping[str, FlankTopographies] | None = None
+    seats: tuple[HousingSupport, ...] | None = None
+    elastic: ElasticDrivetrain | None = None
+
+
+@dataclass(frozen=True)
 class Rig:
     """Everything that stays the same over operating points and iterations.
 
@@ -96,6 +116,7 @@ class Rig:
     tooth_influence : influence numbers of the cold gears, from the store or computed when they are asked for
     coarsening : of the loop, for estimates of its discretisation error
     residual_unbalance : whether shafts that bend have what their balance grade leaves, at the worst angles
+    parts : computed elsewhere (`rigdesign.rig.reuse`); to be given anew with a field on which they depend
     """
 
     case: Case
@@ -108,17 +129,20 @@ class Rig:
     tooth_influence: ToothInfluence = field(default_factory=ToothInfluence)
     coarsening: Coarsening = AS_RULED
     residual_unbalance: bool = True
+    parts: RigParts = field(default=RigParts(), repr=False, compare=False)
 
     @cached_property
     def speed_ratios(self) -> Mapping[str, float]:
         """Speed of each shaft per speed of the reference gear."""
-        return speed_ratios(self.case, self.drivetrain)
+        return self.parts.speed_ratios or speed_ratios(self.case, self.drivetrain)
 
     @cached_property
     def drivetrain(self) -> Drivetrain | None:
         """The power circuit; None when the losses are given."""
         if self.case.drivetrain is None:
             return None
+        if self.parts.drivetrain is not None:
+            return self.parts.drivetrain
         whole = build_drivetrain(self.case, self.pairs, self.materials)
         return with_elements(self.case, whole, self.coarsening.elements)
 
@@ -134,6 +158,8 @@ class Rig:
     @cached_property
     def mesh_forces(self) -> Mapping[str, float]:
         """Signed tooth force of each mesh per force in the control mesh, positive where the pinion drives."""
+        if self.parts.mesh_forces is not None:
+            return self.parts.mesh_forces
         if self.drivetrain is None:
             return gearbox_forces(self.case, self.pairs)
         return loop_forces(self.case, self.pairs, self.drivetrain.lines())
@@ -141,7 +167,7 @@ class Rig:
     @cached_property
     def axes(self) -> Mapping[str, ShaftAxis]:
         """Axis of every shaft."""
-        return shaft_axes(self.case, self.pairs)
+        return self.parts.axes or shaft_axes(self.case, self.pairs)
 
     def line_of_action(self, mesh: str) -> LineOfAction:
         """Directions of the mesh ``gearbox.mesh``."""
@@ -158,14 +184,14 @@ class Rig:
     def twisting(self) -> TwistingLoop:
         """The same at every stated speed; of a rig with a drivetrain only."""
         assert self.drivetrain is not None
-        return TwistingLoop(self.drivetrain, self.drive_speed(1.0))
+        return self.parts.twisting or TwistingLoop(self.drivetrain, self.drive_speed(1.0))
 
     @cached_property
     def joints(self) -> tuple[TorsionalJoint, ...]:
         """Springs and dampers of the power circuit between its freedoms, splines as at test speed."""
         if self.drivetrain is None:
             return ()
-        return joints(self.twisting.parts(self.case.schedule.test_speed))
+        return self.parts.joints or joints(self.twisting.parts(self.case.schedule.test_speed))
 
     @cached_property
     def shaft_torsions(self) -> tuple[SectionTorsion, ...]:
@@ -190,7 +216,7 @@ class Rig:
     @cached_property
     def geometries(self) -> Mapping[str, HousingGeometry]:
         """Parametric housing of every gearbox that has one."""
-        return {
+        return self.parts.geometries or {
             name: housing_geometry(box, self._gear_diameters(name))
             for name, box in self.case.gearboxes.items()
             if box.housing is not None
@@ -199,7 +225,7 @@ class Rig:
     @cached_property
     def models(self) -> Mapping[str, GearboxModel]:
         """Meshed housing of every gearbox that has one."""
-        return self.meshed(self.fidelity)
+        return self.parts.models or self.meshed(self.fidelity)
 
     def surface_names(self, name: str) -> tuple[str, ...]:
         """Surfaces of a housing that want a boundary condition: of the box, or all of a file."""
@@ -223,25 +249,25 @@ class Rig:
 
     def with_models(self, models: Mapping[str, GearboxModel]) -> "Rig":
         """This rig with housings that were meshed elsewhere."""
-        rig = replace(self)
-        rig.__dict__["models"] = models
-        return rig
+        return replace(self, parts=RigParts(models=models))
 
     def coarsened(self, coarsening: Coarsening) -> "Rig":
         """This rig with its loop divided otherwise; what the division leaves as it is, is not computed again."""
-        rig = replace(self, coarsening=coarsening)
-        kept = ["models", "topographies", "axes", "_seats"]
-        if coarsening.elements == self.coarsening.elements:
-            kept += ["drivetrain"]
-            if coarsening.modes == self.coarsening.modes:
-                kept += ["elastic"]
-        rig.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
-        return rig
+        bends, divided = self.shaft_model == "elastic", coarsening.elements == self.coarsening.elements
+        parts = RigParts(
+            models=self.models,
+            topographies=self.topographies,
+            axes=self.axes,
+            seats=self.seats if bends else None,
+            drivetrain=self.drivetrain if divided else None,
+            elastic=self.elastic if bends and divided and coarsening.modes == self.coarsening.modes else None,
+        )
+        return replace(self, coarsening=coarsening, parts=parts)
 
     @cached_property
     def conduction(self) -> Mapping[str, ConductionSetup]:
         """Conduction matrices of every housing, assembled once."""
-        return {
+        return self.parts.conduction or {
             name: ConductionSetup(
                 model.mesh, {b: m.conductivity for b, m in self.body_materials(name).items()}
             )
@@ -251,12 +277,12 @@ class Rig:
     @cached_property
     def chamber_views(self) -> ChamberViews:
         """View factors between the surfaces of the chambers that radiate at each other."""
-        return ChamberViews(self.conduction)
+        return self.parts.chamber_views or ChamberViews(self.conduction)
 
     @cached_property
     def expansion(self) -> Mapping[str, ExpansionSetup]:
         """Stiffness and supports of every housing, assembled once."""
-        return {
+        return self.parts.expansion or {
             name: ExpansionSetup(
                 model,
                 {
@@ -281,7 +307,7 @@ class Rig:
     @cached_property
     def topographies(self) -> Mapping[str, FlankTopographies]:
         """Measured front and back flanks by ``gearbox.gear`` of the gears that have any."""
-        return flank_topographies(self.case, self.pairs)
+        return self.parts.topographies or flank_topographies(self.case, self.pairs)
 
     def topography(self, gear: str) -> FlankTopographies:
         """Measured front and back flanks of the gear ``gearbox.gear``."""
@@ -296,9 +322,11 @@ class Rig:
     def elastic(self) -> ElasticDrivetrain:
         """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
         assert self.drivetrain is not None
+        if self.parts.elastic is not None:
+            return self.parts.elastic
         case = self.case if self.residual_unbalance else without_residual_unbalance(self.case)
         return ElasticDrivetrain(
-            rig=elastic_rig(case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
+            rig=elastic_rig(case, self.drivetrain, self.axes, self.pairs, self.materials, self.seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
             cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain))
             / self.coarsening.modes,
@@ -306,9 +334,9 @@ class Rig:
         )
 
     @cached_property
-    def _seats(self) -> tuple[HousingSupport, ...]:
+    def seats(self) -> tuple[HousingSupport, ...]:
         """Housings condensed to their seats; their quick meshes are 1 % stiffer than the others."""
-        return housing_supports(
+        return self.parts.seats or housing_supports(
             self.case.gearboxes, self.axes, lambda: self.meshed("quick"), self.body_materials
         )
 
