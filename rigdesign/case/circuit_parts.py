@@ -276,12 +276,12 @@ def shaft_of(case: "Case", name: str, coupling: CouplingRotorInput) -> str:
     """Shaft with which a coupling turns. Raises CaseError where neither the table nor the drivetrain names one."""
     if coupling.shaft is not None:
         return coupling.shaft
-    couplings: Mapping[str, object] = {} if case.drivetrain is None else case.drivetrain.couplings
-    if case.drivetrain is None or name not in couplings:
+    couplings = case.power_circuit.couplings
+    if name not in couplings:
         known = ", ".join(couplings) or "none"
         problem = f"is missing, and drivetrain.couplings has no {name} (known: {known})"
         raise CaseError([Fault("shaft", "", problem, "write the shaft with which it turns")])
-    return case.drivetrain.couplings[name].shafts[0]
+    return couplings[name].shafts[0]
 
 
 def _machine(name: str, given: MachineInput) -> Machine:

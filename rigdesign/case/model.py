@@ -11,7 +11,7 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
-from rigdesign.case.drivetrain import DrivetrainInput
+from rigdesign.case.drivetrain import NO_DRIVETRAIN, DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Text, Title
@@ -139,6 +139,11 @@ class Case(Part):
     def path(self) -> Path:
         """The case file."""
         return self._origin.path
+
+    @property
+    def power_circuit(self) -> DrivetrainInput:
+        """The drivetrain; of a case that leaves it out an absent one, without shafts and couplings."""
+        return self.drivetrain or NO_DRIVETRAIN
 
     @property
     def assumptions(self) -> tuple[AssumptionRecord, ...]:

@@ -135,7 +135,7 @@ def _misplaced(case: "Case") -> Iterator[tuple[str, str]]:
             on_shafts[bearing.shaft].append((place, bearing.width, bearing.shaft_diameter, path))
     for shaft, parts in on_shafts.items():
         for place, _, bore, path in parts:
-            section = diameter_at(case.drivetrain.shafts[shaft], place)
+            section = diameter_at(case.power_circuit.shafts[shaft], place)
             if section and bore and not 0.6 < bore / section < 1.7:
                 yield path, f"puts a bore of {_mm(bore)} on a section of {_mm(section)} of shaft {shaft}"
         for (place, width, _, path), (other, other_width, _, other_path) in pairwise(sorted(parts)):

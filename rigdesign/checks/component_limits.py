@@ -101,7 +101,7 @@ def _gears_at(solved: SolvedRig, part: str) -> Iterator[tuple[str, str, float]]:
     rig = solved.rig
     names = part.split(".")
     whole = names[0] == "gearboxes" and (len(names) == 2 or names[2] == "meshes")
-    lines = {} if rig.drivetrain is None else rig.drivetrain.lines()
+    lines = rig.drivetrain.lines()
     own = {lines.get(shaft) for shaft in shafts_of(solved.case, part)}
     for mesh in rig.mesh_names:
         box = rig.mesh(mesh)[0]
@@ -144,12 +144,12 @@ def _worst_of_shift(
     solved: SolvedRig, values: Callable[[StageBracing], Iterator[tuple[float, str]]]
 ) -> Found:
     """Worst value of the bracing at the held stages of a loop that is braced by the shift of a gear."""
-    power = solved.case.drivetrain
-    if solved.loads is None or power is None:
+    bracing = solved.case.power_circuit.bracing
+    if solved.loads is None:
         return None, NO_LOADS
-    if power.bracing.mode == "twist_held" or power.bracing.shifted_gear is None:
+    if bracing.mode == "twist_held" or bracing.shifted_gear is None:
         return None, "the loop is braced by a twist: no gear is shifted"
-    return worst(value for bracing in solved.loads.bracing for value in values(bracing))
+    return worst(value for held in solved.loads.bracing for value in values(held))
 
 
 def _actuator_force(solved: SolvedRig, part: str) -> Found:
@@ -229,12 +229,12 @@ def _temperature(solved: SolvedRig, part: str) -> Found:
 
 def _saturated(solved: SolvedRig, check: Check) -> Omissions:
     """What the speed control asked of the motor beyond its limit: the torque of the run is less than that."""
-    run, power = solved.run, solved.case.drivetrain
-    if run is None or power is None:
+    run = solved.run
+    if run is None:
         return
     controlled = np.array([stage.drive_torque is None for stage in solved.case.schedule.resolved()])
     stage = schedule_of(solved.rig).at(run.ramp.time).stage
-    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * power.motor.torque_limit
+    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * solved.case.power_circuit.motor.torque_limit
     share = float(np.mean(full & controlled[stage]))
     if share:
         yield Omission(

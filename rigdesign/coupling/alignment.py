@@ -170,8 +170,7 @@ class CouplingPlace:
 
 def coupling_places(rig: Rig) -> Iterator[CouplingPlace]:
     """Every coupling that a housing moves."""
-    train = rig.case.drivetrain
-    for name, coupling in () if train is None else train.couplings.items():
+    for name, coupling in rig.case.power_circuit.couplings.items():
         first, second = (_end(rig, coupling, side) for side in (0, 1))
         if first.gearbox or second.gearbox:
             offset = coupling.cold_offset_lateral, coupling.cold_offset_vertical

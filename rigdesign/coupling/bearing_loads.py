@@ -104,11 +104,11 @@ def _weights(rig: Rig, name: str, shaft: str) -> Iterator[ShaftLoad]:
         if box.gears[gear].shaft == shaft:
             mass = (
                 box.halves(gear) * rig.pairs[f"{name}.{mesh}"].masses[side]
-                if drivetrain is None
+                if rig.case.drivetrain is None
                 else drivetrain.gear(f"{name}.{gear}").mass
             )
             yield _weight(box.gears[gear].position, mass)
-    if drivetrain is None or shaft not in (one.name for one in drivetrain.shafts):
+    if shaft not in (one.name for one in drivetrain.shafts):
         return
     part = drivetrain.shaft(shaft)
     start = 0.0

@@ -141,9 +141,8 @@ def centrifugal_expansion(rig: Rig, entry: BearingInput, speed: float) -> float:
 
 
 def _shaft_material(rig: Rig, entry: BearingInput) -> Material:
-    power = rig.case.drivetrain
-    known = power is not None and entry.shaft in power.shafts
-    return rig.materials[power.shafts[entry.shaft].material if power and known else "case_hardened_steel"]
+    shafts = rig.case.power_circuit.shafts
+    return rig.materials[shafts[entry.shaft].material if entry.shaft in shafts else "case_hardened_steel"]
 
 
 def uniform_expansion(rig: Rig, name: str, temperature: float) -> dict[str, float]:

@@ -64,8 +64,7 @@ def bearing_coefficients(
 
     Computed from its state at the load of this coupling state, or as the case states them.
     """
-    power = rig.case.drivetrain
-    assert power is not None
+    power = rig.case.power_circuit
     loads = bearing_loads(rig, coupling_state)
     found = {}
     for name, _, entry in rig.bearings():
@@ -137,7 +136,7 @@ def mesh_placements(
 
     bearings : state of every bearing at this point, by ``gearbox.bearing``
     """
-    if rig.shaft_model == "torsional" or rig.drivetrain is None:
+    if rig.shaft_model == "torsional":
         return {}
     coefficients = bearing_coefficients(rig, coupling_state, bearings)
     moved = _displacements(rig, running_at(rig, point, coefficients), coefficients, coupling_state)
@@ -224,7 +223,6 @@ def twist_rows_of(rig: Rig, speed: float | None = None) -> TwistRows:
     speed : of the schedule [rad/s], at which the dampers of splines with a loss factor carry torque too; None leaves
         their share out, a factor sqrt(1 + eta^2)
     """
-    assert rig.drivetrain is not None
     rows = (
         torsional_twist_rows(rig.drivetrain)
         if rig.shaft_model == "torsional"

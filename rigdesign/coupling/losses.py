@@ -81,7 +81,7 @@ def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[str, GearPair]) -> 
 
 def _bearings_alone(rig: Rig) -> bool:
     """Whether nothing but bearings and teeth brakes the rig."""
-    return rig.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
+    return rig.case.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
 
 
 def mesh_losses(

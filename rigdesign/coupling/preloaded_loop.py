@@ -27,8 +27,8 @@ from rigdesign.rig.model import Rig
 
 def locked_share(rig: Rig) -> float:
     """Torque that is locked in, as a share of the stated one: bracing drifts with the temperature of the gear oil."""
-    power = rig.case.drivetrain
-    if power is None or power.bracing.temperature_drift == 0.0:
+    power = rig.case.power_circuit
+    if power.bracing.temperature_drift == 0.0:
         return 1.0
     box = rig.case.gearboxes[power.torque_at.split(".")[0]]
     fed = box.gear_oil_temperature
@@ -61,10 +61,10 @@ class BracingState:
 
 def shifted_gear(rig: Rig) -> ShiftedGear | None:
     """The helical gear whose axial shift braces the loop; None if the case names none."""
-    power = rig.case.drivetrain
-    if power is None or power.bracing.shifted_gear is None:
+    bracing = rig.case.power_circuit.bracing
+    if bracing.shifted_gear is None:
         return None
-    box_name, gear = power.bracing.shifted_gear.split(".")
+    box_name, gear = bracing.shifted_gear.split(".")
     for index, name in enumerate(rig.mesh_names):
         if name.split(".")[0] != box_name:
             continue
@@ -78,13 +78,11 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
                 base_helix_angle=pair.base_helix_angle,
                 working_radius=pair.working_radii[0 if gear == entry.pinion else 1],
                 halves=2 if entry.double_helical else 1,
-                floating_partner=power.bracing.partner_floats,
-                spline_friction=power.bracing.spline_friction_coefficient,
-                spline_radius=power.bracing.spline_pitch_radius or 0.0,
+                floating_partner=bracing.partner_floats,
+                spline_friction=bracing.spline_friction_coefficient,
+                spline_radius=bracing.spline_pitch_radius or 0.0,
             )
-    raise ValueError(
-        f"drivetrain.bracing.shifted_gear = {power.bracing.shifted_gear}: this gear is in no mesh"
-    )
+    raise ValueError(f"drivetrain.bracing.shifted_gear = {bracing.shifted_gear}: this gear is in no mesh")
 
 
 def brace_initial(
@@ -103,8 +101,7 @@ def brace_initial(
     near : state of a loop that differs little, to start from
     """
     system = rig.system if system is None else system
-    assert rig.case.drivetrain is not None and system is not None
-    mode = rig.case.drivetrain.bracing.mode
+    mode = rig.case.power_circuit.bracing.mode
     if mode == "torque_controlled":
         return BracingState(mode=mode)
     met = mesh_models(rig, point, initial) if models is None else models
@@ -258,7 +255,7 @@ def lines_left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | Non
 
 def _left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | None) -> list[str]:
     system = rig.system if system is None else system
-    if system is None or not system.periodic_loads:
+    if not system.periodic_loads:
         return []
     ratios = pinion_ratios(system, laws)
     pinions = [float(ratios[port]) for port in system.mesh_ports[:, 0]]

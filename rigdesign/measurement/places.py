@@ -33,7 +33,6 @@ class Places:
         Of ``natural_frequency`` and ``resonance_speed`` the first three; any higher number and the name of a mode is
         one, too (`is_mode`).
         """
-        power = self.case.drivetrain
         known = {
             "temperature": self.surfaces,
             "oil_outlet_temperature": self.streams,
@@ -41,7 +40,7 @@ class Places:
             "flow": self.streams,
             "motor_power": self._driven(MOTOR),
             "drive_torque": self._driven(MOTOR),
-            "torque": () if power is None else tuple(power.couplings),
+            "torque": tuple(self.case.power_circuit.couplings),
             "angle": self.shafts,
             "acceleration": self.bearings,
             "shaft_displacement": (*self.bearings, *self.shafts),
@@ -110,12 +109,11 @@ class Places:
     @cached_property
     def shafts(self) -> tuple[str, ...]:
         """Shafts of the power circuit."""
-        return () if self.case.drivetrain is None else tuple(self.case.drivetrain.shafts)
+        return tuple(self.case.power_circuit.shafts)
 
     def length(self, shaft: str) -> float:
         """Length of one of them [m]."""
-        assert self.case.drivetrain is not None
-        return fsum(section.length for section in self.case.drivetrain.shafts[shaft].sections)
+        return fsum(section.length for section in self.case.power_circuit.shafts[shaft].sections)
 
     @cached_property
     def bearings(self) -> tuple[str, ...]:
@@ -177,7 +175,7 @@ class Places:
     def counting_gear(self) -> str:
         """Gear whose turns count."""
         if self.case.drivetrain is not None:
-            return self.case.drivetrain.torque_at
+            return self.case.power_circuit.torque_at
         name, box = next(iter(self.case.gearboxes.items()))
         return f"{name}.{next(iter(box.meshes.values())).pinion}"
 
@@ -191,11 +189,10 @@ class Places:
             for gear, entry in box.gears.items():
                 on_shaft.setdefault(entry.shaft, []).append(f"{name}.{gear}")
         joined = list(on_shaft.values())
-        if self.case.drivetrain is not None:
-            joined += [
-                [gear for shaft in coupling.shafts for gear in on_shaft.get(shaft, ())]
-                for coupling in self.case.drivetrain.couplings.values()
-            ]
+        joined += [
+            [gear for shaft in coupling.shafts for gear in on_shaft.get(shaft, ())]
+            for coupling in self.case.power_circuit.couplings.values()
+        ]
         for gears in joined:
             yield from ((gears[0], other, Fraction(1)) for other in gears[1:])
 

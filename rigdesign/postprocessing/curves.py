@@ -359,7 +359,6 @@ def modes_at(rig: Rig, held: PointResult, speed: float) -> tuple[LoopMode, ...]:
 
 
 def _modes(rig: Rig, last: IterationResult, state: RunningState | None) -> tuple[LoopMode, ...]:
-    assert rig.drivetrain is not None
     laws = laws_of(last.models)
     if state is None:
         return loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)

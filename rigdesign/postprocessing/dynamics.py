@@ -200,7 +200,6 @@ def numbered(modes: Sequence[LoopMode]) -> list[tuple[int, LoopMode]]:
 def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[ModeCrossing]:
     """Crossings of the closed loop's modes with orders of meshes that excite them and of shafts, up to a speed of the
     first pinion [rad/s]."""
-    assert rig.drivetrain is not None
     listed = dict(numbered(modes))
     highest = rig.drive_speed(1.0) / rig.pinion_speed(1.0) * top
     for crossing in loop_crossings(rig.drivetrain, list(listed.values()), highest, HARMONICS):

@@ -462,7 +462,6 @@ def _overspeed(place: EventPlace, test: PointResult) -> EventRecord:
 def overspeed_time(rig: Rig, speed: float) -> float:
     """How long the steady rotation at a stated speed [rad/s] is marched [s]: what shakes once a turn of any shaft has
     shown its peak."""
-    assert rig.drivetrain is not None
     slowest = min(abs(rig.shaft_speed(shaft.name, speed)) for shaft in rig.drivetrain.shafts)
     return max(OVERSPEED_TIME, OVERSPEED_TURNS * 2.0 * math.pi / slowest)
 

@@ -232,16 +232,16 @@ def _solid(material: Material) -> Solid:
 
 def shaft_material(rig: Rig, shaft: str) -> Material | None:
     """Of a shaft of the drivetrain; None of one that is not part of it."""
-    power = rig.case.drivetrain
-    return None if power is None or shaft not in power.shafts else rig.materials[power.shafts[shaft].material]
+    shafts = rig.case.power_circuit.shafts
+    return rig.materials[shafts[shaft].material] if shaft in shafts else None
 
 
 def shaft_bore(rig: Rig, shaft: str, position: float | None) -> float:
     """Inner radius of a shaft at a position [m]; 0 where the case has no sections or the gear no position."""
-    power = rig.case.drivetrain
-    if power is None or shaft not in power.shafts or position is None:
+    shafts = rig.case.power_circuit.shafts
+    if shaft not in shafts or position is None:
         return 0.0
-    section = power.shafts[shaft].section_at(position)
+    section = shafts[shaft].section_at(position)
     return 0.0 if section is None else 0.5 * section.inner_diameter
 
 

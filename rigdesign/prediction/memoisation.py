@@ -141,7 +141,7 @@ class Memoisation:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
-        if rig.case.drivetrain.bracing.mode == "torque_controlled":
+        if rig.case.power_circuit.bracing.mode == "torque_controlled":
             return BracingState(mode="torque_controlled")
         models = self.models(rig, point, initial)
         system = self.system(rig, point, initial, self.bearings(rig, point, initial))
@@ -150,7 +150,7 @@ class Memoisation:
             _digest(system.stiffness, system.twist_load),
             tuple(map(law_key, at_rest)),
             signed_torque(rig, point),
-            rig.case.drivetrain.bracing,
+            rig.case.power_circuit.bracing,
         )
         known = self._room("bracings")
         if key not in known:

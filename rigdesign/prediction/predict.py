@@ -250,7 +250,7 @@ class Predictor:
         all operating points, torsional ones and any other that a mesh excites by `SEEN_GAIN` or more.
         """
         stated = self._reduced.stated
-        if stated.drivetrain is None:
+        if stated.case.drivetrain is None:
             return np.zeros(0)
         with self._solving():
             if stated.shaft_model == "torsional":

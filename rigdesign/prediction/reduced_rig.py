@@ -98,8 +98,7 @@ class ReducedRig:
         Its initial state is that of the stated rig where nothing is braced in it.
         """
         here, point = rig_at(rig, condition), operating_point(condition)
-        power = rig.case.drivetrain
-        held = power is not None and power.bracing.mode != "torque_controlled"
+        held = rig.case.power_circuit.bracing.mode != "torque_controlled"
         known = None if held else self._initial.get(condition.name)
         initial = known or initial_state(here, point, self.memoisation.bearings)
         return PointProblem(

@@ -51,8 +51,7 @@ def build_drivetrain(
     DrivetrainError
         A part that does not fit its shaft, or a loop that cannot close.
     """
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     return Drivetrain(
         shafts=tuple(_shaft(name, case, materials) for name in power.shafts),
         gears=tuple(_gear_bodies(case, pairs, materials)),
@@ -77,8 +76,7 @@ def build_drivetrain(
 
 
 def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
-    assert case.drivetrain is not None
-    shaft = case.drivetrain.shafts[name]
+    shaft = case.power_circuit.shafts[name]
     material = materials[shaft.material]
     return Shaft(
         name=name,
@@ -109,8 +107,7 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
 
 def mesh_frequency(case: Case) -> float:
     """Angular frequency [rad/s] at which the teeth of the reference gear mesh at test speed."""
-    assert case.drivetrain is not None
-    box, gear = case.drivetrain.torque_at.split(".")
+    box, gear = case.power_circuit.torque_at.split(".")
     return case.gearboxes[box].gears[gear].teeth * case.schedule.test_speed
 
 
@@ -186,10 +183,10 @@ def gear_mass(
 
 def _bore(case: Case, part: Gear) -> float:
     """Bore of a gear body [m]; of one cut into its shaft the diameter of the shaft there, where that is stated."""
-    train = case.drivetrain
-    if part.bore_diameter or part.seat_position is None or train is None:
+    shafts = case.power_circuit.shafts
+    if part.bore_diameter or part.seat_position is None or not shafts:
         return part.bore_diameter
-    section = train.shafts[part.shaft].section_at(part.seat_position)
+    section = shafts[part.shaft].section_at(part.seat_position)
     return 0.0 if section is None else section.outer_diameter
 
 
@@ -241,9 +238,8 @@ def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[MeshConnection]:
 
 
 def _motor(case: Case) -> Motor:
-    assert case.drivetrain is not None
-    motor = case.drivetrain.motor
-    length = math.fsum(section.length for section in case.drivetrain.shafts[motor.shaft].sections)
+    motor = case.power_circuit.motor
+    length = math.fsum(section.length for section in case.power_circuit.shafts[motor.shaft].sections)
     return Motor(
         shaft=motor.shaft,
         position=0.0 if motor.end == "start" else length,
@@ -328,7 +324,9 @@ def loop_forces(case: Case, pairs: Mapping[str, GearPair], lines: Mapping[str, i
     forces = _forces(_balance(case, pairs, lines))
     if forces is None:
         joined = (
-            "; ".join(f"{name}: {', '.join(one.shafts)}" for name, one in case.drivetrain.couplings.items())
+            "; ".join(
+                f"{name}: {', '.join(one.shafts)}" for name, one in case.power_circuit.couplings.items()
+            )
             if case.drivetrain
             else "none"
         )

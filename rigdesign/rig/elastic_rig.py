@@ -162,8 +162,7 @@ def elastic_rig(
 
 def pressed_bearings(case: Case) -> Iterator[str]:
     """Bearings on shafts that contact angles hold: pressed against each other, they have an axial stiffness."""
-    power = case.drivetrain
-    if power is None or power.bearing_coefficients == "stated":
+    if case.power_circuit.bearing_coefficients == "stated":
         return
     for box_name, box in case.gearboxes.items():
         angled = {entry.shaft for entry in box.bearings.values() if entry.induced_axial_load(1.0) > 0.0}
@@ -243,8 +242,7 @@ def rotating_parts(
 
     Raises DrivetrainError for parts that do not fit the drivetrain.
     """
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     highest = highest_speeds(case, drivetrain)
     for name, shaft in power.shafts.items():
         for own in shaft.unbalances.values():
@@ -272,8 +270,7 @@ def rotating_parts(
 
 def without_residual_unbalance(case: Case) -> Case:
     """The case with the unbalances that it states alone: what a balance grade leaves turns at angles nobody knows."""
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     shafts = {name: shaft.model_copy(update={"balance_grade": None}) for name, shaft in power.shafts.items()}
     return case.model_copy(
         update={"drivetrain": power.model_copy(update={"balance_grade": 0.0, "shafts": shafts})}
@@ -282,8 +279,7 @@ def without_residual_unbalance(case: Case) -> Case:
 
 def misalignments(case: Case) -> Iterator[AxisMisalignment]:
     """Couplings that resist the offset or angle in which their axes were set up."""
-    assert case.drivetrain is not None
-    for name, coupling in case.drivetrain.couplings.items():
+    for name, coupling in case.power_circuit.couplings.items():
         offset = coupling.cold_offset_lateral, coupling.cold_offset_vertical
         slope = coupling.cold_angle_lateral, coupling.cold_angle_vertical
         found = AxisMisalignment(
@@ -297,8 +293,7 @@ def misalignments(case: Case) -> Iterator[AxisMisalignment]:
 
 def cross_joints(case: Case) -> Iterator[CrossJoint]:
     """Couplings that are cross joints under an angle."""
-    assert case.drivetrain is not None
-    for name, coupling in case.drivetrain.couplings.items():
+    for name, coupling in case.power_circuit.couplings.items():
         slope = coupling.cold_angle_lateral, coupling.cold_angle_vertical
         if coupling.joint == "hooke" and any(slope):
             yield CrossJoint(coupling=name, slope=slope)
@@ -306,19 +301,17 @@ def cross_joints(case: Case) -> Iterator[CrossJoint]:
 
 def grade_of(case: Case, shaft: ShaftInput) -> float:
     """Balance quality grade of a shaft [mm/s], 0 where its unbalances are stated in its place."""
-    assert case.drivetrain is not None
     if shaft.balance_grade is not None:
         return shaft.balance_grade
     if shaft.unbalances:
         return 0.0
-    common = case.drivetrain.balance_grade
+    common = case.power_circuit.balance_grade
     return BALANCE_GRADE if common is None else common
 
 
 def highest_speeds(case: Case, drivetrain: Drivetrain) -> dict[str, float]:
     """Highest speed of every shaft in the schedule [rad/s]."""
-    assert case.drivetrain is not None
-    box, gear = case.drivetrain.torque_at.split(".")
+    box, gear = case.power_circuit.torque_at.split(".")
     ratios = speed_ratios(drivetrain)
     reference = ratios[case.gearboxes[box].gears[gear].shaft]
     top = max(max(stage.speed_start, stage.speed_end) for stage in case.schedule.resolved())

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from dynamics.gear.pair import GearPair
-from dynamics.rotor.graph import Drivetrain, TorsionalJoint, assemble, at_speed, joints
+from dynamics.rotor.graph import NO_DRIVETRAIN, Drivetrain, TorsionalJoint, assemble, at_speed, joints
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.rotor_model import HousingSupport
 from dynamics.tooth.elastic_segment import FACE_POSITIONS
@@ -137,10 +137,10 @@ class Rig:
         return self.parts.speed_ratios or speed_ratios(self.case, self.drivetrain)
 
     @cached_property
-    def drivetrain(self) -> Drivetrain | None:
-        """The power circuit; None when the losses are given."""
+    def drivetrain(self) -> Drivetrain:
+        """The power circuit; without any part when the losses are given."""
         if self.case.drivetrain is None:
-            return None
+            return NO_DRIVETRAIN
         if self.parts.drivetrain is not None:
             return self.parts.drivetrain
         whole = build_drivetrain(self.case, self.pairs, self.materials)
@@ -151,7 +151,7 @@ class Rig:
         """Frequency [Hz] up to which modes of the loop are followed in its periodic response."""
         return (
             DEFAULT_CUTOFF
-            if self.drivetrain is None
+            if self.case.drivetrain is None
             else highest_mode(counted_frequency(self.case, self.drivetrain))
         )
 
@@ -160,7 +160,7 @@ class Rig:
         """Signed tooth force of each mesh per force in the control mesh, positive where the pinion drives."""
         if self.parts.mesh_forces is not None:
             return self.parts.mesh_forces
-        if self.drivetrain is None:
+        if self.case.drivetrain is None:
             return gearbox_forces(self.case, self.pairs)
         return loop_forces(self.case, self.pairs, self.drivetrain.lines())
 
@@ -176,32 +176,29 @@ class Rig:
         return line_of_action(self.axes[pinion], self.axes[wheel])
 
     @cached_property
-    def system(self) -> LinearSystem | None:
-        """Matrices of the power circuit that only twists, without its meshes; splines as at test speed."""
-        return None if self.drivetrain is None else self.twisting.at(self.case.schedule.test_speed)
+    def system(self) -> LinearSystem:
+        """Matrices of the power circuit that only twists, without its meshes; splines as at test speed; of a rig with
+        a drivetrain only."""
+        return self.twisting.at(self.case.schedule.test_speed)
 
     @cached_property
     def twisting(self) -> TwistingLoop:
         """The same at every stated speed; of a rig with a drivetrain only."""
-        assert self.drivetrain is not None
         return self.parts.twisting or TwistingLoop(self.drivetrain, self.drive_speed(1.0))
 
     @cached_property
     def joints(self) -> tuple[TorsionalJoint, ...]:
         """Springs and dampers of the power circuit between its freedoms, splines as at test speed."""
-        if self.drivetrain is None:
-            return ()
         return self.parts.joints or joints(self.twisting.parts(self.case.schedule.test_speed))
 
     @cached_property
     def shaft_torsions(self) -> tuple[SectionTorsion, ...]:
         """Static torsion of the shafts at the largest torque of the schedule; empty without a drivetrain."""
-        power = self.case.drivetrain
-        if power is None or self.drivetrain is None:
+        if self.case.drivetrain is None:
             return ()
         torque = self.torque_ratio * max(abs(stage.torque_end) for stage in self.case.schedule.resolved())
         force = torque / self.pairs[self.control_mesh].base_radii[0]
-        return section_torsions(self.drivetrain, force, power.motor.torque_limit)
+        return section_torsions(self.drivetrain, force, self.case.power_circuit.motor.torque_limit)
 
     @cached_property
     def oil_circuits(self) -> Mapping[str, Circuit]:
@@ -321,7 +318,6 @@ class Rig:
     @cached_property
     def elastic(self) -> ElasticDrivetrain:
         """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
-        assert self.drivetrain is not None
         if self.parts.elastic is not None:
             return self.parts.elastic
         case = self.case if self.residual_unbalance else without_residual_unbalance(self.case)
@@ -359,10 +355,9 @@ class Rig:
     @property
     def torque_ratio(self) -> float:
         """Pinion torque of the control mesh per stated torque: 1, or z1/z2 if the case counts at a wheel."""
-        power = self.case.drivetrain
-        if power is None:
+        if self.case.drivetrain is None:
             return 1.0
-        gear = power.torque_at.split(".")[1]
+        gear = self.case.drivetrain.torque_at.split(".")[1]
         box, mesh = self.mesh(self.control_mesh)
         pair = self.pairs[self.control_mesh]
         return 1.0 if box.meshes[mesh].pinion == gear else pair.teeth[0] / pair.teeth[1]
@@ -398,9 +393,7 @@ class Rig:
 
     def drive_speed(self, speed: float) -> float:
         """Speed of the motor [rad/s] at the stated speed [rad/s]."""
-        power = self.case.drivetrain
-        assert power is not None
-        return self.shaft_speed(power.motor.shaft, speed)
+        return self.shaft_speed(self.case.power_circuit.motor.shaft, speed)
 
     def prepare_teeth(self, say: Progress, count: Count | None = None) -> None:
         """Read or compute the influence numbers of all gears; ``count`` as of `ToothInfluence.prepare`."""
@@ -455,8 +448,8 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         oils=oils,
         materials=materials,
         pairs=pairs,
-        mesh_stiffness="iso_6336_scaled" if case.drivetrain is None else case.drivetrain.mesh_stiffness,
-        shaft_model="torsional" if case.drivetrain is None else case.drivetrain.shaft_model,
+        mesh_stiffness=case.power_circuit.mesh_stiffness,
+        shaft_model=case.power_circuit.shaft_model,
         tooth_influence=ToothInfluence(positions=QUICK_POSITIONS if fidelity == "quick" else FACE_POSITIONS),
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
@@ -469,7 +462,7 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
 
 def _control_mesh(case: Case) -> str:
     """The first mesh of the gear at which torque and speed count; of all, without a drivetrain."""
-    wanted = None if case.drivetrain is None else case.drivetrain.torque_at.split(".")
+    wanted = None if case.drivetrain is None else case.power_circuit.torque_at.split(".")
     for box_name, box in case.gearboxes.items():
         for name, mesh in box.meshes.items():
             if wanted is None or (wanted[0] == box_name and wanted[1] in (mesh.pinion, mesh.wheel)):

@@ -31,7 +31,7 @@ def with_housings_of(rig: Rig, source: Rig) -> Rig:
 
 def with_circuit_of(rig: Rig, source: Rig) -> Rig:
     """The rig with what ``source`` computes of the parts of the power circuit alone; of none where there is none."""
-    if source.drivetrain is None:
+    if source.case.drivetrain is None:
         return rig
     parts = replace(rig.parts, drivetrain=source.drivetrain, twisting=source.twisting, joints=source.joints)
     return replace(rig, parts=parts)

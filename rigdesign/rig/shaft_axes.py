@@ -88,9 +88,7 @@ def line_of_action(pinion: ShaftAxis, wheel: ShaftAxis) -> LineOfAction:
 
 def _coupled(case: Case, found: Mapping[str, ShaftAxis]) -> Iterator[tuple[str, ShaftAxis]]:
     """Shafts that a coupling joins to one that is known, with their axes."""
-    if case.drivetrain is None:
-        return
-    for coupling in case.drivetrain.couplings.values():
+    for coupling in case.power_circuit.couplings.values():
         for here, there in ((0, 1), (1, 0)):
             known, other = coupling.shafts[here], coupling.shafts[there]
             if known in found and other not in found:
@@ -142,8 +140,7 @@ def _meshing(
 
 def _end(case: Case, shaft: str, end: str) -> float:
     """Position of an end of a shaft [m]."""
-    assert case.drivetrain is not None
-    sections = case.drivetrain.shafts[shaft].sections
+    sections = case.power_circuit.shafts[shaft].sections
     return 0.0 if end == "start" else math.fsum(section.length for section in sections)
 
 

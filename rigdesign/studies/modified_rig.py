@@ -131,10 +131,8 @@ def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
         return None
     if case.losses.bearing_drag == "constant" and any(".loss_factors" in path for path in in_heat):
         return None
-    power = case.drivetrain
-    steady = power is None or (
-        power.bracing.mode == "torque_controlled" and power.bracing.temperature_drift == 0.0
-    )
+    bracing = case.power_circuit.bracing
+    steady = bracing.mode == "torque_controlled" and bracing.temperature_drift == 0.0
     shifted = steady and all(path in in_heat or "time run" not in parts_of(path) for path in changed)
     return Reanalysis(case, parts, "shifted" if shifted else "marched")
 

@@ -87,8 +87,7 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
 
 def _soft(case: "Case") -> Iterator[Fault]:
     """Joints that the test torque would wind up."""
-    assert case.drivetrain is not None
-    joints = {f"drivetrain.couplings.{name}": part for name, part in case.drivetrain.couplings.items()} | {
+    joints = {f"drivetrain.couplings.{name}": part for name, part in case.power_circuit.couplings.items()} | {
         f"gearboxes.{name}.gears.{gear}.spline": part.spline
         for name, box in case.gearboxes.items()
         for gear, part in box.gears.items()
@@ -123,8 +122,7 @@ def _on_shaft(path: str, position: float, length: float) -> Iterator[Fault]:
 
 
 def _bracing(case: "Case", gears: "dict[str, Gear]") -> Iterator[Fault]:
-    assert case.drivetrain is not None
-    bracing, couplings = case.drivetrain.bracing, case.drivetrain.couplings
+    bracing, couplings = case.power_circuit.bracing, case.power_circuit.couplings
     at = "drivetrain.bracing"
     if bracing.coupling is not None and bracing.coupling not in couplings:
         yield unknown(f"{at}.coupling", bracing.coupling, list(couplings), "coupling")

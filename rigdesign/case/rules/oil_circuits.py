@@ -188,8 +188,8 @@ def _sump(at: str, box: "Gearbox", sump: "DipOil") -> Iterator[Fault]:
 
 def _drift(case: "Case") -> Iterator[Fault]:
     """A bracing that drifts with the gear oil needs to know its temperature before the run."""
-    power = case.drivetrain
-    if power is None or power.bracing.temperature_drift == 0.0:
+    power = case.power_circuit
+    if power.bracing.temperature_drift == 0.0:
         return
     box = case.gearboxes.get(power.torque_at.split(".")[0])
     if box is not None and box.gear_oil_temperature is None:

@@ -262,8 +262,7 @@ def gear_bodies(part: GearboxPart) -> Iterator[Effect]:
 @of_rig(drivetrain=True)
 def couplings(case: Case) -> Iterator[Effect]:
     """Stiffness, damping and misalignment of every coupling."""
-    assert case.drivetrain is not None
-    for name, coupling in case.drivetrain.couplings.items():
+    for name, coupling in case.power_circuit.couplings.items():
         at = f"drivetrain.couplings.{name}"
         stiffness = UncertainValue(
             path=f"{at}.torsional_stiffness",
@@ -314,8 +313,7 @@ class _Harmonic:
 @of_rig(drivetrain=True)
 def drive(case: Case) -> Iterator[Effect]:
     """Ripple and inertia of the motor, drift of the bracing."""
-    assert case.drivetrain is not None
-    motor, bracing = case.drivetrain.motor, case.drivetrain.bracing
+    motor, bracing = case.power_circuit.motor, case.power_circuit.bracing
     for order in (1, 2, 3, 4, 6):
         yield Effect(
             name=f"motor_ripple/{order}",

@@ -334,7 +334,7 @@ def of_gearbox(
 
 def registered_effects(case: Case, *, lateral: bool) -> Iterator[Effect]:
     """Effects of a case as registered, those of one gearbox together; ``lateral``: with those of shafts that bend."""
-    bends = case.drivetrain is not None and case.drivetrain.shaft_model == "elastic"
+    bends = case.power_circuit.shaft_model == "elastic"
     wanted = [entry for entry in _ENTRIES if (lateral and bends) or not entry.lateral]
     for by_gearbox, group in groupby(wanted, lambda entry: entry.of_gearbox is not None):
         entries = list(group)
