@@ -92,8 +92,7 @@ def solve_housing(
     NotConverged
         Newton's method stalls.
     """
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     included = housing.radiation_included if radiation_included is None else radiation_included
     conditions = boundary_conditions(rig, name, losses, radiation_included=included)
     setup = rig.conduction[name]
@@ -187,8 +186,7 @@ def boundary_conditions(
     sump_given : a sump has the temperature of the coupling state also where it finds its own
     """
     context = HousingContext(rig, name, losses.point, losses.coupling_state, losses.bearings)
-    housing = context.box.housing
-    assert housing is not None
+    housing = context.housing
     rows = conditions_of(housing, rig.surface_names(name))
     covered = {surface for entry, surface, _ in rows if _radiation_in_film(context, entry, surface)}
     conditions: list[Condition] = [*foot_joint(rig, name), *enclosure_conditions(rig, name)]
@@ -252,8 +250,7 @@ def _radiation_in_film(context: HousingContext, entry: str, surface: str) -> boo
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:
     """(surface, what its coefficient was read from) of every film of a housing that assumes a difference."""
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     for entry, surface, _ in conditions_of(housing, rig.surface_names(name)):
         condition = housing.boundary[entry]
         if isinstance(condition, ConstantFilm) and condition.taken_from is not None:
@@ -458,8 +455,7 @@ CHAMBER_RADIATION = "chamber_radiation"
 
 def enclosure_conditions(rig: Rig, name: str) -> Iterator[Enclosure]:
     """Enclosures of the housing of gearbox ``name``; CaseError for view factors that do not close."""
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     for entry, enclosure in housing.enclosures.items():
         emissivities = enclosure.emissivities(rig.surface_names(name))
         surfaces = tuple(emissivities)

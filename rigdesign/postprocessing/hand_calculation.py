@@ -177,8 +177,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
 def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
     """Free expansion of the housing and of the field under it, if meshed, up to the shaft axes [m], by their means."""
     name = warm.gearbox
-    housing = solved.case.gearboxes[name].housing
-    assert housing is not None
+    housing = solved.case.housings[name]
     field = next(p for p in solved.points if p.point.stage == warm.stage).last.fields[name].temperature
     elements, bodies = solved.rig.conduction[name].elements, solved.rig.models[name].mesh.bodies
     box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
@@ -233,9 +232,8 @@ def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float
     """
     rig = solved.rig
     name, part = full.split(".")
-    box = solved.case.gearboxes[name]
-    assert box.housing is not None
-    entry, geometry = box.bearings[part], rig.geometries[name]
+    housing = solved.case.housings[name]
+    entry, geometry = solved.case.gearboxes[name].bearings[part], rig.geometries[name]
     if not entry.has_film:
         return None
     point = next(p for p in solved.points if p.point.stage == warm.stage)
@@ -250,8 +248,8 @@ def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float
     wall = float(np.average(values[inside], weights=volumes[inside]))
     journal = _mean_temperature(field.solution.balance.rows, (f"shaft_{entry.shaft}_journal_{entry.side}",))
     reference, materials = solved.case.ambient.reference_temperature, rig.materials
-    wide = materials[box.housing.material].expansion_coefficient * (wall - reference)
-    thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - reference)
+    wide = materials[housing.material].expansion_coefficient * (wall - reference)
+    thick = materials[housing.shafts[entry.shaft].material].expansion_coefficient * (journal - reference)
     spin = centrifugal_expansion(rig, entry, point.point.speed)
     return entry.drawn_clearance + entry.shaft_diameter * (wide - thick) - spin
 

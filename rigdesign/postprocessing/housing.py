@@ -94,8 +94,7 @@ def compared_temperatures(rig: Rig, result: PointResult, field: HousingField) ->
         One of these solves stalls.
     """
     name, last = field.gearbox, result.last
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     other = solve_housing(
         rig, name, last, field,
         radiation_included=not housing.radiation_included, tolerance=COMPARED,
@@ -170,8 +169,7 @@ def fluid_temperatures(
     rig: Rig, field: HousingField, oil_outlets: Mapping[str, float]
 ) -> Iterator[FluidTemperature]:
     """Volumes, then streams of one housing at one held stage; oil_outlets : by ``gearbox.stream`` [K]."""
-    housing = rig.case.gearboxes[field.gearbox].housing
-    assert housing is not None
+    housing = rig.case.housings[field.gearbox]
     rows = field.solution.balance.rows
     found = field.solution.volumes
     ends = {

@@ -214,9 +214,8 @@ class Rig:
     def geometries(self) -> Mapping[str, HousingGeometry]:
         """Parametric housing of every gearbox that has one."""
         return self.parts.geometries or {
-            name: housing_geometry(box, self._gear_diameters(name))
-            for name, box in self.case.gearboxes.items()
-            if box.housing is not None
+            name: housing_geometry(self.case.gearboxes[name], self._gear_diameters(name))
+            for name in self.case.housings
         }
 
     @cached_property
@@ -226,8 +225,7 @@ class Rig:
 
     def surface_names(self, name: str) -> tuple[str, ...]:
         """Surfaces of a housing that want a boundary condition: of the box, or all of a file."""
-        housing = self.case.gearboxes[name].housing
-        if housing is not None and housing.part_file is not None:
+        if self.case.housings[name].part_file is not None:
             return tuple(self.models[name].mesh.surfaces)
         return tuple(surface_names(self.geometries[name]))
 
@@ -235,11 +233,10 @@ class Rig:
         """The housings meshed at one fidelity, or so many times coarser; the case may give sizes for its zones."""
         models = {}
         for name, geometry in self.geometries.items():
-            housing = self.case.gearboxes[name].housing
-            assert housing is not None
+            housing = self.case.housings[name]
             sizes = mesh_sizes(geometry, fidelity, housing.mesh.sizes()).times(coarser)
             if housing.part_file is not None:
-                models[name] = user_model(name, self.case.gearboxes[name], geometry, self.case.path, sizes)
+                models[name] = user_model(self.case, name, housing.part_file, geometry, sizes)
                 continue
             models[name] = build_gearbox(geometry, sizes)
         return models
@@ -293,9 +290,7 @@ class Rig:
 
     def body_materials(self, name: str, model: GearboxModel | None = None) -> dict[str, Material]:
         """Material of every body of a housing, or of another model of it."""
-        box = self.case.gearboxes[name]
-        housing = box.housing
-        assert housing is not None
+        box, housing = self.case.gearboxes[name], self.case.housings[name]
         named = {"housing": housing.material, "field": housing.field.material}
         named |= {f"shaft_{shaft}": entry.material for shaft, entry in housing.shafts.items()}
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}

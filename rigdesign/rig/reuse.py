@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from dynamics.rotor.rotor_model import ElasticRig, HousingSupport
-from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.model import Case
 from rigdesign.rig.model import Rig
 
 LOADS = ("rotating", "misalignments")
@@ -99,14 +99,12 @@ def same_housings(rig: Rig, stated: Rig) -> bool:
     """Whether meshes, conductivities and stiffnesses of the housings are the same."""
     if dict(rig.geometries) != dict(stated.geometries) or dict(rig.materials) != dict(stated.materials):
         return False
-    boxes, others = rig.case.gearboxes, stated.case.gearboxes
-    return all(_made_of(boxes[name]) == _made_of(others[name]) for name in stated.geometries)
+    return all(_made_of(rig.case, name) == _made_of(stated.case, name) for name in stated.geometries)
 
 
-def _made_of(box: Gearbox) -> tuple[object, ...]:
+def _made_of(case: Case, name: str) -> tuple[object, ...]:
     """What a housing is meshed from in addition to its geometry, and its materials with those of shafts and gears."""
-    housing = box.housing
-    assert housing is not None
+    box, housing = case.gearboxes[name], case.housings[name]
     shafts = [shaft.material for shaft in housing.shafts.values()]
     gears = [gear.material for gear in box.gears.values()]
     contact = housing.foot_contact is None

@@ -120,8 +120,7 @@ def supplied(state: PointLosses, supplies: Mapping[str, float]) -> PointLosses:
 
 
 def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     heated = replace(state, losses=tuple(losses))
     conditions = boundary_conditions(
         rig, name, heated, radiation_included=housing.radiation_included, sump_given=True

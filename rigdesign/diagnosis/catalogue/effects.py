@@ -272,8 +272,7 @@ class GearboxPart:
     @property
     def housing(self) -> Housing:
         """For effects that are registered with ``housing``."""
-        assert self.box.housing is not None
-        return self.box.housing
+        return self.case.housings[self.name]
 
 
 OfRig = Callable[[Case], Iterator[Effect]]
