@@ -268,15 +268,15 @@ def _of_drivetrain(known: Measures, case: "Case", train: "DrivetrainInput") -> N
             ) * typical[name] ** 2
     known["drivetrain.bracing"]["shaft diameter"] = max(typical.values())
     known["drivetrain.motor"]["torque of the motor"] = train.motor.torque_limit
-    box_name, _, gear_name = train.torque_at.partition(".")
-    box = case.gearboxes[box_name]
-    diameter, gear = pitch_diameters(box)[gear_name], box.gears[gear_name]
+    name = train.counting_gear
+    box = case.gearboxes[name.gearbox]
+    diameter, gear = pitch_diameters(box)[name.part], box.gears[name.part]
     known[""]["tooth force"] = 2.0 * case.schedule.test_torque / diameter
     known["schedule"] |= {
         "speed of 1 m/s at the pitch circle": 2.0 / diameter,
         "torque of 1 Pa on face width times module": 0.5
         * diameter
         * gear.face_width
-        * box.halves(gear_name)
-        * known[f"gearboxes.{box_name}.gears.{gear_name}"]["module"],
+        * box.halves(name.part)
+        * known[f"gearboxes.{name.gearbox}.gears.{name.part}"]["module"],
     }

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from rigdesign.base.part_name import GearName, MeshName
 from rigdesign.base.units import KINDS, display
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
@@ -95,7 +96,7 @@ def _torque_peak(solved: SolvedRig, part: str) -> Found:
     )
 
 
-def _gears_at(solved: SolvedRig, part: str) -> Iterator[tuple[str, str, float]]:
+def _gears_at(solved: SolvedRig, part: str) -> Iterator[tuple[MeshName, GearName, float]]:
     """(mesh, gear, base radius) of every gear that loads a part: of a gearbox or mesh the pinions, as torques count;
     of a coupling or shaft the gears of its line."""
     rig = solved.rig
@@ -105,24 +106,22 @@ def _gears_at(solved: SolvedRig, part: str) -> Iterator[tuple[str, str, float]]:
     own = {lines.get(shaft) for shaft in shafts_of(solved.case, part)}
     for mesh in rig.mesh_names:
         box = rig.mesh(mesh)[0]
-        if names[0] == "gearboxes" and (
-            mesh.split(".")[0] != names[1] or names[2:] not in _naming(solved, mesh)
-        ):
+        if names[0] == "gearboxes" and (mesh.gearbox != names[1] or names[2:] not in _naming(solved, mesh)):
             continue
         gears = rig.mesh_gears(mesh)
         for index, gear in enumerate(gears[:1] if whole else gears):
             if (
                 whole
-                or part.endswith(f".gears.{gear.split('.')[1]}")
-                or (names[0] == "drivetrain" and lines[box.gears[gear.split(".")[1]].shaft] in own)
+                or part.endswith(f".gears.{gear.part}")
+                or (names[0] == "drivetrain" and lines[box.gears[gear.part].shaft] in own)
             ):
                 yield mesh, gear, rig.pairs[mesh].base_radii[index]
 
 
-def _naming(solved: SolvedRig, mesh: str) -> list[list[str]]:
+def _naming(solved: SolvedRig, mesh: MeshName) -> list[list[str]]:
     """Ends of the paths that mean a mesh: its gearbox, itself, its two gears."""
-    gears = (gear.split(".")[1] for gear in solved.rig.mesh_gears(mesh))
-    return [[], ["meshes", mesh.split(".")[1]], *(["gears", gear] for gear in gears)]
+    gears = (gear.part for gear in solved.rig.mesh_gears(mesh))
+    return [[], ["meshes", mesh.part], *(["gears", gear] for gear in gears)]
 
 
 def _drive_torque(solved: SolvedRig, part: str) -> Found:

@@ -12,6 +12,7 @@ from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.rotor.bearing import BearingState
 from dynamics.vibration.response_curve import CurvePoint
+from rigdesign.base.part_name import BearingName, MeshName
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals, mesh_jet
 from rigdesign.coupling.bearing_loads import constant_drag
@@ -47,8 +48,7 @@ def rotating_losses(
     pairs = {model.name: model.pair for model in models}
     losses: list[PlacedLoss] = []
     for name, state in bearings.items():
-        box_name, part = name.split(".")
-        losses.append(_bearing_loss(rig, box_name, part, point, state))
+        losses.append(_bearing_loss(rig, BearingName.read(name), point, state))
     computed = {} if _bearings_alone(rig) else rig.case.gearboxes
     for box_name, box in computed.items():
         dipped = list(_churning(rig, box_name, box, point, coupling_state, pairs))
@@ -66,7 +66,7 @@ def rotating_losses(
     return [*counted, *oil_jets(rig, point, pairs)]
 
 
-def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[str, GearPair]) -> list[PlacedLoss]:
+def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[MeshName, GearPair]) -> list[PlacedLoss]:
     """What the jets of every mesh take from its pinion shaft, or give to it, and what their pump gives.
 
     pairs : by ``gearbox.mesh``. At standstill the pump alone pays. None where the bearings have constant drag.
@@ -107,10 +107,11 @@ def mesh_losses(
                 power=float(response.friction_power[index]),
                 details=loss.details | {"static_power": loss.power, "source": source},
             )
-        box_name, mesh = model.name.split(".")
         split = mesh_split(rig, model.name, point, coupling_state)
         into_body = math.fsum(split.into_rims) * loss.power
-        placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=into_body, split=split)
+        placed = PlacedLoss(
+            gearbox=model.name.gearbox, part=model.name.part, loss=loss, into_body=into_body, split=split
+        )
         losses += _taken(rig, point, placed)
         if response is not None:
             losses.append(_damper_work(rig, model, response, index))
@@ -141,9 +142,10 @@ def _damper_work(rig: Rig, model: MeshModel, response: CurvePoint, index: int) -
         },
         warnings=warnings,
     )
-    box_name, mesh = model.name.split(".")
     outside = 0.0 if rig.case.losses.mesh_damping_heats_oil else power
-    return PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0, not_heat=outside)
+    return PlacedLoss(
+        gearbox=model.name.gearbox, part=model.name.part, loss=loss, into_body=0.0, not_heat=outside
+    )
 
 
 def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
@@ -162,9 +164,8 @@ def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
 def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> Iterator[PlacedLoss]:
     share = rig.case.losses.squeeze_share
     for model in models if share > 0.0 else ():
-        box_name, mesh = model.name.split(".")
         loss = squeeze_loss(model.name, static_mesh_loss(rig, point, model), share)
-        yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
+        yield PlacedLoss(gearbox=model.name.gearbox, part=model.name.part, loss=loss, into_body=0.0)
 
 
 class Rated(Protocol):
@@ -195,13 +196,10 @@ def bearing_ratings(state: Rated) -> dict[str, float]:
     return ratings
 
 
-def _bearing_loss(
-    rig: Rig, box_name: str, part: str, point: OperatingPoint, state: BearingState
-) -> PlacedLoss:
-    entry = rig.case.gearboxes[box_name].bearings[part]
-    drag = constant_drag(rig, box_name, entry, point)
+def _bearing_loss(rig: Rig, name: BearingName, point: OperatingPoint, state: BearingState) -> PlacedLoss:
+    drag = constant_drag(rig, name.gearbox, rig.bearing(name), point)
     loss = Loss(
-        place=f"{box_name}.{part}",
+        place=name,
         kind="bearing",
         power=state.power if drag is None else drag,
         details={
@@ -213,8 +211,8 @@ def _bearing_loss(
         },
         warnings=state.warnings,
     )
-    share = math.fsum(share for _, share in body_shares(rig, f"{box_name}.{part}", state))
-    return PlacedLoss(gearbox=box_name, part=part, loss=loss, into_body=share * loss.power)
+    share = math.fsum(share for _, share in body_shares(rig, name, state))
+    return PlacedLoss(gearbox=name.gearbox, part=name.part, loss=loss, into_body=share * loss.power)
 
 
 def _windage(
@@ -223,7 +221,7 @@ def _windage(
     box: Gearbox,
     point: OperatingPoint,
     coupling_state: CouplingState,
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
 ) -> Iterator[PlacedLoss]:
     """Windage of every gear, once however many meshes it is in; a double-helical gear has both its halves."""
     mist = chamber_mist(rig, box_name, coupling_state)
@@ -232,7 +230,7 @@ def _windage(
     )
     share = body_split(rig, box_name).windage_into_gears
     for gear_name, (mesh_name, index) in box.first_meshes().items():
-        rotor = GearRotor.of_pair(pairs[f"{box_name}.{mesh_name}"], index)
+        rotor = GearRotor.of_pair(pairs[MeshName(box_name, mesh_name)], index)
         rotor = replace(rotor, face_width=box.body_width(gear_name))
         omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
         loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
@@ -248,7 +246,7 @@ def _churning(
     box: Gearbox,
     point: OperatingPoint,
     coupling_state: CouplingState,
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
 ) -> Iterator[PlacedLoss]:
     """Churning of every gear that reaches the sump; none without a sump."""
     if box.sump is not None:
@@ -271,14 +269,14 @@ def _chamber_temperature(rig: Rig, box_name: str, coupling_state: CouplingState)
 
 
 def _oil_jets(
-    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[str, GearPair]
+    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[MeshName, GearPair]
 ) -> Iterator[PlacedLoss]:
     jets = box.jets
     if jets is None:
         return
     jet = mesh_jet(box, jets, gear_oil(rig, box_name))
     for mesh_name, mesh in box.meshes.items():
-        name = f"{box_name}.{mesh_name}"
+        name = MeshName(box_name, mesh_name)
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
         loss = oil_acceleration(name, jet, omega * pairs[name].working_radii[0])
         yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=jet.power)

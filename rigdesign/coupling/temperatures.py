@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.bearing import BearingState
+from rigdesign.base.part_name import BearingName
 from rigdesign.case import surface_conditions as laws
 from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.geometry import bearing_on, conditions_of
@@ -165,7 +166,7 @@ def seat_means(rig: Rig, name: str, temperature: NDArray[np.float64]) -> dict[st
     return {
         f"{name}.{part}.{seat}": surfaces[found.surface].mean(temperature)
         for part in rig.case.gearboxes[name].bearings
-        for seat, found in bearing_seats(rig, f"{name}.{part}").items()
+        for seat, found in bearing_seats(rig, BearingName(name, part)).items()
     }
 
 
@@ -359,7 +360,7 @@ def _joined_bearings(context: HousingContext) -> Iterator[BoundaryCondition]:
     """Conduction through the bearings that are joined to their seats, into shaft, housing and oil."""
     follows = 1.0 if context.box.fed_bearings is None else 0.0
     for part in context.box.bearings:
-        full = f"{context.name}.{part}"
+        full = BearingName(context.name, part)
         star = context.bearings[full].star
         if star is not None:
             yield from seat_conditions(context.rig, full, star, f"{BEARING_FILM}:{part}", follows)
@@ -378,7 +379,10 @@ def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[Boun
             sources += _seal_sources(context, placed)
         elif placed.loss.kind == "bearing":
             sources += seat_sources(
-                context.rig, placed.name, context.bearings[placed.name], placed.loss.power
+                context.rig,
+                BearingName(placed.gearbox, placed.part),
+                context.bearings[placed.name],
+                placed.loss.power,
             )
     return sources
 

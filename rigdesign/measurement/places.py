@@ -6,6 +6,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import fsum, lcm
 
+from rigdesign.base.part_name import GearName
 from rigdesign.case import Case
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import housing_geometry
@@ -95,7 +96,7 @@ class Places:
 
     def teeth_of(self, gear: str) -> tuple[int, int]:
         """Teeth of a gear, ``gearbox.gear``, and of its partner in its first mesh."""
-        name, own = gear.split(".")
+        name, own = GearName.read(gear).both
         box = self.case.gearboxes[name]
         mesh = box.meshes[box.first_meshes()[own][0]]
         partner = mesh.wheel if own == mesh.pinion else mesh.pinion
@@ -161,7 +162,7 @@ class Places:
         gears = {
             f"{name}.{gear}": (name, gear) for name, box in self.case.gearboxes.items() for gear in box.gears
         }
-        turns = {self.counting_gear: Fraction(1)}
+        turns: dict[str, Fraction] = {self.counting_gear: Fraction(1)}
         links = list(self._links())
         for _ in links:
             for first, second, ratio in links:
@@ -172,12 +173,12 @@ class Places:
         return {gear: turns[gear] for gear in gears if gear in turns}
 
     @cached_property
-    def counting_gear(self) -> str:
+    def counting_gear(self) -> GearName:
         """Gear whose turns count."""
         if self.case.drivetrain is not None:
-            return self.case.power_circuit.torque_at
+            return self.case.power_circuit.counting_gear
         name, box = next(iter(self.case.gearboxes.items()))
-        return f"{name}.{next(iter(box.meshes.values())).pinion}"
+        return GearName(name, next(iter(box.meshes.values())).pinion)
 
     def _links(self) -> Iterator[tuple[str, str, Fraction]]:
         """Pairs of gears that turn together with the speed ratio of the second to the first."""

@@ -446,7 +446,9 @@ def _overspeed(place: EventPlace, test: PointResult) -> EventRecord:
     if missing:
         notes = (*notes, f"loads that the period of the response does not hold: {', '.join(missing)}")
     at = [point for point in curve.points if point.speed == speeds[-1]]
-    factors = {name: float(p.dynamic_factor[m]) for p in at for m, name in enumerate(rig.mesh_names)}
+    factors: dict[str, float] = {
+        name: float(p.dynamic_factor[m]) for p in at for m, name in enumerate(rig.mesh_names)
+    }
     resonance, distance = _nearest_resonance(place, test)
     what = f"{place.point.speed / RPM:.0f} rpm, {place.point.speed / rig.case.schedule.test_speed:.3f} of the test"
     record = place.record(what, place.march().run(overspeed_time(rig, place.point.speed)))

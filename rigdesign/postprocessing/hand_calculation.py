@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.losses.loss import RIVAL_POWER
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.geometry import seals_on
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.mesh_models import MeshModel
@@ -157,7 +158,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
             by_hand, formula = (plate, PLATE) if plate is not None else (seal.by_hand, RING)
             rows.append(_row(f"mean gap of seal {seal.name}", MM * seal.mean, MM * by_hand, "mm", formula))
         for bearing in warm.bearings:
-            clearance = end_wall_clearance(solved, warm, bearing.name)
+            clearance = end_wall_clearance(solved, warm, BearingName.read(bearing.name))
             if clearance is not None:
                 rows.append(
                     _row(
@@ -224,14 +225,14 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
 
-def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float | None:
-    """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
+def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: BearingName) -> float | None:
+    """Hot diametral clearance [m] of a bearing: its end wall widens the bore by its mean strain.
 
     None for a user's mesh that has no material where the box has its end wall, and for a bearing whose rings move its
     clearance. Source: as `partition_gap`.
     """
     rig = solved.rig
-    name, part = full.split(".")
+    name, part = full.both
     housing = solved.case.housings[name]
     entry, geometry = solved.case.gearboxes[name].bearings[part], rig.geometries[name]
     if not entry.has_film:

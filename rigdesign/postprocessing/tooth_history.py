@@ -88,7 +88,7 @@ def tooth_history(
         if first is None:
             first = passing.start
         else:
-            coarse = _angle_between(rig, gear, loaded[0], place)
+            coarse = _angle_between(rig, loaded[0], place)
             start += pitches_apart(coarse, passing.start - first, passing.pitch)
         raised = replace(forces, force=application_factor(rig, place.mesh) * forces.force)
         passes.append(_tooth_pass(rig, passing, raised, start))
@@ -173,16 +173,17 @@ def _both_fillets(rig: Rig, passing: _Passing, forces: PairForces) -> tuple[Root
     return of_side(1), of_side(-1)
 
 
-def _angle_between(rig: Rig, gear: str, first: GearInMesh, other: GearInMesh) -> float:
+def _angle_between(rig: Rig, first: GearInMesh, other: GearInMesh) -> float:
     """Angle at the axis of a gear from one partner to another [rad]: 0 or half a turn, all axes in one plane.
 
     Without a housing no axis has a place: partners are taken to stand on opposite sides.
     """
-    box = rig.case.gearboxes[gear.split(".")[0]]
+    gear = rig.mesh_gears(rig.mesh_names[first.mesh])[first.index]
+    box = rig.case.gearboxes[gear.gearbox]
     if box.housing is None:
         return math.pi
     shafts = box.housing.shafts
-    here = shafts[box.gears[gear.split(".")[1]].shaft].lateral_position
+    here = shafts[box.gears[gear.part].shaft].lateral_position
     sides = [
         shafts[rig.mesh_gear(place.mesh, 1 - place.index).shaft].lateral_position > here
         for place in (first, other)

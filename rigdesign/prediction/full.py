@@ -8,6 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
+from rigdesign.base.part_name import MeshName, OilStreamName
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import DipOil
 from rigdesign.case.model import Case
@@ -195,7 +196,7 @@ def like(stated: Rig, case: Case) -> Rig:
 
 def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> None:
     """Put a number into the oil feed of a stream; the inlet temperature of a sump is that of its oil."""
-    name, _, kind = stream.partition(".")
+    name, kind = OilStreamName.read(stream).both
     if name not in boxes or kind not in STREAMS:
         known = ", ".join(f"{box}.{kind}" for box in boxes for kind in STREAMS)
         raise UsageError(f"setting names oil stream {stream!r}, which the case does not have; it has {known}")
@@ -211,7 +212,7 @@ def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> Non
 
 def _turn(boxes: dict[str, Gearbox], mesh: str, teeth: int) -> None:
     """Put the wheel of a mesh on further by whole teeth."""
-    name, _, own = mesh.partition(".")
+    name, own = MeshName.read(mesh).both
     if name not in boxes or own not in boxes[name].meshes:
         known = ", ".join(f"{box}.{own}" for box, entry in boxes.items() for own in entry.meshes)
         raise UsageError(f"setting turns mesh {mesh!r}, which the case does not have; it has {known}")

@@ -24,6 +24,7 @@ from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
 from dynamics.tooth.mesh_laws import alike_teeth
 from rigdesign.base.errors import UsageError
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.iteration import SOLVED, IterationParts, initial_state
 from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
@@ -73,9 +74,10 @@ def mode_frequency(channel: Channel, modes: Sequence[NamedMode]) -> float:
 
 def assembly_backlash(rig: Rig, mesh: str) -> float:
     """Circumferential backlash of a mesh at the temperature of the drawings [m]; UsageError for an unknown mesh."""
-    if mesh not in rig.pairs:
+    name = MeshName.read(mesh)
+    if name not in rig.pairs:
         raise UsageError(f"backlash of {mesh!r}: no such mesh; the case has {', '.join(rig.pairs)}")
-    return rig.pairs[mesh].transverse_backlash
+    return rig.pairs[name].transverse_backlash
 
 
 def standing_modes(rig: Rig, point: OperatingPoint | None = None) -> tuple[NamedMode, ...]:

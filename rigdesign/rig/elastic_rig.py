@@ -37,7 +37,8 @@ from dynamics.rotor.rotor_model import (
     isotropic_support,
     residual_unbalances,
 )
-from rigdesign.case.drivetrain import ShaftInput
+from rigdesign.base.part_name import MeshName
+from rigdesign.case.drivetrain import BowInput, ShaftInput
 from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS, BALANCE_GRADE
 from rigdesign.case.model import Case
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
@@ -137,7 +138,7 @@ def elastic_rig(
     case: Case,
     drivetrain: Drivetrain,
     axes: Mapping[str, ShaftAxis],
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
     materials: Mapping[str, Material],
     housings: Sequence[HousingSupport] = (),
 ) -> ElasticRig:
@@ -217,15 +218,14 @@ def _locations(case: Case) -> Iterator[AxialLocation]:
                 )
 
 
-def _double_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[AxialMeshSpring]:
-    for full, pair in pairs.items():
-        box, name = full.split(".")
-        mesh = case.gearboxes[box].meshes[name]
+def _double_helical(case: Case, pairs: Mapping[MeshName, GearPair]) -> Iterator[AxialMeshSpring]:
+    for name, pair in pairs.items():
+        mesh = case.gearboxes[name.gearbox].meshes[name.part]
         if mesh.double_helical and pair.helix_angle:
             half = mesh_stiffness(pair, NOMINAL_TORQUE / mesh.sharing, RatingOptions())
             stiffness = mesh.sharing * pair.face_width * half
             yield AxialMeshSpring(
-                mesh=full, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
+                mesh=name, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
             )
 
 
@@ -256,7 +256,7 @@ def rotating_parts(
                 BalanceGrade(grade=MM_PER_S * grade, speed=speed, angles=shaft.balance_angles),
             )
         if shaft.bow is not None:
-            yield _bow(name, shaft, drivetrain, materials)
+            yield _bow(name, shaft.bow, drivetrain, materials[shaft.material])
     for name, coupling in power.couplings.items():
         if coupling.flange_run_out or coupling.flange_tilt:
             yield FlangeRunOut(
@@ -311,16 +311,14 @@ def grade_of(case: Case, shaft: ShaftInput) -> float:
 
 def highest_speeds(case: Case, drivetrain: Drivetrain) -> dict[str, float]:
     """Highest speed of every shaft in the schedule [rad/s]."""
-    box, gear = case.power_circuit.torque_at.split(".")
+    gear = case.power_circuit.counting_gear
     ratios = speed_ratios(drivetrain)
-    reference = ratios[case.gearboxes[box].gears[gear].shaft]
+    reference = ratios[case.gearboxes[gear.gearbox].gears[gear.part].shaft]
     top = max(max(stage.speed_start, stage.speed_end) for stage in case.schedule.resolved())
     return {name: abs(ratio / reference) * top for name, ratio in ratios.items()}
 
 
-def _bow(name: str, shaft: ShaftInput, drivetrain: Drivetrain, materials: Mapping[str, Material]) -> ShaftBow:
-    bow = shaft.bow
-    assert bow is not None
+def _bow(name: str, bow: BowInput, drivetrain: Drivetrain, material: Material) -> ShaftBow:
     places = sorted(bearing.position for bearing in drivetrain.bearings if bearing.shaft == name)
     difference = bow.temperature_difference or 0.0
     return ShaftBow(
@@ -330,6 +328,6 @@ def _bow(name: str, shaft: ShaftInput, drivetrain: Drivetrain, materials: Mappin
         position=bow.position,
         angle=bow.angle,
         # the hot side is the outer one of the bend: away from the centre of curvature
-        gradient=-materials[shaft.material].expansion_coefficient * difference,
+        gradient=-material.expansion_coefficient * difference,
         gradient_angle=bow.hot_side,
     )

@@ -11,6 +11,7 @@ from dynamics.rotor.rotor_model import HousingSupport
 from dynamics.tooth.elastic_segment import FACE_POSITIONS
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
+from rigdesign.base.part_name import BearingName, GearName, MeshName
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.circuit_parts import HeatParts, heat_parts, oil_circuits
 from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
@@ -123,7 +124,7 @@ class Rig:
     fidelity: Fidelity
     oils: Mapping[str, Oil]
     materials: Mapping[str, Material]
-    pairs: Mapping[str, GearPair]
+    pairs: Mapping[MeshName, GearPair]
     mesh_stiffness: MeshStiffness = "iso_6336_scaled"
     shaft_model: ShaftModel = "torsional"
     tooth_influence: ToothInfluence = field(default_factory=ToothInfluence)
@@ -169,7 +170,7 @@ class Rig:
         """Axis of every shaft."""
         return self.parts.axes or shaft_axes(self.case, self.pairs)
 
-    def line_of_action(self, mesh: str) -> LineOfAction:
+    def line_of_action(self, mesh: MeshName) -> LineOfAction:
         """Directions of the mesh ``gearbox.mesh``."""
         box, own = self.mesh(mesh)
         pinion, wheel = (box.gears[gear].shaft for gear in (box.meshes[own].pinion, box.meshes[own].wheel))
@@ -332,18 +333,18 @@ class Rig:
         )
 
     @property
-    def mesh_names(self) -> tuple[str, ...]:
+    def mesh_names(self) -> tuple[MeshName, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
         return tuple(self.pairs)
 
     @property
-    def mesh_labels(self) -> Mapping[str, str]:
+    def mesh_labels(self) -> Mapping[MeshName, str]:
         """Name of each mesh in results and checks: its gearbox, or ``gearbox.mesh`` where that has several."""
-        boxes = [name.split(".")[0] for name in self.mesh_names]
-        return {name: name if boxes.count(box) > 1 else box for name, box in zip(self.mesh_names, boxes)}
+        boxes = [name.gearbox for name in self.mesh_names]
+        return {name: name if boxes.count(name.gearbox) > 1 else name.gearbox for name in self.mesh_names}
 
     @property
-    def control_mesh(self) -> str:
+    def control_mesh(self) -> MeshName:
         """The mesh whose torque the case states: the first of all."""
         return next(iter(self.pairs))
 
@@ -352,30 +353,27 @@ class Rig:
         """Pinion torque of the control mesh per stated torque: 1, or z1/z2 if the case counts at a wheel."""
         if self.case.drivetrain is None:
             return 1.0
-        gear = self.case.drivetrain.torque_at.split(".")[1]
+        gear = self.case.drivetrain.counting_gear.part
         box, mesh = self.mesh(self.control_mesh)
         pair = self.pairs[self.control_mesh]
         return 1.0 if box.meshes[mesh].pinion == gear else pair.teeth[0] / pair.teeth[1]
 
-    def mesh(self, name: str) -> tuple[Gearbox, str]:
-        """Gearbox and own name of the mesh ``gearbox.mesh``."""
-        box, mesh = name.split(".")
-        return self.case.gearboxes[box], mesh
+    def mesh(self, name: MeshName) -> tuple[Gearbox, str]:
+        """Gearbox and own name of a mesh."""
+        return self.case.gearboxes[name.gearbox], name.part
 
     def mesh_gear_name(self, mesh: int, index: int) -> str:
         """Own name of pinion (0) or wheel (1) of a mesh by its number."""
-        return self.mesh_gears(self.mesh_names[mesh])[index].split(".")[1]
+        return self.mesh_gears(self.mesh_names[mesh])[index].part
 
     def mesh_gear(self, mesh: int, index: int) -> Gear:
         """Pinion (0) or wheel (1) of a mesh by its number."""
         return self.mesh(self.mesh_names[mesh])[0].gears[self.mesh_gear_name(mesh, index)]
 
-    def mesh_gears(self, name: str) -> tuple[str, str]:
-        """Names ``gearbox.gear`` of pinion and wheel of a mesh."""
-        box_name = name.split(".")[0]
-        box, mesh = self.mesh(name)
-        entry = box.meshes[mesh]
-        return f"{box_name}.{entry.pinion}", f"{box_name}.{entry.wheel}"
+    def mesh_gears(self, name: MeshName) -> tuple[GearName, GearName]:
+        """Pinion and wheel of a mesh."""
+        entry = self.case.gearboxes[name.gearbox].meshes[name.part]
+        return GearName(name.gearbox, entry.pinion), GearName(name.gearbox, entry.wheel)
 
     def shaft_speed(self, shaft: str, speed: float) -> float:
         """Speed of a shaft [rad/s] at the stated speed [rad/s]."""
@@ -398,24 +396,28 @@ class Rig:
         """Speed of the shaft that is driven [rad/s] at the stated speed; without a drivetrain of the first pinion."""
         return abs(self.pinion_speed(speed) if self.case.drivetrain is None else self.drive_speed(speed))
 
-    def bearings(self) -> list[tuple[str, Gearbox, BearingInput]]:
-        """(``gearbox.bearing``, gearbox, bearing) of the whole rig."""
+    def bearings(self) -> list[tuple[BearingName, Gearbox, BearingInput]]:
+        """(name, gearbox, bearing) of the whole rig."""
         return [
-            (f"{box_name}.{name}", box, bearing)
+            (BearingName(box_name, name), box, bearing)
             for box_name, box in self.case.gearboxes.items()
             for name, bearing in box.bearings.items()
         ]
 
     def bearing(self, name: str) -> BearingInput:
-        """The bearing ``gearbox.bearing`` of the case."""
-        box, part = name.split(".")
-        return self.case.gearboxes[box].bearings[part]
+        """A bearing of the case by its name."""
+        return self._bearing_inputs[name]
+
+    @cached_property
+    def _bearing_inputs(self) -> dict[str, BearingInput]:
+        """All of them by their names."""
+        return {name: entry for name, _, entry in self.bearings()}
 
     def _gear_diameters(self, name: str) -> dict[str, float]:
         """Mean tooth diameter (d_a + d_f)/2 of each gear of a gearbox [m]."""
         diameters = {}
         for mesh_name, mesh in self.case.gearboxes[name].meshes.items():
-            pair = self.pairs[f"{name}.{mesh_name}"]
+            pair = self.pairs[MeshName(name, mesh_name)]
             for gear, member in zip((mesh.pinion, mesh.wheel), pair.gears):
                 diameters[gear] = 2.0 * member.mean_radius
         return diameters
@@ -455,13 +457,13 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     return rig
 
 
-def _control_mesh(case: Case) -> str:
+def _control_mesh(case: Case) -> MeshName:
     """The first mesh of the gear at which torque and speed count; of all, without a drivetrain."""
-    wanted = None if case.drivetrain is None else case.power_circuit.torque_at.split(".")
+    wanted = None if case.drivetrain is None else case.drivetrain.counting_gear
     for box_name, box in case.gearboxes.items():
         for name, mesh in box.meshes.items():
-            if wanted is None or (wanted[0] == box_name and wanted[1] in (mesh.pinion, mesh.wheel)):
-                return f"{box_name}.{name}"
+            if wanted is None or (wanted.gearbox == box_name and wanted.part in (mesh.pinion, mesh.wheel)):
+                return MeshName(box_name, name)
     raise ValueError(f"drivetrain.torque_at = {wanted}: this gear is in no mesh; name one that is")
 
 

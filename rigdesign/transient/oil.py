@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.rotor.bearing import HeatStar
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.gearbox import injected_flow
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_seats import (
@@ -382,7 +383,7 @@ class BearingNode:
 
 def seated_bearings(rig: Rig, name: str) -> list[str]:
     """Bearings of the gearbox ``name`` that conduct heat to a seat, by their own names."""
-    return [part for part in rig.case.gearboxes[name].bearings if bearing_seats(rig, f"{name}.{part}")]
+    return [part for part in rig.case.gearboxes[name].bearings if bearing_seats(rig, BearingName(name, part))]
 
 
 def bearing_nodes(
@@ -391,7 +392,7 @@ def bearing_nodes(
     """Nodes of the gearbox ``name`` by bearing."""
     nodes = {}
     for part in seated_bearings(rig, name):
-        full = f"{name}.{part}"
+        full = BearingName(name, part)
         star = state.bearings[full].star
         assert star is not None
         kind = f"{BEARING_FILM}:{part}"

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import Fault
+from rigdesign.base.part_name import GearName
 from rigdesign.base.units import show
 from rigdesign.case.faults import unknown, written
 
@@ -142,8 +143,9 @@ def _bracing(case: "Case", gears: "dict[str, Gear]") -> Iterator[Fault]:
             "name the coupling that is twisted or the helical gear that is shifted",
         )
     if bracing.shifted_gear in gears:
-        box, _, gear = bracing.shifted_gear.partition(".")
-        helices = [m.helix_angle for m in case.gearboxes[box].meshes.values() if gear in (m.pinion, m.wheel)]
+        shifted = GearName.read(bracing.shifted_gear)
+        meshes = case.gearboxes[shifted.gearbox].meshes.values()
+        helices = [mesh.helix_angle for mesh in meshes if shifted.part in (mesh.pinion, mesh.wheel)]
         if len(helices) > 1:
             yield Fault(
                 f"{at}.shifted_gear", written(bracing.shifted_gear),

@@ -8,6 +8,7 @@ import pytest
 from dynamics.gear.pair import GearPair
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
+from rigdesign.base.part_name import MeshName
 from rigdesign.case import Case
 from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
 from rigdesign.coupling.iteration import IterationResult, PointProblem, initial_state, run_iteration
@@ -131,9 +132,9 @@ def test_an_idler_is_wetted_twice_a_turn() -> None:
 def test_assumed_split_stays_what_the_case_says() -> None:
     plain = build_rig(load_case(CASES / "uhcf_prototype"), "quick")
     point = held_points(plain)[-1]
-    split = mesh_split(plain, "test.main", point, initial_state(plain, point))
+    split = mesh_split(plain, MeshName("test", "main"), point, initial_state(plain, point))
     assert (split.pinion, split.kept) == (0.5, (0.5, 0.5))
-    assert mesh_split(plain, "reference.main", point, None).into_rims == (0.0, 0.0)
+    assert mesh_split(plain, MeshName("reference", "main"), point, None).into_rims == (0.0, 0.0)
 
 
 def test_friction_goes_into_rims_and_oil_and_nowhere_else(rig: Rig, done: IterationResult) -> None:
