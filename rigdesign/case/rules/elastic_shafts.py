@@ -16,7 +16,7 @@ from rigdesign.case.rotation import has_hands, pinion_hand, shaft_senses
 
 if TYPE_CHECKING:
     from rigdesign.case.bearings import BearingInput
-    from rigdesign.case.drivetrain import CouplingInput, DrivetrainInput, ShaftInput
+    from rigdesign.case.drivetrain import BowInput, CouplingInput, DrivetrainInput, ShaftInput
     from rigdesign.case.gearbox import Gearbox
     from rigdesign.case.model import Case
 
@@ -358,12 +358,11 @@ def _of_shaft(case: "Case", name: str, shaft: "ShaftInput") -> Iterator[Fault]:
             "write the highest service speed, or leave it out for that of the schedule",
         )  # fmt: skip
     if shaft.bow is not None:
-        yield from _bow(case, name, shaft)
+        yield from _bow(case, name, shaft.bow)
 
 
-def _bow(case: "Case", name: str, shaft: "ShaftInput") -> Iterator[Fault]:
-    bow, at = shaft.bow, f"drivetrain.shafts.{name}.bow"
-    assert bow is not None
+def _bow(case: "Case", name: str, bow: "BowInput") -> Iterator[Fault]:
+    at = f"drivetrain.shafts.{name}.bow"
     places = {
         bearing.position
         for box in case.gearboxes.values()
