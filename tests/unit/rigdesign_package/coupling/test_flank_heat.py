@@ -21,6 +21,7 @@ from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
 from rigdesign.results.serialisation.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.oil_supply import ChamberOil
+from rigdesign.rig.reuse import with_housings_of
 from tests.builders.paths import CASES
 
 VARIANT = f"""
@@ -179,10 +180,8 @@ def test_split_is_a_result_with_a_range(rig: Rig, done: IterationResult) -> None
 
 
 def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> None:
-    plain = replace(
-        rig, case=rig.case.with_value(f"{RIMS}.wetted_share", 0.8).with_value(f"{RIMS}.film_factor", 1.0)
-    )
-    plain.__dict__.update({key: rig.__dict__[key] for key in ("geometries", "models", "conduction")})
+    case = rig.case.with_value(f"{RIMS}.wetted_share", 0.8).with_value(f"{RIMS}.film_factor", 1.0)
+    plain = with_housings_of(replace(rig, case=case), rig)
     result = PointResult(point=done.point, last=done, setting=None, residuals=())
     assert all(split.weak_film is None for split in heat_splits(plain, result, done.fields["test"]))
 
