@@ -366,7 +366,7 @@ def _supply(rig: Rig, box_name: str, point: OperatingPoint, coupling_state: Coup
     if share == 0.0:
         return feed
     if box.sump is not None:
-        return replace(feed, flow=splash_to_bearing(rig, box_name, point, chamber, share))
+        return replace(feed, flow=splash_to_bearing(rig, box_name, box.sump, point, chamber, share))
     return replace(feed, flow=share * injected_flow(box) * len(box.meshes))
 
 

@@ -141,7 +141,7 @@ def gear_flanks(
         law = flank_law(rig, name, gear, point, dipped)
     else:
         make = fling_off if condition.correlation == "fling_off" else jet_renewal
-        law = make(ring, _jet_wetting(rig, name, gear, point, condition), properties, factor)
+        law = make(ring, _jet_wetting(rig, name, gear, point, condition, box.jets), properties, factor)
     disc = next(s.gear for s in rig.geometries[name].shafts if s.name == box.gears[gear].shaft)
     assert disc is not None
     return GearFlanks(
@@ -149,15 +149,16 @@ def gear_flanks(
     )
 
 
-def _jet_wetting(rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm) -> Wetting:
+def _jet_wetting(
+    rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm, jets: JetOil
+) -> Wetting:
     """How the jets wet a gear: every mesh has its own, so a gear in two meshes is wetted twice a turn."""
     box = rig.case.gearboxes[name]
-    assert box.jets is not None
     meshes = sum(gear in (mesh.pinion, mesh.wheel) for mesh in box.meshes.values())
     return Wetting(
         speed=rig.shaft_speed(box.gears[gear].shaft, point.speed),
         per_turn=meshes,
-        flow=meshes * JET_HALVES * wetting_flow(box, box.jets),
+        flow=meshes * JET_HALVES * wetting_flow(box, jets),
         wetted_share=condition.wetted_share,
     )
 
@@ -326,14 +327,14 @@ def churning(
                 yield gear, loss
 
 
-def splash_to_bearing(rig: Rig, name: str, point: OperatingPoint, temperature: float, share: float) -> float:
+def splash_to_bearing(
+    rig: Rig, name: str, sump: DipOil, point: OperatingPoint, temperature: float, share: float
+) -> float:
     """Oil that the dipped gears of the gearbox ``name`` throw on each bearing [m3/s]; none at low speed.
 
     temperature : of the sump [K]; share : of what they lift
     """
-    box = rig.case.gearboxes[name]
-    assert box.sump is not None
-    bath = oil_bath(rig, name, box.sump, temperature)
+    box, bath = rig.case.gearboxes[name], oil_bath(rig, name, sump, temperature)
     return sum(
         splash_flow(
             dipped_gear(box, gear, rig.pairs[MeshName(name, mesh)], index),
