@@ -253,7 +253,7 @@ def _joints(rig: ElasticRig, freedoms: Freedoms) -> Iterator[ElasticJoint]:
     for coupling in drivetrain.couplings:
         yield _coupling(coupling, rig, freedoms)
     if drivetrain.motor.stiffness is not None:
-        yield _motor(drivetrain.motor, freedoms)
+        yield _motor(drivetrain.motor, drivetrain.motor.stiffness, freedoms)
     for location in rig.axial_locations:
         yield _location(location, freedoms)
     for spring in rig.axial_mesh_springs:
@@ -307,12 +307,9 @@ def _end(shaft: str, end: End, rig: ElasticRig, freedoms: Freedoms) -> Place:
     return freedoms.on_shaft(shaft, 0.0 if end == "left" else rig.drivetrain.shaft(shaft).length)
 
 
-def _motor(motor: Motor, freedoms: Freedoms) -> ElasticJoint:
-    assert motor.stiffness is not None
+def _motor(motor: Motor, stiffness: float, freedoms: Freedoms) -> ElasticJoint:
     places = freedoms.place("motor"), freedoms.on_shaft(motor.shaft, motor.position)
-    return _between(
-        places, freedoms.size, ("motor", "motor"), (motor.stiffness, motor.damping, JointStiffness())
-    )
+    return _between(places, freedoms.size, ("motor", "motor"), (stiffness, motor.damping, JointStiffness()))
 
 
 def _between(

@@ -73,6 +73,17 @@ class Drivetrain:
         return {name: order[value] for name, value in line.items()}
 
 
+class _NoDrivetrain(Drivetrain):
+    """Nothing that turns."""
+
+    def __post_init__(self) -> None:
+        """Nothing to check."""
+
+
+NO_DRIVETRAIN = _NoDrivetrain(shafts=(), gears=(), meshes=(), motor=Motor(shaft="", position=0.0))
+"""Of a rig of which no part that turns is stated."""
+
+
 class TorsionalJoint(NamedTuple):
     """Spring and damper between two freedoms; all elements of a shaft share its name."""
 

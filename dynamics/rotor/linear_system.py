@@ -256,6 +256,24 @@ class Coordinates:
         tied |= self.rigid @ self.rigid.T != 0.0
         return np.asarray(connected_components(csr_matrix(tied), directed=False)[1], np.int64)
 
+    @cached_property
+    def form(self) -> ModalForm:
+        """Complex modes of the system as its freedoms see them, branch by branch."""
+        forms = []
+        for branch in np.unique(self.branches):
+            own = np.flatnonzero(self.branches == branch)
+            block = np.ix_(own, own)
+            form = known_modal_form(
+                self.inertia[block], self.damping[block], self.stiffness[block], self.rigid[own]
+            )
+            forms.append(form.seen(self.freedoms[:, own]))
+        return ModalForm(
+            poles=np.concatenate([form.poles for form in forms]),
+            velocity_shapes=np.hstack([form.velocity_shapes for form in forms]),
+            loads=np.vstack([form.loads for form in forms]),
+            rigid=np.hstack([form.rigid for form in forms]),
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class LinearSystem:
@@ -310,24 +328,10 @@ class LinearSystem:
             rigid=self.rigid,
         )
 
-    @cached_property
+    @property
     def form(self) -> ModalForm:
-        """Complex modes without the meshes, solved once for all speeds and iterations, branch by branch."""
-        inner = self.coordinates
-        forms = []
-        for branch in np.unique(inner.branches):
-            members = np.flatnonzero(inner.branches == branch)
-            block = np.ix_(members, members)
-            form = known_modal_form(
-                inner.inertia[block], inner.damping[block], inner.stiffness[block], inner.rigid[members]
-            )
-            forms.append(form.seen(inner.freedoms[:, members]))
-        return ModalForm(
-            poles=np.concatenate([form.poles for form in forms]),
-            velocity_shapes=np.hstack([form.velocity_shapes for form in forms]),
-            loads=np.vstack([form.loads for form in forms]),
-            rigid=np.hstack([form.rigid for form in forms]),
-        )
+        """Complex modes without the meshes, solved once for all speeds and iterations."""
+        return self.coordinates.form
 
     @cached_property
     def branches(self) -> Integers:

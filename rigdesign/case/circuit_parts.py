@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.gearbox import mesh_jet
 from rigdesign.case.lubrication import (
     CoolerInput,
@@ -101,28 +102,28 @@ def oil_circuit(case: "Case", name: str, oil: Oil) -> Circuit:
 
 def fed_flow(case: "Case", stream: str) -> float:
     """Flow of an oil stream that is fed, of all its meshes or bearings [m3/s]."""
-    box, _, kind = stream.partition(".")
-    feed, count = case.gearboxes[box].feeds[kind]
+    name = OilStreamName.read(stream)
+    feed, count = case.gearboxes[name.gearbox].feeds[name.part]
     return feed.flow * count
 
 
 def _jet_power(case: "Case", stream: str, oil: Oil) -> float:
     """Kinetic energy of the jets of an oil stream [W] as far as the losses of the case count it; zero without jets."""
-    name, _, kind = stream.partition(".")
-    box = case.gearboxes[name]
-    if kind != "gear_oil" or box.jets is None:
+    name = OilStreamName.read(stream)
+    box = case.gearboxes[name.gearbox]
+    if name.part != "gear_oil" or box.jets is None:
         return 0.0
     meshes = set(box.meshes)
     if case.losses.basis == "input":
         jets = [loss for loss in case.losses.given.values() if loss.kind == "oil_acceleration"]
-        meshes &= {loss.part for loss in jets if loss.gearbox == name}
+        meshes &= {loss.part for loss in jets if loss.gearbox == name.gearbox}
     return len(meshes) * mesh_jet(box, box.jets, oil).power
 
 
 def _oil(case: "Case", given: OilCircuit, oils: Mapping[str, Oil]) -> Oil:
     """The oil of a circuit in the state all its gearboxes state; where they differ, that of its data sheet."""
     states = {
-        case.gearboxes[stream.partition(".")[0]].oil_state
+        case.gearboxes[OilStreamName.read(stream).gearbox].oil_state
         for line in given.lines.values()
         for stream in line.consumers
     }
@@ -276,12 +277,12 @@ def shaft_of(case: "Case", name: str, stated: str | None) -> str:
     """Shaft with which a coupling turns. Raises CaseError where neither the table nor the drivetrain names one."""
     if stated is not None:
         return stated
-    couplings: Mapping[str, object] = {} if case.drivetrain is None else case.drivetrain.couplings
-    if case.drivetrain is None or name not in couplings:
+    couplings = case.power_circuit.couplings
+    if name not in couplings:
         known = ", ".join(couplings) or "none"
         problem = f"is missing, and drivetrain.couplings has no {name} (known: {known})"
         raise CaseError([Fault("shaft", "", problem, "write the shaft with which it turns")])
-    return case.drivetrain.couplings[name].shafts[0]
+    return couplings[name].shafts[0]
 
 
 def _machine(name: str, given: MachineInput) -> Machine:

@@ -38,8 +38,8 @@ def shafts_of(case: "Case", part: str) -> tuple[str, ...]:
     """Shafts of a part, each once: those its gears, seals or bearings sit on, that a coupling joins, its own."""
     names = part.split(".")
     if names[0] == "drivetrain":
-        power = case.drivetrain
-        if power is None or len(names) < 2:
+        power = case.power_circuit
+        if case.drivetrain is None or len(names) < 2:
             return ()
         if names[1] == "motor":
             return (power.motor.shaft,)

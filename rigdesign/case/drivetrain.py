@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from rigdesign.base.part_name import GearName
 from rigdesign.case.fields import (
     Angle,
     Deviation,
@@ -249,3 +250,20 @@ class DrivetrainInput(Part):
     mesh_stiffness: MeshStiffness = "influence_numbers"
     """Tooth model: finite-element influence numbers of the teeth as drawn on the gear bodies that all pairs share, the
     analytic shape scaled to the mean of ISO 6336-1, or unscaled times 0.8."""
+
+    @property
+    def counting_gear(self) -> GearName:
+        """The gear of ``torque_at``."""
+        return GearName.read(self.torque_at)
+
+
+NO_DRIVETRAIN = DrivetrainInput.model_construct(
+    shafts={},
+    motor=MotorInput.model_construct(shaft="", end="start", torque_limit=0.0, inertia=0.0),
+    bracing=Bracing(mode="torque_controlled"),
+    torque_at="",
+    shaft_model="torsional",
+    bearing_coefficients="stated",
+    mesh_stiffness="iso_6336_scaled",
+)
+"""Of a rig whose losses are given: no shafts, no couplings, nothing braced."""

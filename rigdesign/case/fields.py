@@ -264,6 +264,10 @@ Title = Annotated[Text, AfterValidator(_one_line)]
 # An assumption of a case as results list it.
 
 
+RangeEnds = tuple[str | int | float, str | int | float]
+"""Lowest and highest plausible value of an input, as written."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class AssumptionRecord:
     """An input marked as assumed in the case file, or left out and replaced by an idealisation."""
@@ -271,7 +275,7 @@ class AssumptionRecord:
     path: str
     value: str
     reason: str
-    range: tuple[str | int | float, str | int | float] | None = None
+    range: RangeEnds | None = None
     """Lowest and highest plausible value, as written."""
     decides: tuple[str, ...] = ()
     """Ids of the checks that depend on it."""

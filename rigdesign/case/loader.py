@@ -14,6 +14,7 @@ from rigdesign.case.defaults.fill import causes_first, filled_as_a_whole, with_d
 from rigdesign.case.defaults.housings import missing_films
 from rigdesign.case.defaults.rule import RawTree, follows, unmarked
 from rigdesign.case.faults import MISSING, faults_of, unknown, written
+from rigdesign.case.fields import RangeEnds
 from rigdesign.case.model import Case, Origin
 from rigdesign.case.paths import Slot, known_paths, nearest_paths, places, slot_at
 from rigdesign.case.provenance import Mark, is_marked, item_name, take_off
@@ -332,7 +333,9 @@ def _build(
     tree = with_defaults(stated) if tree is None else tree
     plain, marks, wrong_marks = take_off(dict(tree))
     faults = [Fault(wrong.path, wrong.given, wrong.problem, wrong.remedy) for wrong in wrong_marks]
-    faults += [fault for mark in marks if mark.range is not None for fault in _range_faults(mark, plain)]
+    faults += [
+        fault for mark in marks if mark.range is not None for fault in _range_faults(mark, mark.range, plain)
+    ]
     try:
         case = Case.model_validate(plain)
     except ValidationError as error:
@@ -349,17 +352,16 @@ def _build(
     return case
 
 
-def _range_faults(mark: Mark, plain: Mapping[str, Any]) -> list[Fault]:
+def _range_faults(mark: Mark, limits: RangeEnds, plain: Mapping[str, Any]) -> list[Fault]:
     """A range holds values of the same kind, in order, and contains the value."""
-    assert mark.range is not None
     slot = slot_at(Case, plain, mark.path.split("."))
     if slot is None:
         return []
-    shown = f"[{written(mark.range[0])}, {written(mark.range[1])}]"
+    shown = f"[{written(limits[0])}, {written(limits[1])}]"
     where = f"{mark.path} (range)"
     try:
         kind = slot.quantity.kind if slot.quantity is not None else units.kind_of(mark.value)
-        low, high, value = (_number(item, kind) for item in (*mark.range, mark.value))
+        low, high, value = (_number(item, kind) for item in (*limits, mark.value))
     except units.QuantityError as error:
         return [Fault(where, shown, error.problem, error.remedy)]
     if not low < high:

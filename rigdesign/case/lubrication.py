@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, 
 
 from pydantic import Field, Tag, model_validator
 
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.fields import (
     BodyHeatCapacity,
     Conductance,
@@ -456,7 +457,7 @@ def with_setpoints(tree: Any) -> Any:
             setpoint = line.get("setpoint", heater.get("setpoint") if _is_table(heater) else None)
             consumers = line.get("consumers")
             for stream in consumers if isinstance(consumers, list | tuple) else ():
-                box, _, kind = str(stream).partition(".")
+                box, kind = OilStreamName.read(str(stream)).both
                 key = STREAM_KEYS.get(kind, "")
                 feed = boxes[box].get(key) if _is_table(boxes.get(box)) else None
                 if setpoint is None or not _is_table(feed) or "inlet_temperature" in feed:

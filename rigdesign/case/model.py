@@ -11,11 +11,12 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
-from rigdesign.case.drivetrain import DrivetrainInput
+from rigdesign.case.drivetrain import NO_DRIVETRAIN, DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.events import Event
 from rigdesign.case.fields import Name, Part, Text, Title
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.housing import Housing
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.lubrication import OilCircuit, with_setpoints
@@ -139,6 +140,16 @@ class Case(Part):
     def path(self) -> Path:
         """The case file."""
         return self._origin.path
+
+    @property
+    def power_circuit(self) -> DrivetrainInput:
+        """The drivetrain; of a case that leaves it out an absent one, without shafts and couplings."""
+        return self.drivetrain or NO_DRIVETRAIN
+
+    @property
+    def housings(self) -> dict[str, Housing]:
+        """Housings of the gearboxes that have one."""
+        return {name: box.housing for name, box in self.gearboxes.items() if box.housing is not None}
 
     @property
     def assumptions(self) -> tuple[AssumptionRecord, ...]:

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from rigdesign.case.fields import text_fault
+from rigdesign.case.fields import RangeEnds, text_fault
 
 MARKS = ("assumed", "range", "source", "measured", "confirmed")
 KEYS = frozenset(("value", *MARKS))
@@ -39,7 +39,7 @@ class Mark:
     path: str
     value: Any
     assumed: str | None = None
-    range: tuple[str | int | float, str | int | float] | None = None
+    range: RangeEnds | None = None
     source: str | None = None
     measured: str | None = None
     confirmed: str | None = None

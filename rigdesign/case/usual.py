@@ -135,7 +135,7 @@ def _misplaced(case: "Case") -> Iterator[tuple[str, str]]:
             on_shafts[bearing.shaft].append((place, bearing.width, bearing.shaft_diameter, path))
     for shaft, parts in on_shafts.items():
         for place, _, bore, path in parts:
-            section = diameter_at(case.drivetrain.shafts[shaft], place)
+            section = diameter_at(case.power_circuit.shafts[shaft], place)
             if section and bore and not 0.6 < bore / section < 1.7:
                 yield path, f"puts a bore of {_mm(bore)} on a section of {_mm(section)} of shaft {shaft}"
         for (place, width, _, path), (other, other_width, _, other_path) in pairwise(sorted(parts)):
@@ -268,15 +268,15 @@ def _of_drivetrain(known: Measures, case: "Case", train: "DrivetrainInput") -> N
             ) * typical[name] ** 2
     known["drivetrain.bracing"]["shaft diameter"] = max(typical.values())
     known["drivetrain.motor"]["torque of the motor"] = train.motor.torque_limit
-    box_name, _, gear_name = train.torque_at.partition(".")
-    box = case.gearboxes[box_name]
-    diameter, gear = pitch_diameters(box)[gear_name], box.gears[gear_name]
+    name = train.counting_gear
+    box = case.gearboxes[name.gearbox]
+    diameter, gear = pitch_diameters(box)[name.part], box.gears[name.part]
     known[""]["tooth force"] = 2.0 * case.schedule.test_torque / diameter
     known["schedule"] |= {
         "speed of 1 m/s at the pitch circle": 2.0 / diameter,
         "torque of 1 Pa on face width times module": 0.5
         * diameter
         * gear.face_width
-        * box.halves(gear_name)
-        * known[f"gearboxes.{box_name}.gears.{gear_name}"]["module"],
+        * box.halves(name.part)
+        * known[f"gearboxes.{name.gearbox}.gears.{name.part}"]["module"],
     }

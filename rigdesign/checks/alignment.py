@@ -161,8 +161,7 @@ ANGLE = RuleFamily(
 def checks(solved: SolvedRig) -> Iterator[Check]:
     """One check for every limit of alignment, two for every coupling."""
     yield from (rule.check(solved) for rule in RULES)
-    train = solved.case.drivetrain
-    for name, coupling in () if train is None else train.couplings.items():
+    for name, coupling in solved.case.power_circuit.couplings.items():
         states = list(_states(solved, name))
         offsets = ((state.radial_offset, where) for state, where in states)
         angles = ((state.angle, where) for state, where in states)

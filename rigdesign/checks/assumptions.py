@@ -86,15 +86,13 @@ class _CaseKind:
 
     @classmethod
     def of(cls, case: Case) -> "_CaseKind":
-        train = case.drivetrain
-        bends = train is not None and train.shaft_model == "elastic"
+        train = case.power_circuit
+        bends = train.shaft_model == "elastic"
         return cls(
             wet=any(machine.coolant in case.oil_circuits for machine in case.rig_heat.machines.values()),
             bends=bends,
             drags=case.losses.bearing_drag == "film",
-            films=()
-            if bends and train is not None and train.bearing_coefficients == "stated"
-            else _films(case),
+            films=() if bends and train.bearing_coefficients == "stated" else _films(case),
             bare=tuple(name for name, box in case.gearboxes.items() if box.housing is None),
         )
 

@@ -69,7 +69,7 @@ def _meshes(solved: SolvedRig) -> Iterator[tuple[str, MeshModel]]:
     """Every mesh at every held stage."""
     for point in solved.points:
         for model in point.last.models:
-            bare = model.name.split(".")[0] in solved.unexpanded
+            bare = model.name.gearbox in solved.unexpanded
             basis = ", gears and axes at the temperature of their oil" if bare else ""
             yield f"{model.name}{basis}, stage {point.point.stage}", model
 

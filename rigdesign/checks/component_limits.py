@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from rigdesign.base.part_name import GearName, MeshName
 from rigdesign.base.units import KINDS, display
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
@@ -98,34 +99,32 @@ def _torque_peak(solved: SolvedRig, part: str) -> Found:
     )
 
 
-def _gears_at(solved: SolvedRig, part: str) -> Iterator[tuple[str, str, float]]:
+def _gears_at(solved: SolvedRig, part: str) -> Iterator[tuple[MeshName, GearName, float]]:
     """(mesh, gear, base radius) of every gear that loads a part: of a gearbox or mesh the pinions, as torques count;
     of a coupling or shaft the gears of its line."""
     rig = solved.rig
     names = part.split(".")
     whole = names[0] == "gearboxes" and (len(names) == 2 or names[2] == "meshes")
-    lines = {} if rig.drivetrain is None else rig.drivetrain.lines()
+    lines = rig.drivetrain.lines()
     own = {lines.get(shaft) for shaft in shafts_of(solved.case, part)}
     for mesh in rig.mesh_names:
         box = rig.mesh(mesh)[0]
-        if names[0] == "gearboxes" and (
-            mesh.split(".")[0] != names[1] or names[2:] not in _naming(solved, mesh)
-        ):
+        if names[0] == "gearboxes" and (mesh.gearbox != names[1] or names[2:] not in _naming(solved, mesh)):
             continue
         gears = rig.mesh_gears(mesh)
         for index, gear in enumerate(gears[:1] if whole else gears):
             if (
                 whole
-                or part.endswith(f".gears.{gear.split('.')[1]}")
-                or (names[0] == "drivetrain" and lines[box.gears[gear.split(".")[1]].shaft] in own)
+                or part.endswith(f".gears.{gear.part}")
+                or (names[0] == "drivetrain" and lines[box.gears[gear.part].shaft] in own)
             ):
                 yield mesh, gear, rig.pairs[mesh].base_radii[index]
 
 
-def _naming(solved: SolvedRig, mesh: str) -> list[list[str]]:
+def _naming(solved: SolvedRig, mesh: MeshName) -> list[list[str]]:
     """Ends of the paths that mean a mesh: its gearbox, itself, its two gears."""
-    gears = (gear.split(".")[1] for gear in solved.rig.mesh_gears(mesh))
-    return [[], ["meshes", mesh.split(".")[1]], *(["gears", gear] for gear in gears)]
+    gears = (gear.part for gear in solved.rig.mesh_gears(mesh))
+    return [[], ["meshes", mesh.part], *(["gears", gear] for gear in gears)]
 
 
 def _drive_torque(solved: SolvedRig, part: str) -> Found:
@@ -147,12 +146,12 @@ def _worst_of_shift(
     solved: SolvedRig, values: Callable[[StageBracing], Iterator[tuple[float, str]]]
 ) -> Found:
     """Worst value of the bracing at the held stages of a loop that is braced by the shift of a gear."""
-    power = solved.case.drivetrain
-    if solved.loads is None or power is None:
+    bracing = solved.case.power_circuit.bracing
+    if solved.loads is None:
         return None, NO_LOADS
-    if power.bracing.mode == "twist_held" or power.bracing.shifted_gear is None:
+    if bracing.mode == "twist_held" or bracing.shifted_gear is None:
         return None, "the loop is braced by a twist: no gear is shifted"
-    return worst(value for bracing in solved.loads.bracing for value in values(bracing))
+    return worst(value for held in solved.loads.bracing for value in values(held))
 
 
 def _actuator_force(solved: SolvedRig, part: str) -> Found:
@@ -232,12 +231,12 @@ def _temperature(solved: SolvedRig, part: str) -> Found:
 
 def _saturated(solved: SolvedRig, check: Check) -> Omissions:
     """What the speed control asked of the motor beyond its limit: the torque of the run is less than that."""
-    run, power = solved.run, solved.case.drivetrain
-    if run is None or power is None:
+    run = solved.run
+    if run is None:
         return
     controlled = np.array([stage.drive_torque is None for stage in solved.case.schedule.resolved()])
     stage = solved.schedule.at(run.ramp.time).stage
-    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * power.motor.torque_limit
+    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * solved.case.power_circuit.motor.torque_limit
     share = float(np.mean(full & controlled[stage]))
     if share:
         yield Omission(

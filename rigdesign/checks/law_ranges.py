@@ -53,7 +53,7 @@ def oil_findings(solved: SolvedRig) -> Iterator[Finding]:
     """Every oil at the coldest and at the hottest place of its stream."""
     for point in solved.points:
         for stream in point.last.streams:
-            name, kind = stream.name.split(".")
+            name, kind = stream.name.both
             oil = gear_oil(solved.rig, name) if kind == "gear_oil" else bearing_oil(solved.rig, name)
             places = stream.inlet, stream.outlet, stream.chamber
             for temperature in (min(places), max(places)):

@@ -89,16 +89,13 @@ def with_play(solved: SolvedRig, name: str, box: Gearbox) -> bool:
 
 def coupled_shafts(solved: SolvedRig, check: Check) -> Omissions:
     """Shafts of a coupling that no housing carries: they stay where they were set."""
-    power = solved.case.drivetrain
-    if power is None:
-        return
     housed = {
         gear.shaft
         for name, box in solved.case.gearboxes.items()
         if name not in solved.unexpanded
         for gear in box.gears.values()
     }
-    for shaft in power.couplings[check.id.split(".", 2)[2]].shafts:
+    for shaft in solved.case.power_circuit.couplings[check.id.split(".", 2)[2]].shafts:
         if shaft not in housed:
             yield Omission(f"thermal expansion behind shaft {shaft}: it stays where it was set")
 
@@ -131,7 +128,7 @@ def given_losses(solved: SolvedRig, check: Check) -> Omissions:
 def long_periods(solved: SolvedRig, check: Check) -> Omissions:
     """Single teeth and alternating torques that do not fit into the period of the response."""
     rig = solved.rig
-    if rig.drivetrain is None or rig.system is None or not solved.points:
+    if rig.case.drivetrain is None or not solved.points:
         return
     beyond = solved.beyond_period
     missing = [f"differences between the teeth of {gear}" for gear in beyond.gears]

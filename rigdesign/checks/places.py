@@ -43,7 +43,7 @@ def rig_gears(case: Case) -> Iterator[str]:
 
 def couplings(case: Case) -> tuple[str, ...]:
     """Every coupling of the drivetrain."""
-    return () if case.drivetrain is None else tuple(case.drivetrain.couplings)
+    return tuple(case.power_circuit.couplings)
 
 
 def housings(case: Case) -> Iterator[str]:

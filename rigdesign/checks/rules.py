@@ -125,12 +125,11 @@ def joined(*parts: str) -> str:
 
 def distance(rule: Rule, value: float) -> float:
     """How far ``value`` is from the limit of ``rule`` [-], as the head of this module defines it."""
-    assert rule.limit is not None
     datum = REFERENCE_TEMPERATURE if rule.unit == "degC" else 0.0
-    upper = rule.limit if rule.comparison == "<=" else rule.upper_limit
+    lower, upper = _limits(rule)
     ends = []
-    if rule.comparison != "<=":
-        margin, scale = value - rule.limit, abs(rule.limit - datum) or 1.0
+    if lower is not None:
+        margin, scale = value - lower, abs(lower - datum) or 1.0
         ends.append(margin / (scale + max(margin, 0.0)))
     if upper is not None:
         ends.append(1.0 if value <= upper == datum else (upper - value) / (abs(upper - datum) or 1.0))
@@ -138,13 +137,14 @@ def distance(rule: Rule, value: float) -> float:
 
 
 def _margin(rule: Rule, value: float) -> float:
-    assert rule.limit is not None
-    if rule.comparison == "<=":
-        return rule.limit - value
-    if rule.comparison == ">=":
-        return value - rule.limit
-    assert rule.upper_limit is not None
-    return min(value - rule.limit, rule.upper_limit - value)
+    lower, upper = _limits(rule)
+    ends = [] if lower is None else [value - lower]
+    return min(ends if upper is None else [*ends, upper - value])
+
+
+def _limits(rule: Rule) -> tuple[float | None, float | None]:
+    """Least and largest value; None where there is no such limit."""
+    return (None, rule.limit) if rule.comparison == "<=" else (rule.limit, rule.upper_limit)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from rigdesign.base.part_name import GearName
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT, films, no_film
 from rigdesign.checks.omissions import HEAT, Omissions, of_gearboxes, without_housing
@@ -88,13 +89,13 @@ def tempering_distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     for point in solved.points:
         stage = point.point.stage
         for name, bulk in point.last.coupling_state.gear_temperature.items():
-            box, gear = name.split(".")
-            material = solved.rig.materials[solved.case.gearboxes[box].gears[gear].material]
+            gear = GearName.read(name)
+            material = solved.rig.materials[solved.case.gearboxes[gear.gearbox].gears[gear.part].material]
             if material.tempering_temperature is None:
                 continue
             hottest = max(bulk, teeth.get((name, stage), bulk))
             part = "teeth of " if hottest > bulk else ""
-            basis = "" if box in solved.rig.models else ", its oil outlet"
+            basis = "" if gear.gearbox in solved.rig.models else ", its oil outlet"
             where = f"{part}{name} at {hottest - ZERO:.1f} degC{basis}, stage {stage}"
             yield material.tempering_temperature - hottest, where
 

@@ -47,17 +47,16 @@ def export_meshes(case: Case, out: Path, fidelity: Fidelity = "standard") -> lis
         if not rig.geometries:
             raise UsageError(f"{case.path}: no gearbox has a housing; add gearboxes.NAME.housing")
         with staged(out) as scratch:
-            for name in rig.geometries:
-                housing = case.gearboxes[name].housing
-                assert housing is not None
-                drawn = housing.step_file is not None
-                written += (_export_step if drawn else _export_box)(rig, name, scratch)
+            for name, housing in case.housings.items():
+                if housing.step_file is None:
+                    written += _export_box(rig, name, scratch)
+                else:
+                    written += _export_step(rig, name, housing.step_file, scratch)
     return [ExportedFile(out / done.file.name, done.remark) for done in written]
 
 
 def _export_box(rig: Rig, name: str, folder: Path) -> list[ExportedFile]:
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     geometry = rig.geometries[name]
     model = build_gearbox(geometry, mesh_sizes(geometry, rig.fidelity, housing.mesh.sizes()))
     file = folder / f"{name}.msh"
@@ -65,16 +64,13 @@ def _export_box(rig: Rig, name: str, folder: Path) -> list[ExportedFile]:
     return [ExportedFile(file, _reads(name, file, len(model.mesh.points)))]
 
 
-def _export_step(rig: Rig, name: str, folder: Path) -> list[ExportedFile]:
+def _export_step(rig: Rig, name: str, step_file: str, folder: Path) -> list[ExportedFile]:
     from rigdesign.cli.face_picture import draw_faces
 
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
-    part = step_part(name, rig.case.gearboxes[name], rig.case.path, PICTURE_TRIANGLES * housing.height)
+    housing = rig.case.housings[name]
+    part = step_part(rig.case, name, step_file, PICTURE_TRIANGLES * housing.height)
     picture = folder / f"{name}_faces.png"
-    draw_faces(
-        picture, f"{housing.step_file}: {len(part.faces)} faces", part.faces, part.names, part.triangles
-    )
+    draw_faces(picture, f"{step_file}: {len(part.faces)} faces", part.faces, part.names, part.triangles)
     done = [ExportedFile(picture, f"{len(part.faces)} faces, {_named(part.names)}")]
     if part.names.complete:
         mesh, file = rig.models[name].mesh, folder / f"{name}.msh"

@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.gear.flank import AxisMisalignment
 from dynamics.standards.iso1328_1_2013 import tolerances
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import CouplingInput
 from rigdesign.case.gearbox import Gearbox
@@ -122,7 +123,7 @@ def axis_deviation(rig: Rig, name: str, mesh: str, shape: Expansion) -> AxisDevi
 
 def _helix_tolerance(rig: Rig, name: str, mesh: str) -> float:
     """Total helix tolerance F_beta [m] of the coarser gear of a mesh."""
-    box, pair = rig.case.gearboxes[name], rig.pairs[f"{name}.{mesh}"]
+    box, pair = rig.case.gearboxes[name], rig.pairs[MeshName(name, mesh)]
     entry = box.meshes[mesh]
     found = []
     for key, member in zip((entry.pinion, entry.wheel), pair.gears, strict=True):
@@ -170,8 +171,7 @@ class CouplingPlace:
 
 def coupling_places(rig: Rig) -> Iterator[CouplingPlace]:
     """Every coupling that a housing moves."""
-    train = rig.case.drivetrain
-    for name, coupling in () if train is None else train.couplings.items():
+    for name, coupling in rig.case.power_circuit.couplings.items():
         first, second = (_end(rig, coupling, side) for side in (0, 1))
         if first.gearbox or second.gearbox:
             offset = coupling.cold_offset_lateral, coupling.cold_offset_vertical
@@ -250,11 +250,11 @@ def misalignment(box: Gearbox, mesh: str, axes: AxisAngles) -> AxisMisalignment:
 
 
 def axes_in_mesh(
-    rig: Rig, name: str, coupling_state: CouplingState, shape: Expansion | None = None
+    rig: Rig, name: MeshName, coupling_state: CouplingState, shape: Expansion | None = None
 ) -> AxisMisalignment:
-    """Misalignment of mesh ``gearbox.mesh``: as made, by the tilt of its shafts, and of a housing of this shape."""
+    """Misalignment of a mesh: as made, by the tilt of its shafts, and of a housing of this shape."""
     box, mesh = rig.mesh(name)
-    made = axis_angles(rig, name.split(".")[0], mesh, shape)
+    made = axis_angles(rig, name.gearbox, mesh, shape)
     tilt = coupling_state.axis_tilt
     return misalignment(
         box,

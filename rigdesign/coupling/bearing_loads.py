@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from dynamics.rotor.bearing import Bearing, BearingOperation, BearingState, OilSupply
 from dynamics.rotor.rolling_stiffness import force_on_first, pair_axial_loads
 from rigdesign.base.errors import named
+from rigdesign.base.part_name import BearingName, MeshName
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.case.rolling_bearing import BearingPlace
@@ -59,7 +60,7 @@ def shaft_loads(rig: Rig, name: str, shaft: str, coupling_state: CouplingState) 
     """Loads on a shaft of the gearbox ``name`` under the mean torques of a coupling state."""
     box = rig.case.gearboxes[name]
     teeth = [
-        tooth_load(rig, f"{name}.{mesh}", gear, coupling_state)
+        tooth_load(rig, MeshName(name, mesh), gear, coupling_state)
         for mesh, entry in box.meshes.items()
         for gear in (entry.pinion, entry.wheel)
         if box.gears[gear].shaft == shaft
@@ -71,8 +72,8 @@ def shaft_loads(rig: Rig, name: str, shaft: str, coupling_state: CouplingState) 
     return [*_weights(rig, name, shaft), *teeth, *couplings]
 
 
-def tooth_load(rig: Rig, mesh: str, gear: str, coupling_state: CouplingState) -> ShaftLoad:
-    """Mean force of the teeth of the mesh ``gearbox.mesh`` on one of its gears, by its own name.
+def tooth_load(rig: Rig, mesh: MeshName, gear: str, coupling_state: CouplingState) -> ShaftLoad:
+    """Mean force of the teeth of a mesh on one of its gears, by its own name.
 
     The pinion of hand h that turns in the sense sigma about x presses its wheel with its front flanks along
     -h sigma tan(beta_b) times the transverse force; with its back flanks the other way.
@@ -103,12 +104,12 @@ def _weights(rig: Rig, name: str, shaft: str) -> Iterator[ShaftLoad]:
     for gear, (mesh, side) in box.first_meshes().items():
         if box.gears[gear].shaft == shaft:
             mass = (
-                box.halves(gear) * rig.pairs[f"{name}.{mesh}"].masses[side]
-                if drivetrain is None
+                box.halves(gear) * rig.pairs[MeshName(name, mesh)].masses[side]
+                if rig.case.drivetrain is None
                 else drivetrain.gear(f"{name}.{gear}").mass
             )
             yield _weight(box.gears[gear].position, mass)
-    if drivetrain is None or shaft not in (one.name for one in drivetrain.shafts):
+    if shaft not in (one.name for one in drivetrain.shafts):
         return
     part = drivetrain.shaft(shaft)
     start = 0.0
@@ -167,12 +168,12 @@ def solved_bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, B
     The axial force of the gears presses the one that their hand and the stated arrangement say; where the case leaves
     either open, the locating one, which is on the safe side for it.
     """
-    loads: dict[str, BearingLoad] = {}
+    loads: dict[BearingName, BearingLoad] = {}
     for name, box in rig.case.gearboxes.items():
         for shaft in dict.fromkeys(entry.shaft for entry in box.bearings.values()):
             acting = shaft_loads(rig, name, shaft, coupling_state)
             own = {
-                f"{name}.{part}": _radial_load(rig, box, entry, acting)
+                BearingName(name, part): _radial_load(rig, box, entry, acting)
                 for part, entry in box.bearings.items()
                 if entry.shaft == shaft
             }
@@ -224,11 +225,11 @@ def _open_hands(acting: Sequence[ShaftLoad]) -> list[list[ShaftLoad]]:
 
 
 def _axial_loads(
-    rig: Rig, name: str, loads: dict[str, BearingLoad], acting: Sequence[ShaftLoad]
-) -> dict[str, BearingLoad]:
+    rig: Rig, name: str, loads: dict[BearingName, BearingLoad], acting: Sequence[ShaftLoad]
+) -> dict[BearingName, BearingLoad]:
     """Loads of the bearings of a shaft that carry axial force."""
     box = rig.case.gearboxes[name]
-    entries = {full: box.bearings[full.split(".")[1]] for full in loads}
+    entries = {full: box.bearings[full.part] for full in loads}
     locating = next((full for full in loads if entries[full].locating), next(iter(loads)))
     induced = {full: entries[full].induced_axial_load(loads[full].radial) for full in loads}
     signed = math.fsum(load.axial for load in acting)
@@ -302,15 +303,14 @@ def solve_bearings(
     BearingNotConvergedError
         No oil temperature balances friction and oil flow.
     """
-    states = {}
+    states: dict[str, BearingState] = {}
     loads = bearing_loads(rig, coupling_state)
     for name, box, entry in rig.bearings():
-        box_name, part = name.split(".")
-        feed = _supply(rig, box_name, point, coupling_state)
+        feed = _supply(rig, name.gearbox, point, coupling_state)
         seats = seats_of(name, coupling_state)
         if seats == (None, None) and feed.flow == 0.0:
             seats = None, feed.inlet  # stands in oil that nothing moves: all round it is as warm as that
-        with named(f"gearboxes.{box_name}.bearings.{part}"):
+        with named(f"gearboxes.{name.gearbox}.bearings.{name.part}"):
             bearing = entry.as_it_runs(_surroundings(rig, name, coupling_state.bearing_clearance[name]))
             operation = BearingOperation(
                 load=loads[name].radial,
@@ -333,9 +333,9 @@ def solve_bearings(
     return states
 
 
-def _surroundings(rig: Rig, name: str, clearance: float) -> BearingPlace:
+def _surroundings(rig: Rig, name: BearingName, clearance: float) -> BearingPlace:
     """What the gearbox makes of the place of a bearing."""
-    box = rig.case.gearboxes[name.split(".")[0]]
+    box = rig.case.gearboxes[name.gearbox]
     factors = {seat: found.factor for seat, found in bearing_seats(rig, name).items()}
     return BearingPlace(
         clearance=clearance,
@@ -353,17 +353,16 @@ def _supply(rig: Rig, box_name: str, point: OperatingPoint, coupling_state: Coup
     if share == 0.0:
         return feed
     if box.sump is not None:
-        return replace(feed, flow=splash_to_bearing(rig, box_name, point, chamber, share))
+        return replace(feed, flow=splash_to_bearing(rig, box_name, box.sump, point, chamber, share))
     return replace(feed, flow=share * injected_flow(box) * len(box.meshes))
 
 
-def _imposed_heat(rig: Rig, name: str, entry: BearingInput, point: OperatingPoint) -> float | None:
+def _imposed_heat(rig: Rig, name: BearingName, entry: BearingInput, point: OperatingPoint) -> float | None:
     """Friction heat that the case prescribes for a film [W]; None where the film makes its own."""
-    box, part = name.split(".")
-    given = given_power(rig.case, point, box, "bearing", part)
+    given = given_power(rig.case, point, name.gearbox, "bearing", name.part)
     if given is not None:
         return given
-    return 0.0 if rig.case.losses.basis == "input" else constant_drag(rig, box, entry, point)
+    return 0.0 if rig.case.losses.basis == "input" else constant_drag(rig, name.gearbox, entry, point)
 
 
 def constant_drag(rig: Rig, box: str, entry: BearingInput, point: OperatingPoint) -> float | None:

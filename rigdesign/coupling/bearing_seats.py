@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from dynamics.rotor.bearing import BearingState, HeatStar
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.films import matched
 from rigdesign.case.surface_conditions import BearingFilm
 from rigdesign.coupling.housing_context import OilFilm
@@ -29,18 +30,17 @@ class Seat:
     factor: float
 
 
-def bearing_seats(rig: Rig, name: str) -> dict[str, Seat]:
-    """Seats by `SHAFT` and `HOUSING` of the bearing ``gearbox.bearing``; only those that take its heat."""
-    box_name, part = name.split(".")
-    box = rig.case.gearboxes[box_name]
-    entry, housing = box.bearings[part], box.housing
+def bearing_seats(rig: Rig, name: BearingName) -> dict[str, Seat]:
+    """Seats by `SHAFT` and `HOUSING` of a bearing; only those that take its heat."""
+    box = rig.case.gearboxes[name.gearbox]
+    entry, housing = box.bearings[name.part], box.housing
     if housing is None or entry.has_film:
         return {}
     places = {
         SHAFT: f"shaft_{entry.shaft}_journal_{entry.side}",
         HOUSING: f"bearing_bore_{entry.shaft}_{entry.side}",
     }
-    known = rig.surface_names(box_name)
+    known = rig.surface_names(name.gearbox)
     return {
         seat: Seat(surface=surface, factor=housing.bearing_film_factor * condition.film_factor)
         for condition in housing.boundary.values()
@@ -115,13 +115,13 @@ BEARING_SEATS, BEARING_LOSS = "bearing_seats", "bearing_loss"
 SOURCE = "rings, rolling elements and oil of the bearing as one node between its seats"
 
 
-def conductances(rig: Rig, name: str, star: HeatStar) -> list[tuple[Seat, float]]:
-    """Every seat that takes heat of the bearing ``gearbox.bearing``, with the conductance to it [W/K]."""
+def conductances(rig: Rig, name: BearingName, star: HeatStar) -> list[tuple[Seat, float]]:
+    """Every seat that takes heat of a bearing, with the conductance to it [W/K]."""
     own = {SHAFT: star.shaft, HOUSING: star.housing}
     return [(seat, own[key]) for key, seat in bearing_seats(rig, name).items()]
 
 
-def body_shares(rig: Rig, name: str, state: BearingState) -> list[tuple[Seat, float]]:
+def body_shares(rig: Rig, name: BearingName, state: BearingState) -> list[tuple[Seat, float]]:
     """Share of the friction of a bearing that enters the bodies at every seat; none for a film, whose oil has it."""
     if state.star is None:
         return []
@@ -130,7 +130,7 @@ def body_shares(rig: Rig, name: str, state: BearingState) -> list[tuple[Seat, fl
 
 
 def seat_conditions(
-    rig: Rig, name: str, star: HeatStar, film_kind: str, follows: float
+    rig: Rig, name: BearingName, star: HeatStar, film_kind: str, follows: float
 ) -> Iterator[BoundaryCondition]:
     """Exchange of the seats through the bearing, and films of both to its oil as it comes.
 
@@ -155,13 +155,15 @@ def seat_conditions(
         )
 
 
-def seat_sources(rig: Rig, name: str, state: BearingState, power: float) -> Iterator[BoundaryCondition]:
+def seat_sources(
+    rig: Rig, name: BearingName, state: BearingState, power: float
+) -> Iterator[BoundaryCondition]:
     """Friction of a bearing into its seats; power : of the friction [W]."""
     for seat, share in body_shares(rig, name, state):
         yield SurfaceSource(surface=seat.surface, power=share * power, kind=BEARING_LOSS)
 
 
-def on_surface(rig: Rig, name: str, seat: Seat, conductance: float) -> FilmLaw:
+def on_surface(rig: Rig, name: BearingName, seat: Seat, conductance: float) -> FilmLaw:
     """Law of a conductance [W/K] that is spread over the surface of a seat."""
-    area = rig.conduction[name.split(".")[0]].elements.surfaces[seat.surface].area
+    area = rig.conduction[name.gearbox].elements.surfaces[seat.surface].area
     return convection.constant(conductance / area, SOURCE, "conductance / area")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.rolling_bearing import BearingSeats
 from rigdesign.coupling.bearing_seats import WarmBearing
@@ -97,9 +98,9 @@ def hot_clearances(
     so that only the spin counts. Rings follow their fits and their own temperatures.
     """
     known = bearings or {}
-    clearances = {}
+    clearances: dict[str, float] = {}
     for full, _, entry in rig.bearings():
-        name = full.split(".")[0]
+        name = full.gearbox
         if not entry.has_film and full not in known:
             clearances[full] = entry.drawn_clearance
             continue
@@ -111,10 +112,10 @@ def hot_clearances(
 
 
 def _seats(
-    rig: Rig, full: str, entry: BearingInput, speed: float, change: float, warm: WarmBearing | None
+    rig: Rig, full: BearingName, entry: BearingInput, speed: float, change: float, warm: WarmBearing | None
 ) -> BearingSeats:
     """Warm seats of a bearing; change : of the bore less that of the journal [m]."""
-    housing = rig.case.gearboxes[full.split(".")[0]].housing
+    housing = rig.case.gearboxes[full.gearbox].housing
     walls = rig.materials["structural_steel" if housing is None else housing.material]
     cold = rig.case.ambient.reference_temperature
     return BearingSeats(
@@ -141,9 +142,8 @@ def centrifugal_expansion(rig: Rig, entry: BearingInput, speed: float) -> float:
 
 
 def _shaft_material(rig: Rig, entry: BearingInput) -> Material:
-    power = rig.case.drivetrain
-    known = power is not None and entry.shaft in power.shafts
-    return rig.materials[power.shafts[entry.shaft].material if power and known else "case_hardened_steel"]
+    shafts = rig.case.power_circuit.shafts
+    return rig.materials[shafts[entry.shaft].material if entry.shaft in shafts else "case_hardened_steel"]
 
 
 def uniform_expansion(rig: Rig, name: str, temperature: float) -> dict[str, float]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.json_text import require_finite
+from rigdesign.base.part_name import BearingName, OilStreamName
 from rigdesign.case.schedule import Numerics
 from rigdesign.coupling.bearing_seats import bearing_temperatures
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
@@ -427,10 +428,10 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
     gear_temperature: dict[str, float] = {}
     centre_distance: dict[str, float] = {}
     clearance: dict[str, float] = {}
-    axial_expansion = dict.fromkeys(rig.pairs, 0.0)
+    axial_expansion: dict[str, float] = dict.fromkeys(rig.pairs, 0.0)
     for name, box in rig.case.gearboxes.items():
         streams = {stream.name: stream for stream in done.streams}
-        bulk = streams[f"{name}.gear_oil"].chamber
+        bulk = streams[OilStreamName(name, "gear_oil")].chamber
         gear_temperature |= {f"{name}.{gear}": bulk for gear in box.gears}
         if name in done.fields:
             gear_temperature |= {
@@ -442,7 +443,9 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
             centre_distance |= done.expansion[name].centre_distance
             axial_expansion |= done.expansion[name].axial_expansion
         else:
-            centre_distance |= uniform_expansion(rig, name, streams[f"{name}.bearing_oil"].chamber)
+            centre_distance |= uniform_expansion(
+                rig, name, streams[OilStreamName(name, "bearing_oil")].chamber
+            )
     seats = seat_temperatures(rig, done.fields)
     clearance |= hot_clearances(
         rig, done.point.speed, done.expansion, bearing_temperatures(done.bearings, seats)
@@ -461,13 +464,13 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         },
         bearing_clearance=clearance,
         bearing_heat={
-            name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_gain(rig, done, name))
+            name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_gain(rig, done, BearingName.read(name)))
             if rig.bearing(name).has_film
             else heat
             for name, heat in done.bearing_heat.items()
         },
         wall_heat={
-            name: relaxed(old.wall_heat[name], heat, _stream_gain(rig, done, name))
+            name: relaxed(old.wall_heat[name], heat, _stream_gain(rig, done, OilStreamName.read(name)))
             for name, heat in done.wall_heat.items()
         },
         oil_outlet={stream.name: stream.chamber for stream in done.streams},
@@ -505,26 +508,25 @@ def heat_residual(problem: PointProblem, done: IterationResult) -> float:
     if {"bearing_heat", "wall_heat"} & problem.freeze:
         return 0.0
     films = (
-        0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name, old)
+        0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, BearingName.read(name), old)
         for name, heat in done.bearing_heat.items()
     )
     walls = (
-        abs(heat - old.wall_heat[name]) / _stream_capacity(rig, name, old)
+        abs(heat - old.wall_heat[name]) / _stream_capacity(rig, OilStreamName.read(name), old)
         for name, heat in done.wall_heat.items()
     )
     return max((*films, *walls), default=0.0)
 
 
-def _bearing_capacity(rig: Rig, name: str, state: CouplingState) -> float:
+def _bearing_capacity(rig: Rig, name: BearingName, state: CouplingState) -> float:
     """Heat capacity flow rho c Q of the oil of one bearing [W/K]; boundless where none is fed (`_without_flow`)."""
-    box_name = name.split(".")[0]
-    chamber = state.oil_outlet[f"{box_name}.gear_oil"]
-    return _without_flow(bearing_feed(rig, box_name, chamber, state.oil_supply).capacity_rate)
+    chamber = state.oil_outlet[f"{name.gearbox}.gear_oil"]
+    return _without_flow(bearing_feed(rig, name.gearbox, chamber, state.oil_supply).capacity_rate)
 
 
-def _stream_capacity(rig: Rig, name: str, state: CouplingState) -> float:
+def _stream_capacity(rig: Rig, name: OilStreamName, state: CouplingState) -> float:
     """Heat capacity flow of an oil stream of a gearbox along its walls [W/K]; boundless where none is fed."""
-    box_name, kind = name.split(".")
+    box_name, kind = name.both
     box = rig.case.gearboxes[box_name]
     chamber = state.oil_outlet[f"{box_name}.gear_oil"]
     if kind == "gear_oil":
@@ -540,14 +542,13 @@ def _without_flow(capacity_rate: float) -> float:
     return capacity_rate or math.inf
 
 
-def _film_gain(rig: Rig, done: IterationResult, name: str) -> float:
-    box, part = name.split(".")
-    return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name, done.coupling_state)
+def _film_gain(rig: Rig, done: IterationResult, name: BearingName) -> float:
+    films = _conductance(done, name.gearbox, f"bearing_film:{name.part}")
+    return films / _bearing_capacity(rig, name, done.coupling_state)
 
 
-def _stream_gain(rig: Rig, done: IterationResult, name: str) -> float:
-    box, kind = name.split(".")
-    return _conductance(done, box, kind) / _stream_capacity(rig, name, done.coupling_state)
+def _stream_gain(rig: Rig, done: IterationResult, name: OilStreamName) -> float:
+    return _conductance(done, name.gearbox, name.part) / _stream_capacity(rig, name, done.coupling_state)
 
 
 def _conductance(done: IterationResult, box: str, kind: str) -> float:

@@ -24,6 +24,7 @@ from dynamics.losses.immersion import (
 from dynamics.losses.loss import RIVAL_LAW, RIVAL_POWER, Loss
 from dynamics.losses.oil_jet import JET_ANGLES
 from dynamics.tooth.friction import ToothPath
+from rigdesign.base.part_name import GearName, MeshName
 from rigdesign.case.gearbox import Gearbox, jet_velocity
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.lubrication import DipOil, JetOil
@@ -123,7 +124,7 @@ def gear_flanks(
     """
     box = rig.case.gearboxes[name]
     mesh_name, index = box.first_meshes()[gear]
-    pair = rig.pairs[f"{name}.{mesh_name}"]
+    pair = rig.pairs[MeshName(name, mesh_name)]
     material = rig.materials[box.gears[gear].material]
     ring = tooth_ring(pair, index, box.body_width(gear), material.conductivity)
     properties = film_oil(rig, name)
@@ -141,7 +142,7 @@ def gear_flanks(
         law = flank_law(rig, name, gear, point, dipped)
     else:
         make = fling_off if condition.correlation == "fling_off" else jet_renewal
-        law = make(ring, _jet_wetting(rig, name, gear, point, condition), properties, factor)
+        law = make(ring, _jet_wetting(rig, name, gear, point, condition, box.jets), properties, factor)
     disc = next(s.gear for s in rig.geometries[name].shafts if s.name == box.gears[gear].shaft)
     assert disc is not None
     return GearFlanks(
@@ -149,15 +150,16 @@ def gear_flanks(
     )
 
 
-def _jet_wetting(rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm) -> Wetting:
+def _jet_wetting(
+    rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm, jets: JetOil
+) -> Wetting:
     """How the jets wet a gear: every mesh has its own, so a gear in two meshes is wetted twice a turn."""
     box = rig.case.gearboxes[name]
-    assert box.jets is not None
     meshes = sum(gear in (mesh.pinion, mesh.wheel) for mesh in box.meshes.values())
     return Wetting(
         speed=rig.shaft_speed(box.gears[gear].shaft, point.speed),
         per_turn=meshes,
-        flow=meshes * JET_HALVES * wetting_flow(box, box.jets),
+        flow=meshes * JET_HALVES * wetting_flow(box, jets),
         wetted_share=condition.wetted_share,
     )
 
@@ -224,20 +226,19 @@ def pinion_share(pair: GearPair, materials: tuple[Material, Material]) -> float:
 
 
 def mesh_split(
-    rig: Rig, full_name: str, point: OperatingPoint, coupling_state: CouplingState | None
+    rig: Rig, name: MeshName, point: OperatingPoint, coupling_state: CouplingState | None
 ) -> MeshSplit:
-    """How the friction heat of the mesh ``gearbox.mesh`` divides, by the rule of the case.
+    """How the friction heat of a mesh divides, by the rule of the case.
 
     coupling_state : bulk temperatures of the gears, for the viscosity of the film; oil temperature when left out
     """
-    name, own = full_name.split(".")
-    box = rig.case.gearboxes[name]
-    mesh, split = box.meshes[own], box.heat_split
+    box = rig.case.gearboxes[name.gearbox]
+    mesh, split = box.meshes[name.part], box.heat_split
     gears = mesh.pinion, mesh.wheel
     share = split.mesh_pinion_share
     if share is None:
         first, second = (rig.materials[box.gears[gear].material] for gear in gears)
-        share = pinion_share(rig.pairs[full_name], (first, second))
+        share = pinion_share(rig.pairs[name], (first, second))
     if box.housing is None:
         return MeshSplit(pinion=share, kept=(0.0, 0.0))
     if split.rule == "assumed":
@@ -246,12 +247,12 @@ def mesh_split(
     conditions = flank_films(box, rim_surfaces(box))
     chamber = ChamberOil(leaving=box.gear_oil_temperature or rig.case.ambient.temperature)
     if coupling_state is not None:
-        chamber = ChamberOil.of(name, coupling_state.oil_outlet, coupling_state.oil_supply)
+        chamber = ChamberOil.of(name.gearbox, coupling_state.oil_outlet, coupling_state.oil_supply)
     kept = []
     for gear in gears:
-        flanks = gear_flanks(rig, name, gear, point, conditions[gear], chamber)
+        flanks = gear_flanks(rig, name.gearbox, gear, point, conditions[gear], chamber)
         walls = {} if coupling_state is None else coupling_state.gear_temperature
-        kept.append(flanks.kept(walls.get(f"{name}.{gear}", flanks.oil_temperature)))
+        kept.append(flanks.kept(walls.get(GearName(name.gearbox, gear), flanks.oil_temperature)))
     return MeshSplit(pinion=share, kept=(kept[0], kept[1]))
 
 
@@ -300,7 +301,7 @@ def dipped_gear(box: Gearbox, gear: str, pair: GearPair, index: int) -> DippedGe
 
 
 def churning(
-    rig: Rig, name: str, point: OperatingPoint, temperature: float, pairs: Mapping[str, GearPair]
+    rig: Rig, name: str, point: OperatingPoint, temperature: float, pairs: Mapping[MeshName, GearPair]
 ) -> Iterator[tuple[str, Loss]]:
     """(gear, its churning loss) of every gear of the gearbox ``name`` that reaches its sump.
 
@@ -316,7 +317,7 @@ def churning(
         running = [
             RunningGear(
                 place=f"{name}.{gear}",
-                gear=dipped_gear(box, gear, pairs[f"{name}.{mesh_name}"], index),
+                gear=dipped_gear(box, gear, pairs[MeshName(name, mesh_name)], index),
                 speed=rig.shaft_speed(box.gears[gear].shaft, point.speed),
             )
             for index, gear in enumerate(gears)
@@ -327,17 +328,17 @@ def churning(
                 yield gear, loss
 
 
-def splash_to_bearing(rig: Rig, name: str, point: OperatingPoint, temperature: float, share: float) -> float:
+def splash_to_bearing(
+    rig: Rig, name: str, sump: DipOil, point: OperatingPoint, temperature: float, share: float
+) -> float:
     """Oil that the dipped gears of the gearbox ``name`` throw on each bearing [m3/s]; none at low speed.
 
     temperature : of the sump [K]; share : of what they lift
     """
-    box = rig.case.gearboxes[name]
-    assert box.sump is not None
-    bath = oil_bath(rig, name, box.sump, temperature)
+    box, bath = rig.case.gearboxes[name], oil_bath(rig, name, sump, temperature)
     return sum(
         splash_flow(
-            dipped_gear(box, gear, rig.pairs[f"{name}.{mesh}"], index),
+            dipped_gear(box, gear, rig.pairs[MeshName(name, mesh)], index),
             bath,
             rig.shaft_speed(box.gears[gear].shaft, point.speed),
             share,
@@ -389,7 +390,7 @@ def flank_law(rig: Rig, name: str, gear: str, point: OperatingPoint, flanks: Dip
     assert box.sump is not None
     bath = oil_bath(rig, name, box.sump, flanks.sump_temperature)
     mesh_name, index = box.first_meshes()[gear]
-    pair = rig.pairs[f"{name}.{mesh_name}"]
+    pair = rig.pairs[MeshName(name, mesh_name)]
     own = dipped_gear(box, gear, pair, index)
     speed = rig.shaft_speed(box.gears[gear].shaft, point.speed)
     depth, lifted = immersion(own, bath).depth, tooth_space_flow(own, bath, speed)

@@ -65,8 +65,7 @@ def fluid_networks(
     films : of all its surfaces; ends : room air and oils with their temperatures. An oil that is missing there is a
     volume of another network
     """
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     networks = [_stream_network(rig, name, stream, films) for stream in housing.streams]
     if housing.volumes:
         networks.append(_volume_network(rig, housing, films, ends))
@@ -116,8 +115,7 @@ def segments(housing: Housing, names: Sequence[str], stream: str) -> Iterator[tu
 
 
 def _stream_network(rig: Rig, name: str, stream: str, films: Sequence[WettedSurface]) -> StreamNetwork:
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     entry: HousingStream = housing.streams[stream]
     inlet = f"{stream} inlet"
     parts = list(segments(housing, rig.surface_names(name), stream))
@@ -207,9 +205,7 @@ class HousingContext:
     @property
     def housing(self) -> Housing:
         """Its housing, which it has."""
-        housing = self.box.housing
-        assert housing is not None
-        return housing
+        return self.rig.case.housings[self.name]
 
     def source(self, condition: SurfaceCondition) -> str:
         """Where the case has the coefficient of a given film from."""

@@ -129,7 +129,7 @@ def drag_torques(losses: Sequence[PlacedLoss], rig: Rig, speed: float) -> dict[s
     own simulation. Nothing brakes a rig without a drivetrain.
     """
     torques: dict[str, float] = {}
-    if rig.drivetrain is None or rig.case.losses.bearing_drag == "constant":
+    if rig.case.drivetrain is None or rig.case.losses.bearing_drag == "constant":
         return torques
     shafts = drag_shafts(rig.drivetrain)
     for placed in losses:

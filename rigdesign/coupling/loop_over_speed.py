@@ -97,14 +97,14 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     models = mesh_models(rig, point, coupling_state)
     rotating = rotating_losses(rig, point, coupling_state, models, bearings)
     response = None
-    if dynamic and rig.system is not None:
+    if dynamic and rig.case.drivetrain is not None:
         system = loop_system(rig, point, coupling_state, bearings)
         drags = drag_torques(rotating, rig, point.speed)
         response = _response(
             rig, LoadedCircuit(point, models, drags, BracingState(mode="torque_controlled"), system)
         )
     meshes = mesh_losses(rig, point, models, response, coupling_state)
-    if dynamic and rig.system is not None and response is None:
+    if dynamic and rig.case.drivetrain is not None and response is None:
         meshes = [_without_response(placed) for placed in meshes]
     losses = (*rotating, *meshes)
     return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=losses)

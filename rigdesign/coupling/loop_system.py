@@ -18,6 +18,7 @@ from dynamics.rotor.bearing_state import BearingCoefficients, RunningState
 from dynamics.rotor.craig_bampton import elastic_twist_rows
 from dynamics.rotor.graph import TwistRows, torsional_twist_rows, with_spline_dampers
 from dynamics.rotor.linear_system import LinearSystem
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
 from rigdesign.coupling.bearing_loads import bearing_loads
 from rigdesign.coupling.misalignment import coupling_torques, standing_load
@@ -64,10 +65,9 @@ def bearing_coefficients(
 
     Computed from its state at the load of this coupling state, or as the case states them.
     """
-    power = rig.case.drivetrain
-    assert power is not None
+    power = rig.case.power_circuit
     loads = bearing_loads(rig, coupling_state)
-    found = {}
+    found: dict[str, LateralCoefficients] = {}
     for name, _, entry in rig.bearings():
         load = loads[name]
         if power.bearing_coefficients == "stated":
@@ -137,11 +137,11 @@ def mesh_placements(
 
     bearings : state of every bearing at this point, by ``gearbox.bearing``
     """
-    if rig.shaft_model == "torsional" or rig.drivetrain is None:
+    if rig.shaft_model == "torsional":
         return {}
     coefficients = bearing_coefficients(rig, coupling_state, bearings)
     moved = _displacements(rig, running_at(rig, point, coefficients), coefficients, coupling_state)
-    found = {}
+    found: dict[str, MeshPlacement] = {}
     for name, pair in rig.pairs.items():
         rows = [rig.elastic.lateral_rows[full] for full in rig.mesh_gears(name)]
         spring, rest = ((rows[1] - rows[0]) @ moved).T  # y, z and their slopes over x
@@ -159,7 +159,7 @@ def mesh_placements(
     return found
 
 
-def _towards_rear(rig: Rig, mesh: str) -> float:
+def _towards_rear(rig: Rig, mesh: MeshName) -> float:
     """1 where the gearbox of a mesh stands in the rig front ahead, -1 the other way round; its skew is the same."""
     box, own = rig.mesh(mesh)
     return rig.axes[box.gears[box.meshes[own].pinion].shaft].direction
@@ -224,7 +224,6 @@ def twist_rows_of(rig: Rig, speed: float | None = None) -> TwistRows:
     speed : of the schedule [rad/s], at which the dampers of splines with a loss factor carry torque too; None leaves
         their share out, a factor sqrt(1 + eta^2)
     """
-    assert rig.drivetrain is not None
     rows = (
         torsional_twist_rows(rig.drivetrain)
         if rig.shaft_model == "torsional"

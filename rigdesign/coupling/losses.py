@@ -14,6 +14,7 @@ from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_w
 from dynamics.rotor.bearing import BearingState
 from dynamics.tooth.friction import ToothPath
 from dynamics.vibration.response_curve import CurvePoint
+from rigdesign.base.part_name import BearingName, MeshName
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, HeatSplit, mesh_jet
 from rigdesign.case.seals import WALL, Seals
@@ -50,8 +51,7 @@ def rotating_losses(
     pairs = {model.name: model.pair for model in models}
     losses: list[PlacedLoss] = []
     for name, state in bearings.items():
-        box_name, part = name.split(".")
-        losses.append(_bearing_loss(rig, box_name, part, point, state))
+        losses.append(_bearing_loss(rig, BearingName.read(name), point, state))
     computed = {} if _bearings_alone(rig) else rig.case.gearboxes
     for box_name, box in computed.items():
         dipped = list(_churning(rig, box_name, box, point, coupling_state, pairs))
@@ -69,7 +69,7 @@ def rotating_losses(
     return [*counted, *oil_jets(rig, point, pairs)]
 
 
-def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[str, GearPair]) -> list[PlacedLoss]:
+def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[MeshName, GearPair]) -> list[PlacedLoss]:
     """What the jets of every mesh take from its pinion shaft, or give to it, and what their pump gives.
 
     pairs : by ``gearbox.mesh``. At standstill the pump alone pays. None where the bearings have constant drag.
@@ -84,7 +84,7 @@ def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[str, GearPair]) -> 
 
 def _bearings_alone(rig: Rig) -> bool:
     """Whether nothing but bearings and teeth brakes the rig."""
-    return rig.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
+    return rig.case.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
 
 
 def mesh_losses(
@@ -110,10 +110,11 @@ def mesh_losses(
                 power=float(response.friction_power[index]),
                 details=loss.details | {"static_power": loss.power, "source": source},
             )
-        box_name, mesh = model.name.split(".")
         split = mesh_split(rig, model.name, point, coupling_state)
         into_body = math.fsum(split.into_rims) * loss.power
-        placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=into_body, split=split)
+        placed = PlacedLoss(
+            gearbox=model.name.gearbox, part=model.name.part, loss=loss, into_body=into_body, split=split
+        )
         losses += _taken(rig, point, placed)
         if response is not None:
             losses.append(_damper_work(rig, model, response, index))
@@ -144,9 +145,10 @@ def _damper_work(rig: Rig, model: MeshModel, response: CurvePoint, index: int) -
         },
         warnings=warnings,
     )
-    box_name, mesh = model.name.split(".")
     outside = 0.0 if rig.case.losses.mesh_damping_heats_oil else power
-    return PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0, not_heat=outside)
+    return PlacedLoss(
+        gearbox=model.name.gearbox, part=model.name.part, loss=loss, into_body=0.0, not_heat=outside
+    )
 
 
 def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
@@ -165,9 +167,8 @@ def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
 def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> Iterator[PlacedLoss]:
     share = rig.case.losses.squeeze_share
     for model in models if share > 0.0 else ():
-        box_name, mesh = model.name.split(".")
         loss = squeeze_loss(model.name, static_mesh_loss(rig, point, model), share)
-        yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
+        yield PlacedLoss(gearbox=model.name.gearbox, part=model.name.part, loss=loss, into_body=0.0)
 
 
 class Rated(Protocol):
@@ -198,13 +199,10 @@ def bearing_ratings(state: Rated) -> dict[str, float]:
     return ratings
 
 
-def _bearing_loss(
-    rig: Rig, box_name: str, part: str, point: OperatingPoint, state: BearingState
-) -> PlacedLoss:
-    entry = rig.case.gearboxes[box_name].bearings[part]
-    drag = constant_drag(rig, box_name, entry, point)
+def _bearing_loss(rig: Rig, name: BearingName, point: OperatingPoint, state: BearingState) -> PlacedLoss:
+    drag = constant_drag(rig, name.gearbox, rig.bearing(name), point)
     loss = Loss(
-        place=f"{box_name}.{part}",
+        place=name,
         kind="bearing",
         power=state.power if drag is None else drag,
         details={
@@ -216,8 +214,8 @@ def _bearing_loss(
         },
         warnings=state.warnings,
     )
-    share = math.fsum(share for _, share in body_shares(rig, f"{box_name}.{part}", state))
-    return PlacedLoss(gearbox=box_name, part=part, loss=loss, into_body=share * loss.power)
+    share = math.fsum(share for _, share in body_shares(rig, name, state))
+    return PlacedLoss(gearbox=name.gearbox, part=name.part, loss=loss, into_body=share * loss.power)
 
 
 def _windage(
@@ -226,7 +224,7 @@ def _windage(
     box: Gearbox,
     point: OperatingPoint,
     coupling_state: CouplingState,
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
 ) -> Iterator[PlacedLoss]:
     """Windage of every gear, once however many meshes it is in; a double-helical gear has both its halves."""
     mist = chamber_mist(rig, box_name, coupling_state)
@@ -235,7 +233,7 @@ def _windage(
     )
     share = body_split(rig, box_name).windage_into_gears
     for gear_name, (mesh_name, index) in box.first_meshes().items():
-        rotor = GearRotor.of_pair(pairs[f"{box_name}.{mesh_name}"], index)
+        rotor = GearRotor.of_pair(pairs[MeshName(box_name, mesh_name)], index)
         rotor = replace(rotor, face_width=box.body_width(gear_name))
         omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
         loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
@@ -251,7 +249,7 @@ def _churning(
     box: Gearbox,
     point: OperatingPoint,
     coupling_state: CouplingState,
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
 ) -> Iterator[PlacedLoss]:
     """Churning of every gear that reaches the sump; none without a sump."""
     if box.sump is not None:
@@ -274,14 +272,14 @@ def _chamber_temperature(rig: Rig, box_name: str, coupling_state: CouplingState)
 
 
 def _oil_jets(
-    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[str, GearPair]
+    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[MeshName, GearPair]
 ) -> Iterator[PlacedLoss]:
     jets = box.jets
     if jets is None:
         return
     jet = mesh_jet(box, jets, gear_oil(rig, box_name))
     for mesh_name, mesh in box.meshes.items():
-        name = f"{box_name}.{mesh_name}"
+        name = MeshName(box_name, mesh_name)
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
         loss = oil_acceleration(name, jet, omega * pairs[name].working_radii[0])
         yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=jet.power)

@@ -31,6 +31,7 @@ from dynamics.tooth.mesh_laws import (
     mesh_law,
     pair_stiffness,
 )
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.drivetrain import MeshStiffness
 from rigdesign.case.gears import Gear
 from rigdesign.coupling.alignment import axes_in_mesh
@@ -51,7 +52,7 @@ class MeshModel:
     stiffness, law : of one half of a double-helical mesh; halves : that share its torque
     """
 
-    name: str
+    name: MeshName
     pair: GearPair
     stiffness: PairStiffness
     friction: FrictionCoefficient
@@ -74,7 +75,7 @@ def mesh_models(
     return tuple(mesh_model(rig, name, point, coupling_state, stiffness) for name in rig.mesh_names)
 
 
-def warm_pair(rig: Rig, name: str, speed: float, coupling_state: CouplingState) -> GearPair:
+def warm_pair(rig: Rig, name: MeshName, speed: float, coupling_state: CouplingState) -> GearPair:
     """Gear pair at the bulk temperatures, centre distance and speed [rad/s] of this iteration."""
     box, mesh = rig.mesh(name)
     pinion, wheel = rig.mesh_gears(name)
@@ -93,7 +94,7 @@ def warm_pair(rig: Rig, name: str, speed: float, coupling_state: CouplingState) 
 
 def mesh_model(
     rig: Rig,
-    name: str,
+    name: MeshName,
     point: OperatingPoint,
     coupling_state: CouplingState,
     stiffness: MeshStiffness | None = None,
@@ -136,7 +137,7 @@ def mesh_model(
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law, halves=entry.sharing)
 
 
-def mesh_phase(rig: Rig, name: str) -> float:
+def mesh_phase(rig: Rig, name: MeshName) -> float:
     """Path position of tooth pair 0 at zero angle [m]: as the case states, and by the teeth an idler turns on.
 
     Between two wheels on opposite sides a pinion shows its second mesh the teeth of half a turn later.
@@ -187,7 +188,7 @@ class WarmMesh:
     micro, cold_micro : modifications and deviations of the flanks of the warm and of the cold pair
     """
 
-    name: str
+    name: MeshName
     pair: GearPair
     torque: float
     micro: tuple[Microgeometry, Microgeometry]
@@ -272,22 +273,21 @@ def _lines(
 # Damping of a mesh: a constant of the case, or a share of the critical damping of its two gear bodies.
 
 
-def mesh_damping(rig: Rig, name: str, law: MeshLaw) -> float:
+def mesh_damping(rig: Rig, name: MeshName, law: MeshLaw) -> float:
     """Damping along the line of action, of one half of a double-helical mesh [N s/m].
 
     c = 2 zeta sqrt(k m_red), k the mean stiffness of the mesh and m_red = 1 / (r_b1^2/J_1 + r_b2^2/J_2) the gear
     bodies reduced to the line of action: the ratio that the damping audit of `dynamics.rotor.torsional_modes` reports.
 
-    name : of the mesh, ``gearbox.mesh``; law : with mean stiffness and base radii
+    law : with mean stiffness and base radii
     """
-    box_name, own = name.split(".")
-    box = rig.case.gearboxes[box_name]
-    mesh = box.meshes[own]
+    mesh = rig.case.gearboxes[name.gearbox].meshes[name.part]
     if mesh.damping is not None:
         return mesh.damping
     assert mesh.damping_ratio is not None
     first, second = (
-        gear_inertia(rig.case, box_name, gear, rig.pairs, rig.materials) for gear in (mesh.pinion, mesh.wheel)
+        gear_inertia(rig.case, name.gearbox, gear, rig.pairs, rig.materials)
+        for gear in (mesh.pinion, mesh.wheel)
     )
     mobility = mesh.sharing * (law.base_radius_1**2 / first + law.base_radius_2**2 / second)
     return 2.0 * mesh.damping_ratio * math.sqrt(law.mean_stiffness / mobility)
@@ -297,15 +297,14 @@ def mesh_damping(rig: Rig, name: str, law: MeshLaw) -> float:
 
 
 def mesh_friction(
-    rig: Rig, name: str, pair: GearPair, point: OperatingPoint, coupling_state: CouplingState
+    rig: Rig, name: MeshName, pair: GearPair, point: OperatingPoint, coupling_state: CouplingState
 ) -> FrictionCoefficient:
     """Friction coefficient of a mesh: one source for the torque in the loop and the heat in the box."""
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
-    box_name = name.split(".")[0]
-    chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
-    feed = gear_feed(rig, box_name, chamber, coupling_state.oil_supply)
+    chamber = coupling_state.oil_outlet[f"{name.gearbox}.gear_oil"]
+    feed = gear_feed(rig, name.gearbox, chamber, coupling_state.oil_supply)
     temperature = feed.mean(chamber)
     contact = ToothPath.of_pair(pair).contact(
         max(abs(coupling_state.mesh_torque[name]) / entry.sharing, LEAST_TORQUE),
@@ -344,7 +343,7 @@ def friction_law(rig: Rig, oil: Oil) -> FrictionLaw:
 # Modifications and deviations of the gears of a case as the mesh law reads them.
 
 
-def mesh_microgeometry(rig: Rig, name: str, pair: GearPair) -> tuple[Microgeometry, Microgeometry]:
+def mesh_microgeometry(rig: Rig, name: MeshName, pair: GearPair) -> tuple[Microgeometry, Microgeometry]:
     """Modifications and deviations of pinion and wheel of a mesh as the mesh law reads them."""
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]

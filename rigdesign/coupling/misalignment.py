@@ -42,14 +42,13 @@ def warm_misalignment(rig: Rig, shapes: Mapping[str, Expansion]) -> WarmMisalign
 
     shapes : by gearbox; without one the rig stands as it was set up
     """
-    power = rig.case.drivetrain
     offset: dict[str, float] = {}
     angle: dict[str, float] = {}
-    if rig.shaft_model == "torsional" or power is None:
+    if rig.shaft_model == "torsional":
         return WarmMisalignment(offset=offset, angle=angle)
     axes = {box: shape.axes for box, shape in shapes.items()}
     for place in coupling_places(rig):
-        coupling = power.couplings[place.name]
+        coupling = rig.case.power_circuit.couplings[place.name]
         first, second = (end_motion(end, axes) for end in (place.first, place.second))
         for i, way in enumerate(("lateral", "vertical")):
             key = f"{place.name}.{way}"
@@ -85,13 +84,12 @@ def coupling_forces(rig: Rig, shaft: str, coupling_state: CouplingState) -> Iter
     A moment is two opposite forces; places may lie beyond the ends of the shaft. Cross joints bend by the torques of
     the coupling state.
     """
-    power = rig.case.drivetrain
-    if rig.shaft_model == "torsional" or power is None:
+    if rig.shaft_model == "torsional":
         return
     pressed = reactions(rig, coupling_state)
     bent = _bent_by_cross_joints(rig, coupling_state.mesh_torque)
     for name in pressed.keys() | bent.keys():
-        coupling = power.couplings[name]
+        coupling = rig.case.power_circuit.couplings[name]
         if shaft not in coupling.shafts:
             continue
         push = 1.0 if shaft == coupling.shafts[0] else -1.0
@@ -106,10 +104,9 @@ def coupling_forces(rig: Rig, shaft: str, coupling_state: CouplingState) -> Iter
 def _bent_by_cross_joints(rig: Rig, mesh_torque: Mapping[str, float]) -> dict[str, Array]:
     """As `reactions`, alike on both shafts of every cross joint: no force, moment along the slopes [N m]."""
     torques = coupling_torques(rig, mesh_torque)
-    assert rig.case.drivetrain is not None
     found = {}
     for joint in rig.elastic.rig.cross_joints:
-        sense = rig.axes[rig.case.drivetrain.couplings[joint.coupling].shafts[0]].sense
+        sense = rig.axes[rig.case.power_circuit.couplings[joint.coupling].shafts[0]].sense
         about_y, about_z = bending_moment(joint, sense, torques[joint.coupling])
         found[joint.coupling] = np.array([0.0, 0.0, about_z, -about_y])
     return found
@@ -121,7 +118,7 @@ def coupling_torques(rig: Rig, mesh_torque: Mapping[str, float]) -> dict[str, fl
     mesh_torque : of the pinion of every mesh [N m]. What the motor and the drags take part in is left out.
     """
     drivetrain = rig.drivetrain
-    if rig.shaft_model == "torsional" or drivetrain is None:
+    if rig.shaft_model == "torsional":
         return {}
     found = {}
     for joint in rig.elastic.rig.cross_joints:
@@ -193,8 +190,7 @@ SLOPES = ("u_y", "u_z", "theta_z", "theta_y")
 
 def _middle(rig: Rig, coupling: str) -> float:
     """x of the middle between the two ends [m]."""
-    assert rig.case.drivetrain is not None and rig.drivetrain is not None
-    entry = rig.case.drivetrain.couplings[coupling]
+    entry = rig.case.power_circuit.couplings[coupling]
     ends = [
         rig.axes[shaft].place(0.0 if end == "start" else rig.drivetrain.shaft(shaft).length)
         for shaft, end in zip(entry.shafts, entry.ends, strict=True)

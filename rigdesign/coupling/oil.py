@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base.part_name import BearingName, OilStreamName
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import FedOil, JetOil, place_of
 from rigdesign.case.model import Case
@@ -22,7 +23,7 @@ FloatArray = NDArray[np.float64]
 class OilStream:
     """One oil stream of a gearbox: what it takes up between inlet and outlet."""
 
-    name: str
+    name: OilStreamName
     inlet: float
     """[K]"""
     outlet: float
@@ -68,7 +69,9 @@ def oil_streams(
         own = [placed for placed in losses if placed.gearbox == name]
         into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
         into_gears = heat_into_gear_oil(own, name, bearings_fed=True)
-        films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
+        films = math.fsum(
+            heat for part, heat in bearing_heat.items() if BearingName.read(part).gearbox == name
+        )
         heat = wall_heat[f"{name}.gear_oil"]
         if box.fed_bearings is None:
             into_gears, films = math.fsum((into_gears, into_bearings, films)), 0.0
@@ -78,16 +81,17 @@ def oil_streams(
             gear = _sump(name, chambers[name], into_gears + heat)
         else:
             fed = gear_feed(rig, name, chambers.get(name, 0.0), supplies)
-            gear, leak = _gear_stream(fed, box, box.jets, f"{name}.gear_oil", into_gears, heat)
+            gear_oil = OilStreamName(name, "gear_oil")
+            gear, leak = _gear_stream(fed, box, box.jets, gear_oil, into_gears, heat)
         streams.append(gear)
         if box.fed_bearings is None:
-            streams.append(replace(gear, name=f"{name}.bearing_oil", flow=0.0, heat=0.0))
+            streams.append(replace(gear, name=OilStreamName(name, "bearing_oil"), flow=0.0, heat=0.0))
         else:
             films += wall_heat[f"{name}.bearing_oil"]
             fed = bearing_feed(rig, name, 0.0, supplies)
             fed = replace(fed, flow=fed.flow * len(box.bearings))
             own_oil = _bearing_stream(
-                fed, box.fed_bearings, f"{name}.bearing_oil", into_bearings, films, leak
+                fed, box.fed_bearings, OilStreamName(name, "bearing_oil"), into_bearings, films, leak
             )
             if leak is not None:
                 moved = _above(leak, fed.inlet)
@@ -108,16 +112,16 @@ def heater_and_cooler(case: Case, heats: Mapping[str, FloatArray]) -> tuple[Floa
     circuit of the case feeds is left out: its heater and cooler are those of its balance.
     """
     circuits: dict[tuple[str, float], FloatArray] = {}
-    for name, heat in heats.items():
-        if place_of(case.oil_circuits, name) is not None:
+    for stream, heat in heats.items():
+        if place_of(case.oil_circuits, stream) is not None:
             continue
-        box, _, kind = name.partition(".")
-        entry = case.gearboxes[box]
-        fed = entry.feeds.get(kind)
+        name = OilStreamName.read(stream)
+        entry = case.gearboxes[name.gearbox]
+        fed = entry.feeds.get(name.part)
         if fed is not None:
             key = fed[0].oil, fed[0].inlet_temperature
-        elif kind == "gear_oil" and entry.gear_oil_temperature is not None:
-            key = f"sump of {box}", entry.gear_oil_temperature
+        elif name.part == "gear_oil" and entry.gear_oil_temperature is not None:
+            key = f"sump of {name.gearbox}", entry.gear_oil_temperature
         else:
             continue
         circuits[key] = circuits.get(key, np.zeros_like(heat)) + heat
@@ -131,7 +135,7 @@ def heater_and_cooler(case: Case, heats: Mapping[str, FloatArray]) -> tuple[Floa
 def _sump(name: str, temperature: float, heat: float) -> OilStream:
     """Oil of one temperature that stays in the gearbox."""
     return OilStream(
-        name=f"{name}.gear_oil",
+        name=OilStreamName(name, "gear_oil"),
         inlet=temperature,
         outlet=temperature,
         chamber=temperature,
@@ -146,7 +150,7 @@ def _above(leak: Portion, temperature: float) -> float:
 
 
 def _gear_stream(
-    fed: OilFeed, box: Gearbox, jets: JetOil, name: str, loss: float, heat: float
+    fed: OilFeed, box: Gearbox, jets: JetOil, name: OilStreamName, loss: float, heat: float
 ) -> tuple[OilStream, Portion | None]:
     """The stream of the gears, and what of it leaks to the bearings."""
     paths, oil, inlet, flow = box.oil_paths, fed.oil, fed.inlet, fed.flow
@@ -173,7 +177,7 @@ def _gear_stream(
 
 
 def _bearing_stream(
-    feed: OilFeed, fed: FedOil, name: str, loss: float, heat: float, leak: Portion | None
+    feed: OilFeed, fed: FedOil, name: OilStreamName, loss: float, heat: float, leak: Portion | None
 ) -> OilStream:
     """The stream of all bearings, with what leaks into it from the gears."""
     oil, inlet, flow = feed.oil, feed.inlet, feed.flow

@@ -49,7 +49,9 @@ def circuit_balances(rig: Rig, done: IterationResult) -> dict[str, SteadyCircuit
     """
     if not rig.oil_circuits:
         return {}
-    heats = {stream.name: _heat_over_supply(rig, done, stream) for stream in done.streams}
+    heats: dict[str, HeatTaken] = {
+        stream.name: _heat_over_supply(rig, done, stream) for stream in done.streams
+    }
     machines = machine_heat(rig, done)
     return {
         name: steady_circuit(
@@ -69,7 +71,7 @@ def into_tank(rig: Rig, stream: OilStream) -> float:
 
     Gear oil that leaks to bearings of the same circuit comes back to the same tank.
     """
-    return stream.heat if one_tank(rig.case, stream.name.split(".")[0]) else stream.to_tank
+    return stream.heat if one_tank(rig.case, stream.name.gearbox) else stream.to_tank
 
 
 def one_tank(case: Case, gearbox: str) -> bool:
@@ -102,7 +104,7 @@ def _heat_over_supply(rig: Rig, done: IterationResult, stream: OilStream) -> Hea
 
 def _slope(rig: Rig, done: IterationResult, stream: OilStream) -> float:
     """G of a stream [W/K]: heat that its walls give for one kelvin of its oil, and the friction of its bearings."""
-    box, _, kind = stream.name.partition(".")
+    box, kind = stream.name.both
     bearings = kind == BEARING_OIL or rig.case.gearboxes[box].fed_bearings is None
     friction = math.fsum(
         placed.loss.power
@@ -117,7 +119,7 @@ def wall_slopes(rig: Rig, done: IterationResult, stream: OilStream) -> tuple[flo
 
     While they stay, films in series with the oil that passes them: 1 / (1/(m c) + 1/sum(h A)).
     """
-    box, _, kind = stream.name.partition(".")
+    box, kind = stream.name.both
     if box not in done.fields or not stream.flow:
         return 0.0, 0.0
     bearings = kind == BEARING_OIL or rig.case.gearboxes[box].fed_bearings is None

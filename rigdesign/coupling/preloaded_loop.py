@@ -20,6 +20,7 @@ from dynamics.vibration.response_curve import CurvePoint
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response
 from dynamics.vibration.steady_motion import period_length
+from rigdesign.base.part_name import GearName, MeshName
 from rigdesign.coupling.mesh_models import MeshModel, laws_of, mesh_models
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
@@ -27,10 +28,10 @@ from rigdesign.rig.model import Rig
 
 def locked_share(rig: Rig) -> float:
     """Torque that is locked in, as a share of the stated one: bracing drifts with the temperature of the gear oil."""
-    power = rig.case.drivetrain
-    if power is None or power.bracing.temperature_drift == 0.0:
+    power = rig.case.power_circuit
+    if power.bracing.temperature_drift == 0.0:
         return 1.0
-    box = rig.case.gearboxes[power.torque_at.split(".")[0]]
+    box = rig.case.gearboxes[power.counting_gear.gearbox]
     fed = box.gear_oil_temperature
     assert fed is not None
     warmer = fed - rig.case.ambient.reference_temperature
@@ -61,30 +62,28 @@ class BracingState:
 
 def shifted_gear(rig: Rig) -> ShiftedGear | None:
     """The helical gear whose axial shift braces the loop; None if the case names none."""
-    power = rig.case.drivetrain
-    if power is None or power.bracing.shifted_gear is None:
+    bracing = rig.case.power_circuit.bracing
+    if bracing.shifted_gear is None:
         return None
-    box_name, gear = power.bracing.shifted_gear.split(".")
+    gear = GearName.read(bracing.shifted_gear)
     for index, name in enumerate(rig.mesh_names):
-        if name.split(".")[0] != box_name:
+        if name.gearbox != gear.gearbox:
             continue
         box, mesh = rig.mesh(name)
         entry = box.meshes[mesh]
-        if gear in (entry.pinion, entry.wheel):
+        if gear.part in (entry.pinion, entry.wheel):
             pair = rig.pairs[name]
             return ShiftedGear(
                 mesh=index,
                 helix_angle=pair.helix_angle,
                 base_helix_angle=pair.base_helix_angle,
-                working_radius=pair.working_radii[0 if gear == entry.pinion else 1],
+                working_radius=pair.working_radii[0 if gear.part == entry.pinion else 1],
                 halves=2 if entry.double_helical else 1,
-                floating_partner=power.bracing.partner_floats,
-                spline_friction=power.bracing.spline_friction_coefficient,
-                spline_radius=power.bracing.spline_pitch_radius or 0.0,
+                floating_partner=bracing.partner_floats,
+                spline_friction=bracing.spline_friction_coefficient,
+                spline_radius=bracing.spline_pitch_radius or 0.0,
             )
-    raise ValueError(
-        f"drivetrain.bracing.shifted_gear = {power.bracing.shifted_gear}: this gear is in no mesh"
-    )
+    raise ValueError(f"drivetrain.bracing.shifted_gear = {bracing.shifted_gear}: this gear is in no mesh")
 
 
 def brace_initial(
@@ -103,8 +102,7 @@ def brace_initial(
     near : state of a loop that differs little, to start from
     """
     system = rig.system if system is None else system
-    assert rig.case.drivetrain is not None and system is not None
-    mode = rig.case.drivetrain.bracing.mode
+    mode = rig.case.power_circuit.bracing.mode
     if mode == "torque_controlled":
         return BracingState(mode=mode)
     met = mesh_models(rig, point, initial) if models is None else models
@@ -230,7 +228,7 @@ def _whole_turns(rig: Rig, laws: Sequence[MeshLaw]) -> list[tuple[bool, bool]]:
     return [(_whole(own), _whole(own * law.teeth_1 / law.teeth_2)) for own, law in zip(turns, laws)]
 
 
-def _pinion_shaft(rig: Rig, name: str) -> str:
+def _pinion_shaft(rig: Rig, name: MeshName) -> str:
     box, mesh = rig.mesh(name)
     return box.gears[box.meshes[mesh].pinion].shaft
 
@@ -258,7 +256,7 @@ def lines_left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | Non
 
 def _left_out(rig: Rig, laws: Sequence[MeshLaw], system: LinearSystem | None) -> list[str]:
     system = rig.system if system is None else system
-    if system is None or not system.periodic_loads:
+    if not system.periodic_loads:
         return []
     ratios = pinion_ratios(system, laws)
     pinions = [float(ratios[port]) for port in system.mesh_ports[:, 0]]

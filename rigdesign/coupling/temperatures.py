@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.bearing import BearingState
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.films import SurfaceCondition, SurfaceFilm, SurfacePlace
 from rigdesign.case.geometry import bearing_on, conditions_of
 from rigdesign.case.surface_conditions import ConstantFilm, TakenFrom
@@ -87,8 +88,7 @@ def solve_housing(
     NotConverged
         Newton's method stalls.
     """
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     included = housing.radiation_included if radiation_included is None else radiation_included
     conditions = boundary_conditions(rig, name, losses, radiation_included=included)
     setup = rig.conduction[name]
@@ -161,7 +161,7 @@ def seat_means(rig: Rig, name: str, temperature: NDArray[np.float64]) -> dict[st
     return {
         f"{name}.{part}.{seat}": surfaces[found.surface].mean(temperature)
         for part in rig.case.gearboxes[name].bearings
-        for seat, found in bearing_seats(rig, f"{name}.{part}").items()
+        for seat, found in bearing_seats(rig, BearingName(name, part)).items()
     }
 
 
@@ -182,8 +182,7 @@ def boundary_conditions(
     sump_given : a sump has the temperature of the coupling state also where it finds its own
     """
     context = HousingContext(rig, name, losses.point, losses.coupling_state, losses.bearings)
-    housing = context.box.housing
-    assert housing is not None
+    housing = context.housing
     rows = conditions_of(housing, rig.surface_names(name))
     covered = {surface for entry, surface, _ in rows if _radiation_in_film(context, entry, surface)}
     conditions: list[Condition] = [*foot_joint(rig, name), *enclosure_conditions(rig, name)]
@@ -247,8 +246,7 @@ def _radiation_in_film(context: HousingContext, entry: str, surface: str) -> boo
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:
     """(surface, what its coefficient was read from) of every film of a housing that assumes a difference."""
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     for entry, surface, _ in conditions_of(housing, rig.surface_names(name)):
         condition = housing.boundary[entry]
         if isinstance(condition, ConstantFilm) and condition.taken_from is not None:
@@ -348,7 +346,7 @@ def _joined_bearings(context: HousingContext) -> Iterator[BoundaryCondition]:
     """Conduction through the bearings that are joined to their seats, into shaft, housing and oil."""
     follows = 1.0 if context.box.fed_bearings is None else 0.0
     for part in context.box.bearings:
-        full = f"{context.name}.{part}"
+        full = BearingName(context.name, part)
         star = context.bearings[full].star
         if star is not None:
             yield from seat_conditions(context.rig, full, star, f"{BEARING_FILM}:{part}", follows)
@@ -367,8 +365,8 @@ def _sources(context: HousingContext, losses: Sequence[PlacedLoss]) -> list[Boun
             case "seal":
                 sources += _seal_sources(context, placed)
             case "seats":
-                state = context.bearings[placed.name]
-                sources += seat_sources(context.rig, placed.name, state, placed.loss.power)
+                state, bearing = context.bearings[placed.name], BearingName(placed.gearbox, placed.part)
+                sources += seat_sources(context.rig, bearing, state, placed.loss.power)
     return sources
 
 
@@ -444,8 +442,7 @@ CHAMBER_RADIATION = "chamber_radiation"
 
 def enclosure_conditions(rig: Rig, name: str) -> Iterator[Enclosure]:
     """Enclosures of the housing of gearbox ``name``; CaseError for view factors that do not close."""
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     for entry, enclosure in housing.enclosures.items():
         emissivities = enclosure.emissivities(rig.surface_names(name))
         surfaces = tuple(emissivities)

@@ -86,7 +86,6 @@ def run_ramp(
     NotConvergedError
         The first stage is missed: there is nothing before it.
     """
-    assert rig.case.drivetrain is not None
     schedule = schedule_of(rig)
     command = schedule.command(COMMAND_INTERVAL)
     numerics = rig.case.numerics
@@ -153,8 +152,7 @@ def torque_share_at(rig: Rig, warm: IterationResult, speed: float) -> float:
 
 def torque_limits(rig: Rig) -> NDArray[np.float64]:
     """Largest torque of the motor in every stage [N m]: its own limit, or the constant torque the stage asks for."""
-    assert rig.case.drivetrain is not None
-    own = rig.case.drivetrain.motor.torque_limit
+    own = rig.case.power_circuit.motor.torque_limit
     return np.array(
         [
             own if stage.drive_torque is None else min(own, stage.drive_torque)
@@ -187,7 +185,6 @@ def drag_curves(rig: Rig, warm: IterationResult, coupling_state: CouplingState) 
     top = max(stage.speed_end for stage in rig.case.schedule.resolved())
     speeds = [share * top for share in DRAG_SHARES]
     tables = [drags_at(rig, warm, coupling_state, speed) for speed in speeds]
-    assert rig.drivetrain is not None
     shafts = drag_shafts(rig.drivetrain)
     curves = {}
     for name in tables[-1]:
@@ -278,11 +275,10 @@ def _missed(stage: Stage, excess: float) -> str:
 
 
 def _balance(rig: Rig, response: TimeResponse, at: int) -> str:
-    assert rig.case.drivetrain is not None
     drag = sum(float(torque[at]) for torque in response.drag_torque.values())
     return (
         f"Torque balance: motor {response.drive_torque[at]:.2f} N m (drivetrain.motor.torque_limit "
-        f"{rig.case.drivetrain.motor.torque_limit:.2f} N m), drag of bearings, windage, oil and seals "
+        f"{rig.case.power_circuit.motor.torque_limit:.2f} N m), drag of bearings, windage, oil and seals "
         f"{drag:.2f} N m, the rest tooth friction and acceleration"
     )
 

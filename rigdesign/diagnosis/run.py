@@ -251,5 +251,5 @@ def mesh_orders(case: Case) -> frozenset[float]:
 
 def teeth_a_turn(case: Case) -> int:
     """Of the reference gear."""
-    box, gear = Places(case).counting_gear.split(".")
-    return case.gearboxes[box].gears[gear].teeth
+    gear = Places(case).counting_gear
+    return case.gearboxes[gear.gearbox].gears[gear.part].teeth

@@ -231,11 +231,10 @@ def _needs(family: RuleFamily) -> Iterator[str]:
 def _met(case: Case, needs: tuple[str, ...]) -> bool:
     """Whether the case has what the check needs; that it is run with an option is not a matter of the case."""
     housed = any(box.housing is not None for box in case.gearboxes.values())
-    power = case.drivetrain
     return (
-        (DRIVETRAIN not in needs or power is not None)
+        (DRIVETRAIN not in needs or case.drivetrain is not None)
         and (HOUSING not in needs or housed)
-        and (BENDING not in needs or (power is not None and power.shaft_model == "elastic"))
+        and (BENDING not in needs or case.power_circuit.shaft_model == "elastic")
         and _seats_met(case, needs)
     )
 

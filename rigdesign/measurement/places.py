@@ -6,6 +6,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import fsum, lcm
 
+from rigdesign.base.part_name import GearName
 from rigdesign.case import Case
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import housing_geometry
@@ -33,7 +34,6 @@ class Places:
         Of ``natural_frequency`` and ``resonance_speed`` the first three; any higher number and the name of a mode is
         one, too (`is_mode`).
         """
-        power = self.case.drivetrain
         known = {
             "temperature": self.surfaces,
             "oil_outlet_temperature": self.streams,
@@ -41,7 +41,7 @@ class Places:
             "flow": self.streams,
             "motor_power": self._driven(MOTOR),
             "drive_torque": self._driven(MOTOR),
-            "torque": () if power is None else tuple(power.couplings),
+            "torque": tuple(self.case.power_circuit.couplings),
             "angle": self.shafts,
             "acceleration": self.bearings,
             "shaft_displacement": (*self.bearings, *self.shafts),
@@ -96,7 +96,7 @@ class Places:
 
     def teeth_of(self, gear: str) -> tuple[int, int]:
         """Teeth of a gear, ``gearbox.gear``, and of its partner in its first mesh."""
-        name, own = gear.split(".")
+        name, own = GearName.read(gear).both
         box = self.case.gearboxes[name]
         mesh = box.meshes[box.first_meshes()[own][0]]
         partner = mesh.wheel if own == mesh.pinion else mesh.pinion
@@ -110,12 +110,11 @@ class Places:
     @cached_property
     def shafts(self) -> tuple[str, ...]:
         """Shafts of the power circuit."""
-        return () if self.case.drivetrain is None else tuple(self.case.drivetrain.shafts)
+        return tuple(self.case.power_circuit.shafts)
 
     def length(self, shaft: str) -> float:
         """Length of one of them [m]."""
-        assert self.case.drivetrain is not None
-        return fsum(section.length for section in self.case.drivetrain.shafts[shaft].sections)
+        return fsum(section.length for section in self.case.power_circuit.shafts[shaft].sections)
 
     @cached_property
     def bearings(self) -> tuple[str, ...]:
@@ -163,7 +162,7 @@ class Places:
         gears = {
             f"{name}.{gear}": (name, gear) for name, box in self.case.gearboxes.items() for gear in box.gears
         }
-        turns = {self.counting_gear: Fraction(1)}
+        turns: dict[str, Fraction] = {self.counting_gear: Fraction(1)}
         links = list(self._links())
         for _ in links:
             for first, second, ratio in links:
@@ -174,12 +173,12 @@ class Places:
         return {gear: turns[gear] for gear in gears if gear in turns}
 
     @cached_property
-    def counting_gear(self) -> str:
+    def counting_gear(self) -> GearName:
         """Gear whose turns count."""
         if self.case.drivetrain is not None:
-            return self.case.drivetrain.torque_at
+            return self.case.power_circuit.counting_gear
         name, box = next(iter(self.case.gearboxes.items()))
-        return f"{name}.{next(iter(box.meshes.values())).pinion}"
+        return GearName(name, next(iter(box.meshes.values())).pinion)
 
     def _links(self) -> Iterator[tuple[str, str, Fraction]]:
         """Pairs of gears that turn together with the speed ratio of the second to the first."""
@@ -191,11 +190,10 @@ class Places:
             for gear, entry in box.gears.items():
                 on_shaft.setdefault(entry.shaft, []).append(f"{name}.{gear}")
         joined = list(on_shaft.values())
-        if self.case.drivetrain is not None:
-            joined += [
-                [gear for shaft in coupling.shafts for gear in on_shaft.get(shaft, ())]
-                for coupling in self.case.drivetrain.couplings.values()
-            ]
+        joined += [
+            [gear for shaft in coupling.shafts for gear in on_shaft.get(shaft, ())]
+            for coupling in self.case.power_circuit.couplings.values()
+        ]
         for gears in joined:
             yield from ((gears[0], other, Fraction(1)) for other in gears[1:])
 

@@ -87,7 +87,6 @@ def _nameless(shape: object, mesh_energy: object) -> ModeShape:
 
 def excitation_orders(rig: Rig) -> Iterator[ExcitationOrder]:
     """Mesh orders, shaft orders and those of couplings and motor ripple; those of one frequency are one."""
-    assert rig.drivetrain is not None
     labels: dict[tuple[OrderKind, float, float], list[str]] = {}
     for mesh, name in enumerate(rig.mesh_names):
         cycles = own_ratio(rig, mesh) * rig.pairs[name].teeth[0]

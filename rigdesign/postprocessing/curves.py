@@ -17,6 +17,7 @@ from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from dynamics.vibration.response_curve import CurvePoint, ResponseCurve
 from dynamics.vibration.speed_sweep import SweepSettings, periodic_response, refined_response
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import IterationResult
@@ -188,7 +189,7 @@ def curve_at(rig: Rig, warm: IterationResult, torque: float, limits: tuple[float
     return refined_response(solve, speeds, rounds=ROUNDS if dense(rig) else 1)
 
 
-def rating_options(rig: Rig, name: str) -> RatingOptions:
+def rating_options(rig: Rig, name: MeshName) -> RatingOptions:
     """What ISO 6336-1 needs of a mesh in addition to its geometry; profile crowning counts as tip relief C_a."""
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
@@ -207,7 +208,7 @@ def rating_options(rig: Rig, name: str) -> RatingOptions:
     )
 
 
-def iso_factor(rig: Rig, name: str, torque: float, speed: float) -> DynamicFactor:
+def iso_factor(rig: Rig, name: MeshName, torque: float, speed: float) -> DynamicFactor:
     """K_V of one mesh by ISO 6336-1 method B; torque [N m] and speed [rad/s] of its pinion, gears as drawn."""
     box, own = rig.mesh(name)
     return dynamic_factor(
@@ -359,7 +360,6 @@ def modes_at(rig: Rig, held: PointResult, speed: float) -> tuple[LoopMode, ...]:
 
 
 def _modes(rig: Rig, last: IterationResult, state: RunningState | None) -> tuple[LoopMode, ...]:
-    assert rig.drivetrain is not None
     laws = laws_of(last.models)
     if state is None:
         return loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)

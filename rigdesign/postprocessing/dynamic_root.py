@@ -214,12 +214,12 @@ class _MeshCurves:
     def _gauges(self, gear: Gear) -> Iterator[DynamicRootCurve]:
         mesh = self.rig.mesh_names[self.mesh]
         box, own = self.rig.mesh(mesh)
-        for name, gauge in self.rig.strain_gauges.items():
-            first, _ = box.first_meshes().get(gauge.gear.split(".")[1], ("", 0))
+        for gauge in self.rig.strain_gauges.values():
+            first, _ = box.first_meshes().get(gauge.gear.part, ("", 0))
             if gauge.gear == self.rig.mesh_gears(mesh)[gear] and first == own:
                 stresses = self._at_gauge(gauge, gear)
                 strain = gauge.point.surface.strain
-                yield self._curve(gear, name.split(".")[2], stresses, strain, FROM_INFLUENCE)
+                yield self._curve(gear, gauge.name, stresses, strain, FROM_INFLUENCE)
 
     def _at_gauge(self, gauge: RootGauge, gear: Gear) -> tuple[Stress, Stress]:
         """Mean over the grid of a gauge, as `gauge_stress.stress_at` takes it."""

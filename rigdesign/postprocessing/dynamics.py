@@ -12,6 +12,7 @@ from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.rotor.torsional_modes import DampingRecord, LoopMode, damping_audit, loop_crossings
 from dynamics.tooth.root_field import PairForces
 from dynamics.vibration.time_response import EnvelopeWindows, TimeResponse, split_lift_off
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.mesh_models import laws_of, mesh_models
@@ -163,7 +164,7 @@ class _SolvedMesh:
         for gear in (0, 1):
             stage = max(self._held, key=lambda held: root.peak(self._held[held].dynamic[gear]))
             found = self._held[stage]
-            own = root.StressedGear(names[gear].split(".")[1], stage, radii[gear], found.roots.source)
+            own = root.StressedGear(names[gear].part, stage, radii[gear], found.roots.source)
             paths.append(root.over_path(own, found.dynamic[gear], found.static[gear]))
         return tuple(paths)
 
@@ -200,7 +201,6 @@ def numbered(modes: Sequence[LoopMode]) -> list[tuple[int, LoopMode]]:
 def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[ModeCrossing]:
     """Crossings of the closed loop's modes with orders of meshes that excite them and of shafts, up to a speed of the
     first pinion [rad/s]."""
-    assert rig.drivetrain is not None
     listed = dict(numbered(modes))
     highest = rig.drive_speed(1.0) / rig.pinion_speed(1.0) * top
     for crossing in loop_crossings(rig.drivetrain, list(listed.values()), highest, HARMONICS):
@@ -208,7 +208,9 @@ def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[
             continue
         yield ModeCrossing(
             kind=crossing.kind,
-            order_of=rig.mesh_labels[crossing.source] if crossing.kind == "mesh" else crossing.source,
+            order_of=rig.mesh_labels[MeshName.read(crossing.source)]
+            if crossing.kind == "mesh"
+            else crossing.source,
             mode=crossing.mode,
             shape=listed[crossing.mode].name,
             frequency=crossing.frequency,
@@ -249,11 +251,11 @@ def unsolved(rig: Rig, run: DynamicRun, mesh: int) -> Iterator[UnsolvedSpeed]:
 
 def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:
     """The bracing of one held point, as set and then warmed up."""
-    system, power = point.last.system, rig.case.drivetrain
-    assert system is not None and power is not None
+    system = point.last.system
+    assert system is not None
     initial = laws_of(mesh_models(rig, point.point, initial_state(rig, point.point)))
     gear = shifted_gear(rig)
-    mode = power.bracing.mode
+    mode = rig.case.power_circuit.bracing.mode
     if mode == "torque_controlled" and gear is None:
         mode = "twist_held"
     return drift(

@@ -12,6 +12,7 @@ from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
 from dynamics.rotor.torsional_modes import sampling_audit
 from dynamics.tooth.root_field import PairForces
 from dynamics.vibration.response_curve import CurvePoint
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.preloaded_loop import signed_torque
@@ -62,10 +63,9 @@ from rigdesign.rig.model import Rig
 def dynamics_section(solved: SolvedRig) -> DynamicsResult:
     """All of it as rows of the result, of a rig with loads."""
     rig, run, loads = solved.rig, solved.run, solved.loads
-    drivetrain = rig.drivetrain
-    assert drivetrain is not None and run is not None and loads is not None
+    assert run is not None and loads is not None
     sampling = sampling_audit(
-        drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
+        rig.drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
     vibration = solved.vibration
     torques = section_torque_record(solved, *vibration.torques)
@@ -184,7 +184,7 @@ def pair_shares(rig: Rig, run: DynamicRun) -> Iterator[PairShare]:
 
 
 def _pair_share(
-    rig: Rig, point: PointResult, place: tuple[int, str], moving: PairForces, resting: PairForces
+    rig: Rig, point: PointResult, place: tuple[int, MeshName], moving: PairForces, resting: PairForces
 ) -> PairShare:
     mesh, name = place
     radius = point.last.models[mesh].pair.base_radii[0]

@@ -446,7 +446,9 @@ def _overspeed(place: EventPlace, test: PointResult) -> EventRecord:
     if missing:
         notes = (*notes, f"loads that the period of the response does not hold: {', '.join(missing)}")
     at = [point for point in curve.points if point.speed == speeds[-1]]
-    factors = {name: float(p.dynamic_factor[m]) for p in at for m, name in enumerate(rig.mesh_names)}
+    factors: dict[str, float] = {
+        name: float(p.dynamic_factor[m]) for p in at for m, name in enumerate(rig.mesh_names)
+    }
     resonance, distance = _nearest_resonance(place, test)
     what = f"{place.point.speed / RPM:.0f} rpm, {place.point.speed / rig.case.schedule.test_speed:.3f} of the test"
     record = place.record(what, place.march().run(overspeed_time(rig, place.point.speed)))
@@ -462,7 +464,6 @@ def _overspeed(place: EventPlace, test: PointResult) -> EventRecord:
 def overspeed_time(rig: Rig, speed: float) -> float:
     """How long the steady rotation at a stated speed [rad/s] is marched [s]: what shakes once a turn of any shaft has
     shown its peak."""
-    assert rig.drivetrain is not None
     slowest = min(abs(rig.shaft_speed(shaft.name, speed)) for shaft in rig.drivetrain.shafts)
     return max(OVERSPEED_TIME, OVERSPEED_TURNS * 2.0 * math.pi / slowest)
 

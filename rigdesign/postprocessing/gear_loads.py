@@ -35,6 +35,7 @@ from dynamics.rating.scuffing import (
 from dynamics.standards import iso_ts_6336_22_2018
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from dynamics.standards.iso6336_3_2006 import LoadFactors
+from rigdesign.base.part_name import MeshName
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.coupling.loop import PointResult
 from rigdesign.postprocessing.curves import iso_factor
@@ -251,8 +252,8 @@ def _materials(rig: Rig, mesh: int) -> tuple[Material, Material]:
     return rig.materials[rig.mesh_gear(mesh, 0).material], rig.materials[rig.mesh_gear(mesh, 1).material]
 
 
-def _feed(rig: Rig, point: PointResult, name: str) -> OilFeed:
-    box, state = name.split(".")[0], point.last.coupling_state
+def _feed(rig: Rig, point: PointResult, mesh: MeshName) -> OilFeed:
+    box, state = mesh.gearbox, point.last.coupling_state
     return gear_feed(rig, box, state.oil_outlet[f"{box}.gear_oil"], state.oil_supply)
 
 
@@ -275,15 +276,14 @@ def bulk_temperature(rig: Rig, point: PointResult, mesh: int) -> tuple[float, st
     Without a housing nothing is solved: ISO/TS 6336-22, from the loss of the mesh.
     """
     name = rig.mesh_names[mesh]
-    box, own = name.split(".")
-    state, field = point.last.coupling_state, point.last.fields.get(box)
+    state, field = point.last.coupling_state, point.last.fields.get(name.gearbox)
     if field is None:
-        return _standard_bulk(rig, point, box, own), "ISO/TS 6336-22, no housing"
+        return _standard_bulk(rig, point, name), "ISO/TS 6336-22, no housing"
     splits = split_as_solved(rig, point, field)
     found = []
     of_teeth = True
     for gear in rig.mesh_gears(name):
-        split = splits.get(gear.split(".")[1])
+        split = splits.get(gear.part)
         tooth = None if split is None else split.tooth_temperature
         of_teeth &= tooth is not None
         found.append(state.gear_temperature[gear] if tooth is None else tooth)
@@ -292,16 +292,16 @@ def bulk_temperature(rig: Rig, point: PointResult, mesh: int) -> tuple[float, st
     ) / 2.0, "teeth of the temperature field" if of_teeth else "gears of the temperature field"
 
 
-def _standard_bulk(rig: Rig, point: PointResult, box: str, own: str) -> float:
-    pair = rig.pairs[f"{box}.{own}"]
+def _standard_bulk(rig: Rig, point: PointResult, name: MeshName) -> float:
+    box, pair = rig.case.gearboxes[name.gearbox], rig.pairs[name]
     loss = math.fsum(
         placed.loss.power
         for placed in point.last.losses
-        if (placed.gearbox, placed.part, placed.loss.kind) == (box, own, "mesh")
+        if (placed.gearbox, placed.part, placed.loss.kind) == (name.gearbox, name.part, "mesh")
     )
-    width = rig.case.gearboxes[box].meshes[own].sharing * pair.face_width
-    inlet = _feed(rig, point, f"{box}.{own}").inlet
-    supply = rig.case.gearboxes[box].oil.scuffing_supply
+    width = box.meshes[name.part].sharing * pair.face_width
+    inlet = _feed(rig, point, name).inlet
+    supply = box.oil.scuffing_supply
     warm = iso_ts_6336_22_2018.theta_M(
         inlet - ZERO_CELSIUS, 1e-3 * loss, 1e6 * pair.centre_distance * width, supply
     )

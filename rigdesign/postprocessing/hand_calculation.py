@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.losses.loss import RIVAL_POWER
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.geometry import seals_on
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.mesh_models import MeshModel
@@ -136,7 +137,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
             by_hand, formula = (plate, PLATE) if plate is not None else (seal.by_hand, RING)
             rows.append(_row(f"mean gap of seal {seal.name}", MM * seal.mean, MM * by_hand, "mm", formula))
         for bearing in warm.bearings:
-            clearance = end_wall_clearance(solved, warm, bearing.name)
+            clearance = end_wall_clearance(solved, warm, BearingName.read(bearing.name))
             if clearance is not None:
                 rows.append(
                     _row(
@@ -156,8 +157,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
 def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
     """Free expansion of the housing and of the field under it, if meshed, up to the shaft axes [m], by their means."""
     name = warm.gearbox
-    housing = solved.case.gearboxes[name].housing
-    assert housing is not None
+    housing = solved.case.housings[name]
     field = next(p for p in solved.points if p.point.stage == warm.stage).last.fields[name].temperature
     elements, bodies = solved.rig.conduction[name].elements, solved.rig.models[name].mesh.bodies
     box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
@@ -204,17 +204,16 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
 
-def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float | None:
-    """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
+def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: BearingName) -> float | None:
+    """Hot diametral clearance [m] of a bearing: its end wall widens the bore by its mean strain.
 
     None for a user's mesh that has no material where the box has its end wall, and for a bearing whose rings move its
     clearance. Source: as `partition_gap`.
     """
     rig = solved.rig
-    name, part = full.split(".")
-    box = solved.case.gearboxes[name]
-    assert box.housing is not None
-    entry, geometry = box.bearings[part], rig.geometries[name]
+    name, part = full.both
+    housing = solved.case.housings[name]
+    entry, geometry = solved.case.gearboxes[name].bearings[part], rig.geometries[name]
     if not entry.has_film:
         return None
     point = next(p for p in solved.points if p.point.stage == warm.stage)
@@ -229,8 +228,8 @@ def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float
     wall = float(np.average(values[inside], weights=volumes[inside]))
     journal = _mean_temperature(field.solution.balance.rows, (f"shaft_{entry.shaft}_journal_{entry.side}",))
     reference, materials = solved.case.ambient.reference_temperature, rig.materials
-    wide = materials[box.housing.material].expansion_coefficient * (wall - reference)
-    thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - reference)
+    wide = materials[housing.material].expansion_coefficient * (wall - reference)
+    thick = materials[housing.shafts[entry.shaft].material].expansion_coefficient * (journal - reference)
     spin = centrifugal_expansion(rig, entry, point.point.speed)
     return entry.drawn_clearance + entry.shaft_diameter * (wide - thick) - spin
 

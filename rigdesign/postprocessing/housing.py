@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.base.units import celsius
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.rig_heat import OIL_COOLER
 from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
 from rigdesign.coupling.housing_context import (
+    BEARING_OIL,
     GEAR_OIL,
     STREAM,
     heat_carried_off,
@@ -49,7 +51,7 @@ from thermal.films.flank import fin_efficiency, tooth_excess
 def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
     """What cooler and room take out against what shafts, pump and heaters put in, at one held stage."""
     damped = math.fsum(placed.not_heat for placed in last.losses)
-    heats = {stream.name: np.array([stream.to_tank]) for stream in last.streams}
+    heats = {str(stream.name): np.array([stream.to_tank]) for stream in last.streams}
     balances = circuit_balances(rig, last)
     circuits = balances.values()
     heater, carried = (float(power[0]) for power in heater_and_cooler(rig.case, heats))
@@ -93,8 +95,7 @@ def compared_temperatures(rig: Rig, result: PointResult, field: HousingField) ->
         One of these solves stalls.
     """
     name, last = field.gearbox, result.last
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     other = solve_housing(
         rig, name, last, field,
         radiation_included=not housing.radiation_included, tolerance=COMPARED,
@@ -169,15 +170,10 @@ def fluid_temperatures(
     rig: Rig, field: HousingField, oil_outlets: Mapping[str, float]
 ) -> Iterator[FluidTemperature]:
     """Volumes, then streams of one housing at one held stage; oil_outlets : by ``gearbox.stream`` [K]."""
-    housing = rig.case.gearboxes[field.gearbox].housing
-    assert housing is not None
+    housing = rig.case.housings[field.gearbox]
     rows = field.solution.balance.rows
     found = field.solution.volumes
-    ends = {
-        name.split(".")[1]: value
-        for name, value in oil_outlets.items()
-        if name.split(".")[0] == field.gearbox
-    }
+    ends = {kind: oil_outlets[OilStreamName(field.gearbox, kind)] for kind in (GEAR_OIL, BEARING_OIL)}
     places = {**ends, "ambient": rig.case.ambient.temperature, **found}
     for name, volume in housing.volumes.items():
         links = {}
@@ -395,7 +391,7 @@ def _gearboxes(rig: Rig, last: IterationResult) -> Iterator[HeatSource]:
     for name in rig.case.gearboxes:
         own = [placed for placed in last.losses if placed.gearbox == name]
         field = last.fields.get(name)
-        oil = (into_tank(rig, stream) for stream in last.streams if stream.name.startswith(f"{name}."))
+        oil = (into_tank(rig, stream) for stream in last.streams if stream.name.gearbox == name)
         sinks: dict[Sink, float] = {
             "room": 0.0 if field is None else heat_to_room(field),
             "oil": math.fsum(oil),

@@ -25,6 +25,7 @@ from dynamics.tooth.mesh_cycle import MeshCycle, unloaded_contact_ratio
 from dynamics.tooth.pair_gap import PairGap
 from dynamics.tooth.points import FaceGrid, FlankGap, default_positions, face_sense, modified_gap
 from dynamics.tooth.root_field import RootCourse, root_course
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import mesh_microgeometry
@@ -53,23 +54,23 @@ class ElasticGear(NamedTuple):
 
 def gauge_stresses(
     rig: Rig,
-    mesh: str,
+    mesh: MeshName,
     cycle: MeshCycle,
     gears: tuple[ElasticGear, ElasticGear],
     flank: Flank = "front",
 ) -> tuple[GaugeStress, ...]:
-    """Stress at the gauges of pinion and wheel of a mesh, ``gearbox.mesh``, under the torque of a cycle.
+    """Stress at the gauges of pinion and wheel of a mesh under the torque of a cycle.
 
     flank : that carries
     """
     box, own = rig.mesh(mesh)
     found = []
-    for name, gauge in rig.strain_gauges.items():
-        first, side = box.first_meshes().get(gauge.gear.split(".")[1], ("", 0))
+    for gauge in rig.strain_gauges.values():
+        first, side = box.first_meshes().get(gauge.gear.part, ("", 0))
         if gauge.gear == rig.mesh_gears(mesh)[side] and first == own:
             found.append(
                 GaugeStress(
-                    name=name.split(".")[2],
+                    name=gauge.name,
                     gear=GEARS[side],
                     tooth=gauge.tooth,
                     front=gauge.front,
@@ -148,7 +149,7 @@ def held_flanks(rig: Rig, point: PointResult, mesh: int) -> HeldFlanks:
 def warm_axes(rig: Rig, point: PointResult, mesh: int) -> AxisMisalignment:
     """Misalignment of a mesh as made, by its shafts and by the expansion of its housing, where these are computed."""
     name = rig.mesh_names[mesh]
-    expansion = point.last.expansion.get(name.split(".")[0])
+    expansion = point.last.expansion.get(name.gearbox)
     shape = None if expansion is None else expansion.deformed
     return axes_in_mesh(rig, name, point.last.coupling_state, shape)
 

@@ -79,7 +79,7 @@ def _capacity(rig: Rig, place: GearInMesh, fit: PressFit, seat: PartTorque) -> P
     grown, warm, cold = grown_over_shaft(rig, place, seat.point)
     hot = fit.interference - grown
     pressure = seat_pressure(disc, rig.shaft_speed(entry.shaft, seat.speed), replace(fit, interference=hot))
-    width = box.body_width(seat.part.split(".")[1])
+    width = box.body_width(rig.mesh_gear_name(place.mesh, place.index))
     return PressFitCapacity(
         gear=seat.part,
         stage=seat.point.point.stage,

@@ -88,7 +88,7 @@ def tooth_history(
         if first is None:
             first = passing.start
         else:
-            coarse = _angle_between(rig, gear, loaded[0], place)
+            coarse = _angle_between(rig, loaded[0], place)
             start += pitches_apart(coarse, passing.start - first, passing.pitch)
         raised = replace(forces, force=application_factor(rig, place.mesh) * forces.force)
         passes.append(_tooth_pass(rig, passing, raised, start))
@@ -173,16 +173,17 @@ def _both_fillets(rig: Rig, passing: _Passing, forces: PairForces) -> tuple[Root
     return of_side(1), of_side(-1)
 
 
-def _angle_between(rig: Rig, gear: str, first: GearInMesh, other: GearInMesh) -> float:
+def _angle_between(rig: Rig, first: GearInMesh, other: GearInMesh) -> float:
     """Angle at the axis of a gear from one partner to another [rad]: 0 or half a turn, all axes in one plane.
 
     Without a housing no axis has a place: partners are taken to stand on opposite sides.
     """
-    box = rig.case.gearboxes[gear.split(".")[0]]
+    gear = rig.mesh_gears(rig.mesh_names[first.mesh])[first.index]
+    box = rig.case.gearboxes[gear.gearbox]
     if box.housing is None:
         return math.pi
     shafts = box.housing.shafts
-    here = shafts[box.gears[gear.split(".")[1]].shaft].lateral_position
+    here = shafts[box.gears[gear.part].shaft].lateral_position
     sides = [
         shafts[rig.mesh_gear(place.mesh, 1 - place.index).shaft].lateral_position > here
         for place in (first, other)
@@ -232,16 +233,16 @@ def _solid(material: Material) -> Solid:
 
 def shaft_material(rig: Rig, shaft: str) -> Material | None:
     """Of a shaft of the drivetrain; None of one that is not part of it."""
-    power = rig.case.drivetrain
-    return None if power is None or shaft not in power.shafts else rig.materials[power.shafts[shaft].material]
+    shafts = rig.case.power_circuit.shafts
+    return rig.materials[shafts[shaft].material] if shaft in shafts else None
 
 
 def shaft_bore(rig: Rig, shaft: str, position: float | None) -> float:
     """Inner radius of a shaft at a position [m]; 0 where the case has no sections or the gear no position."""
-    power = rig.case.drivetrain
-    if power is None or shaft not in power.shafts or position is None:
+    shafts = rig.case.power_circuit.shafts
+    if shaft not in shafts or position is None:
         return 0.0
-    section = power.shafts[shaft].section_at(position)
+    section = shafts[shaft].section_at(position)
     return 0.0 if section is None else 0.5 * section.inner_diameter
 
 

@@ -154,7 +154,7 @@ SPEEDS = tuple(np.round(np.linspace(0.1, 1.3, 25), 3).tolist())
 
 def lateral_vibration(rig: Rig, points: Sequence[PointResult]) -> LateralVibration | None:
     """Lateral vibration at the held stages and over speed; None for shafts that only twist."""
-    if rig.shaft_model == "torsional" or rig.drivetrain is None or not points:
+    if rig.shaft_model == "torsional" or not points:
         return None
     whirls = _Whirls(rig)
     stages = []
@@ -180,7 +180,7 @@ def seat_stiffnesses(rig: Rig) -> Iterator[SeatStiffness]:
 
 def seal_whirls(rig: Rig, point: PointResult) -> tuple[SealWhirl, ...]:
     """Motion once a turn in every seal without contact at a held stage; none for shafts that only twist."""
-    if rig.shaft_model == "torsional" or rig.drivetrain is None:
+    if rig.shaft_model == "torsional":
         return ()
     whirls = _Whirls(rig)
     last = point.last
@@ -360,7 +360,6 @@ def _lateral_separations(rig: Rig, modes: Sequence[RigMode], speed: float) -> It
 
 def _torsional_separations(rig: Rig, modes: Sequence[RigMode], speed: float) -> list[Separation]:
     """Torsional modes against once and twice a turn of every shaft, the nearest first."""
-    assert rig.drivetrain is not None
     found = []
     for own in {round(abs(rig.shaft_speed(shaft, speed)), 9) for shaft in speed_ratios(rig.drivetrain)}:
         for harmonic in (1, 2):

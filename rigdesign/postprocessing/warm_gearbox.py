@@ -80,9 +80,9 @@ def _shafts(rig: Rig, name: str, shape: Expansion) -> Iterator[WarmShaft]:
 def _meshes(rig: Rig, result: PointResult, name: str, shape: Expansion) -> Iterator[MeshClearance]:
     box, temperature = rig.case.gearboxes[name], result.last.coupling_state.gear_temperature
     for model in result.last.models:
-        if model.name.split(".")[0] != name:
+        if model.name.gearbox != name:
             continue
-        entry = box.meshes[model.name.split(".")[1]]
+        entry = box.meshes[model.name.part]
         drawn, warm = rig.pairs[model.name], model.pair
         axes = axes_of(rig, name, shape, (box.gears[entry.pinion].shaft, box.gears[entry.wheel].shaft))
         pinion, wheel = rig.mesh_gears(model.name)

@@ -8,6 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
+from rigdesign.base.part_name import MeshName, OilStreamName
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import IterationResult
@@ -24,8 +25,14 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.readings import readings
 from rigdesign.prediction.static_tests import ModesAt, resonance_speed, standing_modes, standing_value
-from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig.reuse import HOUSINGS, TWISTING, same_housings, share_elastic, take_over
+from rigdesign.rig.model import Rig, RigParts, build_rig
+from rigdesign.rig.reuse import (
+    same_housings,
+    with_all_of,
+    with_circuit_of,
+    with_elastic_of,
+    with_housings_of,
+)
 from rigdesign.run.mesh_convergence import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
@@ -94,14 +101,6 @@ def check_names(settings: Sequence[OperatingCondition], channels: Sequence[Chann
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
-UNMOVED = (
-    *HOUSINGS,
-    *TWISTING,
-    "geometries",
-    "speed_ratios",
-    "mesh_forces",
-)
-"""Cached parts of a rig that no setting of an operating point touches."""
 
 
 def operating_point(setting: OperatingCondition) -> OperatingPoint:
@@ -120,9 +119,7 @@ def rig_at(rig: Rig, setting: OperatingCondition) -> Rig:
     case = case_at(rig.case, setting)
     if case is rig.case:
         return rig
-    placed = replace(rig, case=case)
-    bending = ("axes", "elastic") if rig.shaft_model == "elastic" else ()
-    return take_over(placed, rig, (*UNMOVED, *bending))
+    return with_all_of(replace(rig, case=case, parts=RigParts()), rig)
 
 
 def case_at(case: Case, setting: OperatingCondition) -> Case:
@@ -188,17 +185,17 @@ def like(stated: Rig, case: Case) -> Rig:
         residual_unbalance=stated.residual_unbalance,
     )
     if same_housings(rig, stated):
-        take_over(rig, stated, HOUSINGS)
+        rig = with_housings_of(rig, stated)
     if rig.drivetrain == stated.drivetrain:
-        take_over(rig, stated, TWISTING)
+        rig = with_circuit_of(rig, stated)
     if rig.shaft_model == "elastic":
-        share_elastic(rig, stated)
+        rig = with_elastic_of(rig, stated)
     return rig
 
 
 def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> None:
     """Put a number into the oil feed of a stream; the inlet temperature of a sump is that of its oil."""
-    name, _, kind = stream.partition(".")
+    name, kind = OilStreamName.read(stream).both
     if name not in boxes or kind not in STREAMS:
         known = ", ".join(f"{box}.{kind}" for box in boxes for kind in STREAMS)
         raise UsageError(f"setting names oil stream {stream!r}, which the case does not have; it has {known}")
@@ -212,7 +209,7 @@ def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> Non
 
 def _turn(boxes: dict[str, Gearbox], mesh: str, teeth: int) -> None:
     """Put the wheel of a mesh on further by whole teeth."""
-    name, _, own = mesh.partition(".")
+    name, own = MeshName.read(mesh).both
     if name not in boxes or own not in boxes[name].meshes:
         known = ", ".join(f"{box}.{own}" for box, entry in boxes.items() for own in entry.meshes)
         raise UsageError(f"setting turns mesh {mesh!r}, which the case does not have; it has {known}")

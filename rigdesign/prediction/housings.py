@@ -217,8 +217,7 @@ class ReducedHousings:
         **_: Any,
     ) -> ReducedField:
         """Field of a housing as `rigdesign.coupling.temperatures.solve_housing` gives it, projected."""
-        housing = rig.case.gearboxes[name].housing
-        assert housing is not None
+        housing = rig.case.housings[name]
         conditions = tuple(
             boundary_conditions(rig, name, losses, radiation_included=housing.radiation_included)
         )

@@ -23,6 +23,7 @@ from dynamics.tooth.mesh_laws import alike_teeth
 from dynamics.vibration.harmonic_balance import HarmonicSolution
 from dynamics.vibration.response_curve import CurvePoint, quasi_static_point
 from dynamics.vibration.speed_continuation import LEAST_HARMONICS, MOST_HARMONICS, highest_mode, mesh_cells
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.bearing_loads import solve_bearing, solve_bearings
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult
@@ -96,7 +97,9 @@ class Memoisation:
         """As `mesh_models`; of a mesh that differs in friction and damping alone all arrays are shared."""
         return tuple(self._model(rig, name, point, coupling_state) for name in rig.mesh_names)
 
-    def _model(self, rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState) -> MeshModel:
+    def _model(
+        self, rig: Rig, name: MeshName, point: OperatingPoint, coupling_state: CouplingState
+    ) -> MeshModel:
         key = shape_key(rig, name, point, coupling_state)
         known = self._room("meshes")
         if key not in known:
@@ -141,7 +144,7 @@ class Memoisation:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
-        if rig.case.drivetrain.bracing.mode == "torque_controlled":
+        if rig.case.power_circuit.bracing.mode == "torque_controlled":
             return BracingState(mode="torque_controlled")
         models = self.models(rig, point, initial)
         system = self.system(rig, point, initial, self.bearings(rig, point, initial))
@@ -150,7 +153,7 @@ class Memoisation:
             _digest(system.stiffness, system.twist_load),
             tuple(map(law_key, at_rest)),
             signed_torque(rig, point),
-            rig.case.drivetrain.bracing,
+            rig.case.power_circuit.bracing,
         )
         known = self._room("bracings")
         if key not in known:
@@ -219,7 +222,7 @@ def _digest(*matrices: FloatArray) -> bytes:
 
 
 def shape_key(
-    rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState
+    rig: Rig, name: MeshName, point: OperatingPoint, coupling_state: CouplingState
 ) -> tuple[object, ...]:
     """What a mesh is known by: all that enters it but its friction and damping."""
     box, own = rig.mesh(name)

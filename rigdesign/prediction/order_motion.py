@@ -218,9 +218,7 @@ def _without_periodic_loads(system: LinearSystem) -> LinearSystem:
     """The system without oscillating torques; its modes stay known."""
     if not system.periodic_loads:
         return system
-    reduced = replace(system, periodic_loads=())
-    reduced.__dict__["form"] = system.form
-    return reduced
+    return replace(system, periodic_loads=(), own_coordinates=system.coordinates)
 
 
 @dataclass(frozen=True)
@@ -235,9 +233,8 @@ class ReferenceGear:
     @staticmethod
     def of(rig: Rig, models: Sequence[MeshModel]) -> "ReferenceGear":
         """The gear where the case counts torque."""
-        power, law = rig.case.drivetrain, models[0].law
-        assert power is not None
-        if power.torque_at == rig.mesh_gears(rig.control_mesh)[0]:
+        law = models[0].law
+        if rig.case.power_circuit.torque_at == rig.mesh_gears(rig.control_mesh)[0]:
             return ReferenceGear(1.0, 0.0)
         return ReferenceGear(law.teeth_1 / law.teeth_2, law.tooth_offset_2 * 2.0 * pi / law.teeth_2)
 

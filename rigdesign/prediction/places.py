@@ -306,7 +306,6 @@ def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft | LateralMotion
 
 def _coupling(rig: Rig, channel: Channel) -> InCoupling:
     drivetrain = rig.drivetrain
-    assert drivetrain is not None
     for coupling in drivetrain.couplings:
         if coupling.name == channel.place:
             return InCoupling(
@@ -323,7 +322,6 @@ def _coupling(rig: Rig, channel: Channel) -> InCoupling:
 def _shaft_end(rig: Rig, channel: Channel) -> OfShaft:
     """The end that no coupling takes; the start, if both or none are free."""
     drivetrain, system = rig.drivetrain, rig.system
-    assert drivetrain is not None and system is not None
     stations = [
         name for name in system.dofs if name.rpartition("/")[0] == channel.place and name.endswith(" mm")
     ]
@@ -344,7 +342,6 @@ def _twist_row(rig: Rig, coupling: str) -> Array:
     if rig.shaft_model == "elastic":
         seen = rig.elastic.seen
         return seen.on_freedoms(seen.reduced.model.joint(coupling, "coupling").row("turn"))
-    assert rig.system is not None
     row = np.zeros(len(rig.system.dofs))
     for joint in rig.joints:
         if joint.kind == "coupling" and joint.name == coupling:
@@ -354,7 +351,6 @@ def _twist_row(rig: Rig, coupling: str) -> Array:
 
 def _turn_row(rig: Rig, station: str) -> Array:
     """(n,) turn of a station; shafts that bend are divided at the same ones."""
-    assert rig.system is not None
     if rig.shaft_model == "elastic":
         seen = rig.elastic.seen
         names = np.array(seen.reduced.model.names)

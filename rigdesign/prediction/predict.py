@@ -165,7 +165,7 @@ class Predictor:
         """
         made = self._changed_rigs(changes)
         with self._solving():
-            known = self._first_order.points if self._first_order.known else None
+            known = self._first_order.known
             problems = [
                 self._reduced.problem(rig_at(rig, setting), setting)
                 for rig, setting in zip(made, self.settings)
@@ -238,7 +238,7 @@ class Predictor:
     def prepare(self) -> None:
         """Make what first-order predictions of all points need; on all cores."""
         with self._solving():
-            self._first_order.prepare()
+            _ = self._first_order.points
             if any(channel.quantity in ORDER_QUANTITIES for channel in self.channels):
                 for part in self._oscillating:
                     part.base()
@@ -250,7 +250,7 @@ class Predictor:
         all operating points, torsional ones and any other that a mesh excites by `SEEN_GAIN` or more.
         """
         stated = self._reduced.stated
-        if stated.drivetrain is None:
+        if stated.case.drivetrain is None:
             return np.zeros(0)
         with self._solving():
             if stated.shaft_model == "torsional":

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.errors import UsageError
+from rigdesign.base.part_name import MeshName, PartName
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.mesh_models import MeshModel
@@ -147,18 +148,18 @@ def _drive(rig: Rig, channel: Channel) -> Reading:
 def _seal_gap(rig: Rig, channel: Channel) -> Reading:
     """Hot radial gap, mean over the length: at the angle of ``at``, of the whole circumference without."""
     stations = {
-        f"{box}.{seal.name}": seal
+        PartName(box, seal.name): seal
         for box, model in rig.models.items()
         if not model.no_expansion
         for seal in model.seals
     }
-    found = [name for name in stations if channel.place in (name, name.split(".", 1)[1])]
+    found = [name for name in stations if channel.place in (name, name.part)]
     if len(found) != 1:
         raise UsageError(
             f"channel {channel.name!r}: {channel.place!r} is not one seal of this case; it has "
             f"{', '.join(stations) or 'none'}"
         )
-    box, own = found[0].split(".", 1)
+    box, own = found[0].both
     if channel.at is None:
         return lambda _, done: (_seals(done, box)[own].mean,)
     centre = stations[found[0]].centre
@@ -260,8 +261,7 @@ def root_strain(rig: Rig, channel: Channel) -> Callable[[Rig, IterationResult], 
     def read(here: Rig, done: IterationResult) -> tuple[float, ...]:
         gauge = here.strain_gauges[channel.place]
         curve = strain_curve(here, done, channel.place)
-        box, gear = gauge.gear.split(".")
-        pitch = TURN / here.case.gearboxes[box].gears[gear].teeth
+        pitch = TURN / here.case.gearboxes[gauge.gear.gearbox].gears[gauge.gear.part].teeth
         found = curve_windows(curve.angle, curve.strain, pitch)
         return tuple(found[window] for window in channel.windows)
 
@@ -296,7 +296,7 @@ def strain_curve(rig: Rig, done: IterationResult, place: str) -> StrainCurve:
     point = gauge.point
     strain = point.strain_factor * np.asarray(point.surface.strain(stress))[order]
     curve = StrainCurve(angle=(turned * still.angle)[order], strain=strain)
-    return _lagged(curve, _response_time(rig, place) * _gear_speed(rig, done, gauge))
+    return _lagged(curve, _response_time(rig, gauge) * _gear_speed(rig, done, gauge))
 
 
 def torque_share(
@@ -327,9 +327,8 @@ def torque_share(
 
 def _mesh_of(rig: Rig, gauge: RootGauge) -> tuple[int, Index]:
     """Number of the first mesh of the gear of a gauge, and whether it is its pinion (0) or wheel (1)."""
-    box, gear = gauge.gear.split(".")
-    own, side = rig.case.gearboxes[box].first_meshes()[gear]
-    return rig.mesh_names.index(f"{box}.{own}"), 1 if side else 0
+    own, side = rig.case.gearboxes[gauge.gear.gearbox].first_meshes()[gauge.gear.part]
+    return rig.mesh_names.index(MeshName(gauge.gear.gearbox, own)), 1 if side else 0
 
 
 def _contact(rig: Rig, done: IterationResult, number: int, torque: float) -> HeldContact:
@@ -347,16 +346,16 @@ def _contact(rig: Rig, done: IterationResult, number: int, torque: float) -> Hel
     )
 
 
-def _response_time(rig: Rig, place: str) -> float:
+def _response_time(rig: Rig, gauge: RootGauge) -> float:
     """Time constant of the measuring chain of a gauge [s]."""
-    box, gear, own = place.split(".")
-    return rig.case.gearboxes[box].gears[gear].strain_gauges[own].response_time
+    gear = rig.case.gearboxes[gauge.gear.gearbox].gears[gauge.gear.part]
+    return gear.strain_gauges[gauge.name].response_time
 
 
 def _gear_speed(rig: Rig, done: IterationResult, gauge: RootGauge) -> float:
     """Speed of its gear [rad/s]."""
-    box, gear = gauge.gear.split(".")
-    return rig.shaft_speed(rig.case.gearboxes[box].gears[gear].shaft, done.point.speed)
+    gear = rig.case.gearboxes[gauge.gear.gearbox].gears[gauge.gear.part]
+    return rig.shaft_speed(gear.shaft, done.point.speed)
 
 
 def _lagged(curve: StrainCurve, lag: float) -> StrainCurve:

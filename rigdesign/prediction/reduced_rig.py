@@ -98,8 +98,7 @@ class ReducedRig:
         Its initial state is that of the stated rig where nothing is braced in it.
         """
         here, point = rig_at(rig, condition), operating_point(condition)
-        power = rig.case.drivetrain
-        held = power is not None and power.bracing.mode != "torque_controlled"
+        held = rig.case.power_circuit.bracing.mode != "torque_controlled"
         known = None if held else self._initial.get(condition.name)
         initial = known or initial_state(here, point, self.memoisation.bearings)
         return PointProblem(
@@ -288,25 +287,24 @@ class FirstOrderModel:
 
     def __init__(self, reduced: ReducedRig, converged: Sequence[ConvergedPoint]) -> None:
         self._reduced, self._converged = reduced, tuple(converged)
+        self.known: list[PointSensitivities] | None = None
+        """Sensitivities of the points once they have been made."""
 
     @property
-    def known(self) -> bool:
-        """Whether the sensitivities of the points have been made."""
-        return "points" in self.__dict__
-
-    def prepare(self) -> None:
-        """Make the sensitivities of the points."""
-        _ = self.points
-
-    @cached_property
     def points(self) -> list[PointSensitivities]:
-        """Sensitivities of every point, found on all cores.
+        """Sensitivities of every point, made when they are first asked for.
 
         Raises
         ------
         UsageError
             A case whose points are not steady: their sensitivities depend on the whole warm-up.
         """
+        if self.known is None:
+            self.known = self._made()
+        return self.known
+
+    def _made(self) -> list[PointSensitivities]:
+        """Sensitivities of every point, found on all cores."""
         time = self._reduced.stated.case.ambient.warming_time
         if time is not None:
             raise UsageError(

@@ -271,7 +271,7 @@ class LinearisedDrag:
         if kind == "drag":
             more = {**last.drags, place: last.drags.get(place, 0.0) + DRAG_STEP}
             return self._one_sided(self._solved(last.models, more), DRAG_STEP)
-        number = [model.name for model in last.models].index(place)
+        number = next(index for index, model in enumerate(last.models) if model.name == place)
         stated = last.models[number].law.friction
         step = FRICTION_STEP * max(stated, LEAST_FRICTION)
         sizes = np.array([-step if stated > step else 2.0 * step, step])

@@ -24,6 +24,7 @@ from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.mesh_force import evaluate_mesh
 from dynamics.tooth.mesh_laws import alike_teeth
 from rigdesign.base.errors import UsageError
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.iteration import SOLVED, IterationParts, initial_state
 from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
@@ -73,9 +74,10 @@ def mode_frequency(channel: Channel, modes: Sequence[NamedMode]) -> float:
 
 def assembly_backlash(rig: Rig, mesh: str) -> float:
     """Circumferential backlash of a mesh at the temperature of the drawings [m]; UsageError for an unknown mesh."""
-    if mesh not in rig.pairs:
+    name = MeshName.read(mesh)
+    if name not in rig.pairs:
         raise UsageError(f"backlash of {mesh!r}: no such mesh; the case has {', '.join(rig.pairs)}")
-    return rig.pairs[mesh].transverse_backlash
+    return rig.pairs[name].transverse_backlash
 
 
 def standing_modes(rig: Rig, point: OperatingPoint | None = None) -> tuple[NamedMode, ...]:
@@ -103,9 +105,8 @@ def rig_at_rest(rig: Rig, parts: IterationParts = SOLVED, point: OperatingPoint 
 
     Raises UsageError for a case without drivetrain.
     """
-    if rig.drivetrain is None:
+    if rig.case.drivetrain is None:
         raise UsageError("natural frequencies need the drivetrain, which this case leaves out")
-    assert rig.system is not None
     if point is None:
         point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
     initial = initial_state(rig, point, parts.bearings)
@@ -135,14 +136,12 @@ def twisting_modes(rig: Rig, rest: RigAtRest) -> tuple[NamedMode, ...]:
 
 def _undragged(rig: Rig) -> LinearSystem:
     """The circuit with shafts that only twist, no drag in its bearings."""
-    assert rig.drivetrain is not None
     bearings = tuple(replace(bearing, linear_drag=0.0) for bearing in rig.drivetrain.bearings)
     return assemble(replace(rig.drivetrain, bearings=bearings))
 
 
 def loaded_modes(rig: Rig, loop: LoadedCircuit) -> tuple[NamedMode, ...]:
     """Oscillating modes of the loop at an operating point, its bearings as they run there, by rising frequency."""
-    assert rig.system is not None
     laws = [alike_teeth(law) for law in shifted_laws(rig, loop.models, loop.bracing)]
     if rig.shaft_model == "torsional":
         return torsional_modes(loop.system, laws, HIGHEST_FREQUENCY)
@@ -220,6 +219,5 @@ def _crossing(channel: Channel, modes: Sequence[NamedMode]) -> float:
 
 def _in_films(rig: Rig) -> bool:
     """Whether journals run in films whose stiffness is computed."""
-    power = rig.case.drivetrain
-    assert power is not None
+    power = rig.case.power_circuit
     return power.bearing_coefficients == "computed" and any(entry.has_film for _, _, entry in rig.bearings())

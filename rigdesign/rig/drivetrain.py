@@ -23,6 +23,7 @@ from dynamics.rotor.parts import (
 )
 from dynamics.rotor.shaft import Disc, DrivetrainError, Section, Shaft
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.base.part_name import GearName, MeshName
 from rigdesign.base.units import show
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import CouplingInput, HarmonicTorqueInput
@@ -39,7 +40,7 @@ RIGID_SEAT = 1e8
 
 
 def build_drivetrain(
-    case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+    case: Case, pairs: Mapping[MeshName, GearPair], materials: Mapping[str, Material]
 ) -> Drivetrain:
     """Shafts, gears, couplings, bearings and meshes of the loop; the shafts divided as `resolution.with_elements` says.
 
@@ -51,8 +52,7 @@ def build_drivetrain(
     DrivetrainError
         A part that does not fit its shaft, or a loop that cannot close.
     """
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     return Drivetrain(
         shafts=tuple(_shaft(name, case, materials) for name in power.shafts),
         gears=tuple(_gear_bodies(case, pairs, materials)),
@@ -77,8 +77,7 @@ def build_drivetrain(
 
 
 def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
-    assert case.drivetrain is not None
-    shaft = case.drivetrain.shafts[name]
+    shaft = case.power_circuit.shafts[name]
     material = materials[shaft.material]
     return Shaft(
         name=name,
@@ -109,13 +108,12 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
 
 def mesh_frequency(case: Case) -> float:
     """Angular frequency [rad/s] at which the teeth of the reference gear mesh at test speed."""
-    assert case.drivetrain is not None
-    box, gear = case.drivetrain.torque_at.split(".")
-    return case.gearboxes[box].gears[gear].teeth * case.schedule.test_speed
+    gear = case.power_circuit.counting_gear
+    return case.gearboxes[gear.gearbox].gears[gear.part].teeth * case.schedule.test_speed
 
 
 def _gear_bodies(
-    case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+    case: Case, pairs: Mapping[MeshName, GearPair], materials: Mapping[str, Material]
 ) -> list[GearBody]:
     bodies = []
     for box_name, box in case.gearboxes.items():
@@ -150,7 +148,7 @@ def _seat(spline: Spline) -> JointStiffness | None:
 
 
 def gear_inertia(
-    case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+    case: Case, box: str, gear: str, pairs: Mapping[MeshName, GearPair], materials: Mapping[str, Material]
 ) -> float:
     """Polar inertia of a gear body [kg m2]: as the case states it, else that of bored disc, or rim and web; times its
     factor. Of a gear without a bore that round its section of the shaft, which has its own."""
@@ -172,12 +170,12 @@ def gear_inertia(
 
 
 def gear_mass(
-    case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+    case: Case, box: str, gear: str, pairs: Mapping[MeshName, GearPair], materials: Mapping[str, Material]
 ) -> float:
     """Mass of a gear body [kg] that goes with its inertia: at the radius of gyration of its bored disc, or rim and
     web."""
     mesh, side = case.gearboxes[box].first_meshes()[gear]
-    pair, bore = pairs[f"{box}.{mesh}"], _bore(case, case.gearboxes[box].gears[gear])
+    pair, bore = pairs[MeshName(box, mesh)], _bore(case, case.gearboxes[box].gears[gear])
     per_inertia = pair.masses[side] / pair.inertias[side]
     if bore > pair.bore_diameters[side]:
         per_inertia = 2.0 / (pair.gears[side].reference_radius ** 2 + 0.25 * bore**2)
@@ -186,10 +184,10 @@ def gear_mass(
 
 def _bore(case: Case, part: Gear) -> float:
     """Bore of a gear body [m]; of one cut into its shaft the diameter of the shaft there, where that is stated."""
-    train = case.drivetrain
-    if part.bore_diameter or part.seat_position is None or train is None:
+    shafts = case.power_circuit.shafts
+    if part.bore_diameter or part.seat_position is None or not shafts:
         return part.bore_diameter
-    section = train.shafts[part.shaft].section_at(part.seat_position)
+    section = shafts[part.shaft].section_at(part.seat_position)
     return 0.0 if section is None else section.outer_diameter
 
 
@@ -213,37 +211,36 @@ def disc_inertia(outer_diameter: float, bore_diameter: float, width: float, dens
     return math.pi * density * width * (outer_diameter**4 - bore_diameter**4) / 32.0
 
 
-def _toothing(gear: str, box: str, case: Case, pairs: Mapping[str, GearPair]) -> CylindricalGear:
+def _toothing(gear: str, box: str, case: Case, pairs: Mapping[MeshName, GearPair]) -> CylindricalGear:
     for mesh_name, mesh in case.gearboxes[box].meshes.items():
         for member, name in enumerate((mesh.pinion, mesh.wheel)):
             if name == gear:
-                return pairs[f"{box}.{mesh_name}"].gears[member]
+                return pairs[MeshName(box, mesh_name)].gears[member]
     raise DrivetrainError(f"gear {box}.{gear} is in no mesh; state its inertia or remove it")
 
 
-def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[MeshConnection]:
+def _meshes(case: Case, pairs: Mapping[MeshName, GearPair]) -> list[MeshConnection]:
     meshes = []
-    for full, pair in pairs.items():
-        box_name, name = full.split(".")
-        mesh = case.gearboxes[box_name].meshes[name]
+    for name, pair in pairs.items():
+        box = case.gearboxes[name.gearbox]
+        mesh = box.meshes[name.part]
         meshes.append(
             MeshConnection(
-                name=full,
-                pinion=f"{box_name}.{mesh.pinion}",
-                wheel=f"{box_name}.{mesh.wheel}",
+                name=name,
+                pinion=GearName(name.gearbox, mesh.pinion),
+                wheel=GearName(name.gearbox, mesh.wheel),
                 base_radii=pair.base_radii,
                 teeth=pair.teeth,
                 centre_distance=pair.centre_distance,
-                base_helix_angle=pinion_hand(case.gearboxes[box_name], name) * pair.base_helix_angle,
+                base_helix_angle=pinion_hand(box, name.part) * pair.base_helix_angle,
             )
         )
     return meshes
 
 
 def _motor(case: Case) -> Motor:
-    assert case.drivetrain is not None
-    motor = case.drivetrain.motor
-    length = math.fsum(section.length for section in case.drivetrain.shafts[motor.shaft].sections)
+    motor = case.power_circuit.motor
+    length = math.fsum(section.length for section in case.power_circuit.shafts[motor.shaft].sections)
     return Motor(
         shaft=motor.shaft,
         position=0.0 if motor.end == "start" else length,
@@ -311,7 +308,7 @@ def _seals(case: Case) -> list[DragPlace]:
 Array = NDArray[np.float64]
 
 
-def loop_forces(case: Case, pairs: Mapping[str, GearPair], lines: Mapping[str, int]) -> dict[str, float]:
+def loop_forces(case: Case, pairs: Mapping[MeshName, GearPair], lines: Mapping[str, int]) -> dict[str, float]:
     """Signed force of each mesh ``gearbox.mesh`` of the closed loop for the force 1 in the first one.
 
     Positive where the pinion drives its wheel. Every shaft line is in balance: what one mesh gives it, the others
@@ -328,7 +325,9 @@ def loop_forces(case: Case, pairs: Mapping[str, GearPair], lines: Mapping[str, i
     forces = _forces(_balance(case, pairs, lines))
     if forces is None:
         joined = (
-            "; ".join(f"{name}: {', '.join(one.shafts)}" for name, one in case.drivetrain.couplings.items())
+            "; ".join(
+                f"{name}: {', '.join(one.shafts)}" for name, one in case.power_circuit.couplings.items()
+            )
             if case.drivetrain
             else "none"
         )
@@ -342,11 +341,11 @@ def loop_forces(case: Case, pairs: Mapping[str, GearPair], lines: Mapping[str, i
     return dict(zip(pairs, map(float, forces)))
 
 
-def gearbox_forces(case: Case, pairs: Mapping[str, GearPair]) -> dict[str, float]:
+def gearbox_forces(case: Case, pairs: Mapping[MeshName, GearPair]) -> dict[str, float]:
     """The same for gearboxes without a drivetrain: force 1 in the first mesh of each, its idlers in balance."""
     found: dict[str, float] = {}
     for box in case.gearboxes:
-        own = {name: pair for name, pair in pairs.items() if name.split(".")[0] == box}
+        own = {name: pair for name, pair in pairs.items() if name.gearbox == box}
         shafts = {gear.shaft: i for i, gear in enumerate(case.gearboxes[box].gears.values())}
         rows = _balance(case, own, shafts)
         forces = _forces(rows[np.count_nonzero(rows, axis=1) > 1])
@@ -354,13 +353,12 @@ def gearbox_forces(case: Case, pairs: Mapping[str, GearPair]) -> dict[str, float
     return {name: found[name] for name in pairs}
 
 
-def _balance(case: Case, pairs: Mapping[str, GearPair], lines: Mapping[str, int]) -> Array:
+def _balance(case: Case, pairs: Mapping[MeshName, GearPair], lines: Mapping[str, int]) -> Array:
     """(n_lines, n_meshes) torque on each line per force in each mesh [m]."""
     rows = np.zeros((max(lines.values()) + 1, len(pairs)))
     for index, (name, pair) in enumerate(pairs.items()):
-        box_name, own = name.split(".")
-        box = case.gearboxes[box_name]
-        mesh = box.meshes[own]
+        box = case.gearboxes[name.gearbox]
+        mesh = box.meshes[name.part]
         rows[lines[box.gears[mesh.pinion].shaft], index] += pair.base_radii[0]
         rows[lines[box.gears[mesh.wheel].shaft], index] -= pair.base_radii[1]
     return rows

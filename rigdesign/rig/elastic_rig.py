@@ -37,7 +37,8 @@ from dynamics.rotor.rotor_model import (
     isotropic_support,
     residual_unbalances,
 )
-from rigdesign.case.drivetrain import ShaftInput
+from rigdesign.base.part_name import MeshName
+from rigdesign.case.drivetrain import BowInput, ShaftInput
 from rigdesign.case.elastic_shafts import AXIAL_STIFFNESS, BALANCE_GRADE
 from rigdesign.case.model import Case
 from rigdesign.case.rolling_bearing import ROLLING_DAMPING_TIME
@@ -62,33 +63,36 @@ class ElasticDrivetrain:
 
     faces : flank of the pinion that carries in each mesh; cutoff : highest mode that is kept [Hz]
     pressed : bearings, ``gearbox.bearing``, whose rolling elements locate their shaft (`pressed_bearings`)
+    basis : this rig in the modes of one that differs in loads of its shafts alone; None: in its own modes
     """
 
     rig: ElasticRig
     faces: Mapping[str, Face]
     cutoff: float
     pressed: frozenset[str] = frozenset()
+    basis: ReducedElasticRig | None = None
 
     @cached_property
     def model(self) -> ElasticModel:
         """All freedoms, without bearings and meshes."""
-        return assemble_rig(self.rig)
+        return assemble_rig(self.rig) if self.basis is None else self.basis.model
 
     @cached_property
     def reduced(self) -> ReducedElasticRig:
         """Modes up to the cutoff with static shapes of all ports."""
-        return self._reduced(self.cutoff)
+        return self.basis or self._reduced(self.cutoff)
 
     @cached_property
     def slow(self) -> ReducedElasticRig:
         """The same with modes up to `SLOW` only: for what happens at the speed of the shafts."""
         return self.reduced if self.cutoff <= SLOW else self._reduced(SLOW)
 
-    def take_basis(self, other: "ElasticDrivetrain") -> None:
-        """Use the modes of a rig that differs in what turns with its shafts and in how its axes stand, no more; left
-        alone where that gives the shafts other nodes."""
-        if self.model.names == other.model.names:
-            self.__dict__["reduced"] = replace(other.reduced, model=self.model)
+    def with_basis_of(self, other: "ElasticDrivetrain") -> "ElasticDrivetrain":
+        """This rig in the modes of one that differs in what turns with its shafts and in how its axes stand, no more;
+        in its own where that gives the shafts other nodes."""
+        if self.model.names != other.model.names:
+            return self
+        return replace(self, basis=replace(other.reduced, model=self.model))
 
     def _reduced(self, cutoff: float) -> ReducedElasticRig:
         reference = {
@@ -134,7 +138,7 @@ def elastic_rig(
     case: Case,
     drivetrain: Drivetrain,
     axes: Mapping[str, ShaftAxis],
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
     materials: Mapping[str, Material],
     housings: Sequence[HousingSupport] = (),
 ) -> ElasticRig:
@@ -159,8 +163,7 @@ def elastic_rig(
 
 def pressed_bearings(case: Case) -> Iterator[str]:
     """Bearings on shafts that contact angles hold: pressed against each other, they have an axial stiffness."""
-    power = case.drivetrain
-    if power is None or power.bearing_coefficients == "stated":
+    if case.power_circuit.bearing_coefficients == "stated":
         return
     for box_name, box in case.gearboxes.items():
         angled = {entry.shaft for entry in box.bearings.values() if entry.induced_axial_load(1.0) > 0.0}
@@ -215,15 +218,14 @@ def _locations(case: Case) -> Iterator[AxialLocation]:
                 )
 
 
-def _double_helical(case: Case, pairs: Mapping[str, GearPair]) -> Iterator[AxialMeshSpring]:
-    for full, pair in pairs.items():
-        box, name = full.split(".")
-        mesh = case.gearboxes[box].meshes[name]
+def _double_helical(case: Case, pairs: Mapping[MeshName, GearPair]) -> Iterator[AxialMeshSpring]:
+    for name, pair in pairs.items():
+        mesh = case.gearboxes[name.gearbox].meshes[name.part]
         if mesh.double_helical and pair.helix_angle:
             half = mesh_stiffness(pair, NOMINAL_TORQUE / mesh.sharing, RatingOptions())
             stiffness = mesh.sharing * pair.face_width * half
             yield AxialMeshSpring(
-                mesh=full, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
+                mesh=name, stiffness=double_helical_stiffness(stiffness, pair.base_helix_angle)
             )
 
 
@@ -240,8 +242,7 @@ def rotating_parts(
 
     Raises DrivetrainError for parts that do not fit the drivetrain.
     """
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     highest = highest_speeds(case, drivetrain)
     for name, shaft in power.shafts.items():
         for own in shaft.unbalances.values():
@@ -255,7 +256,7 @@ def rotating_parts(
                 BalanceGrade(grade=MM_PER_S * grade, speed=speed, angles=shaft.balance_angles),
             )
         if shaft.bow is not None:
-            yield _bow(name, shaft, drivetrain, materials)
+            yield _bow(name, shaft.bow, drivetrain, materials[shaft.material])
     for name, coupling in power.couplings.items():
         if coupling.flange_run_out or coupling.flange_tilt:
             yield FlangeRunOut(
@@ -269,8 +270,7 @@ def rotating_parts(
 
 def without_residual_unbalance(case: Case) -> Case:
     """The case with the unbalances that it states alone: what a balance grade leaves turns at angles nobody knows."""
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     shafts = {name: shaft.model_copy(update={"balance_grade": None}) for name, shaft in power.shafts.items()}
     return case.model_copy(
         update={"drivetrain": power.model_copy(update={"balance_grade": 0.0, "shafts": shafts})}
@@ -279,8 +279,7 @@ def without_residual_unbalance(case: Case) -> Case:
 
 def misalignments(case: Case) -> Iterator[AxisMisalignment]:
     """Couplings that resist the offset or angle in which their axes were set up."""
-    assert case.drivetrain is not None
-    for name, coupling in case.drivetrain.couplings.items():
+    for name, coupling in case.power_circuit.couplings.items():
         offset = coupling.cold_offset_lateral, coupling.cold_offset_vertical
         slope = coupling.cold_angle_lateral, coupling.cold_angle_vertical
         found = AxisMisalignment(
@@ -294,8 +293,7 @@ def misalignments(case: Case) -> Iterator[AxisMisalignment]:
 
 def cross_joints(case: Case) -> Iterator[CrossJoint]:
     """Couplings that are cross joints under an angle."""
-    assert case.drivetrain is not None
-    for name, coupling in case.drivetrain.couplings.items():
+    for name, coupling in case.power_circuit.couplings.items():
         slope = coupling.cold_angle_lateral, coupling.cold_angle_vertical
         if coupling.alternates and any(slope):
             yield CrossJoint(coupling=name, slope=slope)
@@ -303,28 +301,24 @@ def cross_joints(case: Case) -> Iterator[CrossJoint]:
 
 def grade_of(case: Case, shaft: ShaftInput) -> float:
     """Balance quality grade of a shaft [mm/s], 0 where its unbalances are stated in its place."""
-    assert case.drivetrain is not None
     if shaft.balance_grade is not None:
         return shaft.balance_grade
     if shaft.unbalances:
         return 0.0
-    common = case.drivetrain.balance_grade
+    common = case.power_circuit.balance_grade
     return BALANCE_GRADE if common is None else common
 
 
 def highest_speeds(case: Case, drivetrain: Drivetrain) -> dict[str, float]:
     """Highest speed of every shaft in the schedule [rad/s]."""
-    assert case.drivetrain is not None
-    box, gear = case.drivetrain.torque_at.split(".")
+    gear = case.power_circuit.counting_gear
     ratios = speed_ratios(drivetrain)
-    reference = ratios[case.gearboxes[box].gears[gear].shaft]
+    reference = ratios[case.gearboxes[gear.gearbox].gears[gear.part].shaft]
     top = max(max(stage.speed_start, stage.speed_end) for stage in case.schedule.resolved())
     return {name: abs(ratio / reference) * top for name, ratio in ratios.items()}
 
 
-def _bow(name: str, shaft: ShaftInput, drivetrain: Drivetrain, materials: Mapping[str, Material]) -> ShaftBow:
-    bow = shaft.bow
-    assert bow is not None
+def _bow(name: str, bow: BowInput, drivetrain: Drivetrain, material: Material) -> ShaftBow:
     places = sorted(bearing.position for bearing in drivetrain.bearings if bearing.shaft == name)
     difference = bow.temperature_difference or 0.0
     return ShaftBow(
@@ -334,6 +328,6 @@ def _bow(name: str, shaft: ShaftInput, drivetrain: Drivetrain, materials: Mappin
         position=bow.position,
         angle=bow.angle,
         # the hot side is the outer one of the bend: away from the centre of curvature
-        gradient=-materials[shaft.material].expansion_coefficient * difference,
+        gradient=-material.expansion_coefficient * difference,
         gradient_angle=bow.hot_side,
     )

@@ -13,6 +13,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import GearBodies, TipShortening
 from dynamics.gear.tooth_form import FlankEnds, GearDetails, TipEdge
 from rigdesign.base.errors import CaseError, Fault, named
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.faults import written
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear, GearMesh
@@ -21,7 +22,7 @@ from rigdesign.case.topography_file import TopographyGrid, read_topography
 from rigdesign.properties.materials import Material
 
 
-def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, GearPair]:
+def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[MeshName, GearPair]:
     """Gear pair as drawn of every mesh by ``gearbox.mesh``.
 
     Raises
@@ -29,13 +30,13 @@ def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, Gear
     GearGeometryError
         Gears that cannot be made or cannot mesh; pointed teeth; undercut or protuberance within the path of contact.
     """
-    pairs = {}
+    pairs: dict[MeshName, GearPair] = {}
     for box_name, box in case.gearboxes.items():
         for mesh_name, mesh in box.meshes.items():
             with named(f"gearboxes.{box_name}.meshes.{mesh_name}"):
                 pair = build_pair(box, mesh, materials)
                 require_whole_flanks(pair)
-                pairs[f"{box_name}.{mesh_name}"] = pair
+                pairs[MeshName(box_name, mesh_name)] = pair
     return pairs
 
 
@@ -107,7 +108,7 @@ NOT_MEASURED: FlankTopographies = (None, None)
 KEYS = ("topography", "back_topography")
 
 
-def flank_topographies(case: Case, pairs: Mapping[str, GearPair]) -> dict[str, FlankTopographies]:
+def flank_topographies(case: Case, pairs: Mapping[MeshName, GearPair]) -> dict[str, FlankTopographies]:
     """Topographies by ``gearbox.gear`` of the gears that have any.
 
     Raises
@@ -119,7 +120,7 @@ def flank_topographies(case: Case, pairs: Mapping[str, GearPair]) -> dict[str, F
     found = {}
     for box_name, box in case.gearboxes.items():
         for mesh_name, mesh in box.meshes.items():
-            pair = pairs[f"{box_name}.{mesh_name}"]
+            pair = pairs[MeshName(box_name, mesh_name)]
             for name, toothing, ends in zip((mesh.pinion, mesh.wheel), pair.gears, pair.flanks, strict=True):
                 gear = box.gears[name]
                 if gear.flank.topography is None and gear.flank.back_topography is None:

@@ -5,12 +5,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from dynamics.gear.pair import GearPair
-from dynamics.rotor.graph import Drivetrain, TorsionalJoint, assemble, at_speed, joints
+from dynamics.rotor.graph import NO_DRIVETRAIN, Drivetrain, TorsionalJoint, assemble, at_speed, joints
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.rotor.rotor_model import HousingSupport
 from dynamics.tooth.elastic_segment import FACE_POSITIONS
 from dynamics.vibration.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
+from rigdesign.base.part_name import BearingName, GearName, MeshName
 from rigdesign.case.bearings import BearingInput
 from rigdesign.case.circuit_parts import HeatParts, heat_parts, oil_circuits
 from rigdesign.case.drivetrain import MeshStiffness, ShaftModel
@@ -88,6 +89,26 @@ class TwistingLoop:
 
 
 @dataclass(frozen=True)
+class RigParts:
+    """Derived parts of a rig that another one has computed and that hold for it too; None: computed when asked for."""
+
+    models: Mapping[str, GearboxModel] | None = None
+    conduction: Mapping[str, ConductionSetup] | None = None
+    chamber_views: ChamberViews | None = None
+    expansion: Mapping[str, ExpansionSetup] | None = None
+    geometries: Mapping[str, HousingGeometry] | None = None
+    drivetrain: Drivetrain | None = None
+    twisting: TwistingLoop | None = None
+    joints: tuple[TorsionalJoint, ...] | None = None
+    speed_ratios: Mapping[str, float] | None = None
+    mesh_forces: Mapping[str, float] | None = None
+    axes: Mapping[str, ShaftAxis] | None = None
+    topographies: Mapping[str, FlankTopographies] | None = None
+    seats: tuple[HousingSupport, ...] | None = None
+    elastic: ElasticDrivetrain | None = None
+
+
+@dataclass(frozen=True)
 class Rig:
     """Everything that stays the same over operating points and iterations.
 
@@ -96,29 +117,33 @@ class Rig:
     tooth_influence : influence numbers of the cold gears, from the store or computed when they are asked for
     coarsening : of the loop, for estimates of its discretisation error
     residual_unbalance : whether shafts that bend have what their balance grade leaves, at the worst angles
+    parts : computed elsewhere (`rigdesign.rig.reuse`); to be given anew with a field on which they depend
     """
 
     case: Case
     fidelity: Fidelity
     oils: Mapping[str, Oil]
     materials: Mapping[str, Material]
-    pairs: Mapping[str, GearPair]
+    pairs: Mapping[MeshName, GearPair]
     mesh_stiffness: MeshStiffness = "iso_6336_scaled"
     shaft_model: ShaftModel = "torsional"
     tooth_influence: ToothInfluence = field(default_factory=ToothInfluence)
     coarsening: Coarsening = AS_RULED
     residual_unbalance: bool = True
+    parts: RigParts = field(default=RigParts(), repr=False, compare=False)
 
     @cached_property
     def speed_ratios(self) -> Mapping[str, float]:
         """Speed of each shaft per speed of the reference gear."""
-        return speed_ratios(self.case, self.drivetrain)
+        return self.parts.speed_ratios or speed_ratios(self.case, self.drivetrain)
 
     @cached_property
-    def drivetrain(self) -> Drivetrain | None:
-        """The power circuit; None when the losses are given."""
+    def drivetrain(self) -> Drivetrain:
+        """The power circuit; without any part when the losses are given."""
         if self.case.drivetrain is None:
-            return None
+            return NO_DRIVETRAIN
+        if self.parts.drivetrain is not None:
+            return self.parts.drivetrain
         whole = build_drivetrain(self.case, self.pairs, self.materials)
         return with_elements(self.case, whole, self.coarsening.elements)
 
@@ -127,55 +152,54 @@ class Rig:
         """Frequency [Hz] up to which modes of the loop are followed in its periodic response."""
         return (
             DEFAULT_CUTOFF
-            if self.drivetrain is None
+            if self.case.drivetrain is None
             else highest_mode(counted_frequency(self.case, self.drivetrain))
         )
 
     @cached_property
     def mesh_forces(self) -> Mapping[str, float]:
         """Signed tooth force of each mesh per force in the control mesh, positive where the pinion drives."""
-        if self.drivetrain is None:
+        if self.parts.mesh_forces is not None:
+            return self.parts.mesh_forces
+        if self.case.drivetrain is None:
             return gearbox_forces(self.case, self.pairs)
         return loop_forces(self.case, self.pairs, self.drivetrain.lines())
 
     @cached_property
     def axes(self) -> Mapping[str, ShaftAxis]:
         """Axis of every shaft."""
-        return shaft_axes(self.case, self.pairs)
+        return self.parts.axes or shaft_axes(self.case, self.pairs)
 
-    def line_of_action(self, mesh: str) -> LineOfAction:
+    def line_of_action(self, mesh: MeshName) -> LineOfAction:
         """Directions of the mesh ``gearbox.mesh``."""
         box, own = self.mesh(mesh)
         pinion, wheel = (box.gears[gear].shaft for gear in (box.meshes[own].pinion, box.meshes[own].wheel))
         return line_of_action(self.axes[pinion], self.axes[wheel])
 
     @cached_property
-    def system(self) -> LinearSystem | None:
-        """Matrices of the power circuit that only twists, without its meshes; splines as at test speed."""
-        return None if self.drivetrain is None else self.twisting.at(self.case.schedule.test_speed)
+    def system(self) -> LinearSystem:
+        """Matrices of the power circuit that only twists, without its meshes; splines as at test speed; of a rig with
+        a drivetrain only."""
+        return self.twisting.at(self.case.schedule.test_speed)
 
     @cached_property
     def twisting(self) -> TwistingLoop:
         """The same at every stated speed; of a rig with a drivetrain only."""
-        assert self.drivetrain is not None
-        return TwistingLoop(self.drivetrain, self.drive_speed(1.0))
+        return self.parts.twisting or TwistingLoop(self.drivetrain, self.drive_speed(1.0))
 
     @cached_property
     def joints(self) -> tuple[TorsionalJoint, ...]:
         """Springs and dampers of the power circuit between its freedoms, splines as at test speed."""
-        if self.drivetrain is None:
-            return ()
-        return joints(self.twisting.parts(self.case.schedule.test_speed))
+        return self.parts.joints or joints(self.twisting.parts(self.case.schedule.test_speed))
 
     @cached_property
     def shaft_torsions(self) -> tuple[SectionTorsion, ...]:
         """Static torsion of the shafts at the largest torque of the schedule; empty without a drivetrain."""
-        power = self.case.drivetrain
-        if power is None or self.drivetrain is None:
+        if self.case.drivetrain is None:
             return ()
         torque = self.torque_ratio * max(abs(stage.torque_end) for stage in self.case.schedule.resolved())
         force = torque / self.pairs[self.control_mesh].base_radii[0]
-        return section_torsions(self.drivetrain, force, power.motor.torque_limit)
+        return section_torsions(self.drivetrain, force, self.case.power_circuit.motor.torque_limit)
 
     @cached_property
     def oil_circuits(self) -> Mapping[str, Circuit]:
@@ -190,21 +214,19 @@ class Rig:
     @cached_property
     def geometries(self) -> Mapping[str, HousingGeometry]:
         """Parametric housing of every gearbox that has one."""
-        return {
-            name: housing_geometry(box, self._gear_diameters(name))
-            for name, box in self.case.gearboxes.items()
-            if box.housing is not None
+        return self.parts.geometries or {
+            name: housing_geometry(self.case.gearboxes[name], self._gear_diameters(name))
+            for name in self.case.housings
         }
 
     @cached_property
     def models(self) -> Mapping[str, GearboxModel]:
         """Meshed housing of every gearbox that has one."""
-        return self.meshed(self.fidelity)
+        return self.parts.models or self.meshed(self.fidelity)
 
     def surface_names(self, name: str) -> tuple[str, ...]:
         """Surfaces of a housing that want a boundary condition: of the box, or all of a file."""
-        housing = self.case.gearboxes[name].housing
-        if housing is not None and housing.part_file is not None:
+        if self.case.housings[name].part_file is not None:
             return tuple(self.models[name].mesh.surfaces)
         return tuple(surface_names(self.geometries[name]))
 
@@ -212,36 +234,35 @@ class Rig:
         """The housings meshed at one fidelity, or so many times coarser; the case may give sizes for its zones."""
         models = {}
         for name, geometry in self.geometries.items():
-            housing = self.case.gearboxes[name].housing
-            assert housing is not None
+            housing = self.case.housings[name]
             sizes = mesh_sizes(geometry, fidelity, housing.mesh.sizes()).times(coarser)
             if housing.part_file is not None:
-                models[name] = user_model(name, self.case.gearboxes[name], geometry, self.case.path, sizes)
+                models[name] = user_model(self.case, name, housing.part_file, geometry, sizes)
                 continue
             models[name] = build_gearbox(geometry, sizes)
         return models
 
     def with_models(self, models: Mapping[str, GearboxModel]) -> "Rig":
         """This rig with housings that were meshed elsewhere."""
-        rig = replace(self)
-        rig.__dict__["models"] = models
-        return rig
+        return replace(self, parts=RigParts(models=models))
 
     def coarsened(self, coarsening: Coarsening) -> "Rig":
         """This rig with its loop divided otherwise; what the division leaves as it is, is not computed again."""
-        rig = replace(self, coarsening=coarsening)
-        kept = ["models", "topographies", "axes", "_seats"]
-        if coarsening.elements == self.coarsening.elements:
-            kept += ["drivetrain"]
-            if coarsening.modes == self.coarsening.modes:
-                kept += ["elastic"]
-        rig.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
-        return rig
+        bends, divided = self.shaft_model == "elastic", coarsening.elements == self.coarsening.elements
+        parts = RigParts(
+            models=self.models,
+            topographies=self.topographies,
+            axes=self.axes,
+            seats=self.seats if bends else None,
+            drivetrain=self.drivetrain if divided else None,
+            elastic=self.elastic if bends and divided and coarsening.modes == self.coarsening.modes else None,
+        )
+        return replace(self, coarsening=coarsening, parts=parts)
 
     @cached_property
     def conduction(self) -> Mapping[str, ConductionSetup]:
         """Conduction matrices of every housing, assembled once."""
-        return {
+        return self.parts.conduction or {
             name: ConductionSetup(
                 model.mesh, {b: m.conductivity for b, m in self.body_materials(name).items()}
             )
@@ -251,12 +272,12 @@ class Rig:
     @cached_property
     def chamber_views(self) -> ChamberViews:
         """View factors between the surfaces of the chambers that radiate at each other."""
-        return ChamberViews(self.conduction)
+        return self.parts.chamber_views or ChamberViews(self.conduction)
 
     @cached_property
     def expansion(self) -> Mapping[str, ExpansionSetup]:
         """Stiffness and supports of every housing, assembled once."""
-        return {
+        return self.parts.expansion or {
             name: ExpansionSetup(
                 model,
                 {
@@ -270,9 +291,7 @@ class Rig:
 
     def body_materials(self, name: str, model: GearboxModel | None = None) -> dict[str, Material]:
         """Material of every body of a housing, or of another model of it."""
-        box = self.case.gearboxes[name]
-        housing = box.housing
-        assert housing is not None
+        box, housing = self.case.gearboxes[name], self.case.housings[name]
         named = {"housing": housing.material, "field": housing.field.material}
         named |= {f"shaft_{shaft}": entry.material for shaft, entry in housing.shafts.items()}
         named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
@@ -281,7 +300,7 @@ class Rig:
     @cached_property
     def topographies(self) -> Mapping[str, FlankTopographies]:
         """Measured front and back flanks by ``gearbox.gear`` of the gears that have any."""
-        return flank_topographies(self.case, self.pairs)
+        return self.parts.topographies or flank_topographies(self.case, self.pairs)
 
     def topography(self, gear: str) -> FlankTopographies:
         """Measured front and back flanks of the gear ``gearbox.gear``."""
@@ -295,10 +314,11 @@ class Rig:
     @cached_property
     def elastic(self) -> ElasticDrivetrain:
         """The power circuit in six degrees of freedom; of a rig with a drivetrain only."""
-        assert self.drivetrain is not None
+        if self.parts.elastic is not None:
+            return self.parts.elastic
         case = self.case if self.residual_unbalance else without_residual_unbalance(self.case)
         return ElasticDrivetrain(
-            rig=elastic_rig(case, self.drivetrain, self.axes, self.pairs, self.materials, self._seats),
+            rig=elastic_rig(case, self.drivetrain, self.axes, self.pairs, self.materials, self.seats),
             faces={name: "back" if force < 0.0 else "front" for name, force in self.mesh_forces.items()},
             cutoff=highest_bending_mode(counted_frequency(self.case, self.drivetrain))
             / self.coarsening.modes,
@@ -306,58 +326,54 @@ class Rig:
         )
 
     @cached_property
-    def _seats(self) -> tuple[HousingSupport, ...]:
+    def seats(self) -> tuple[HousingSupport, ...]:
         """Housings condensed to their seats; their quick meshes are 1 % stiffer than the others."""
-        return housing_supports(
+        return self.parts.seats or housing_supports(
             self.case.gearboxes, self.axes, lambda: self.meshed("quick"), self.body_materials
         )
 
     @property
-    def mesh_names(self) -> tuple[str, ...]:
+    def mesh_names(self) -> tuple[MeshName, ...]:
         """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
         return tuple(self.pairs)
 
     @property
-    def mesh_labels(self) -> Mapping[str, str]:
+    def mesh_labels(self) -> Mapping[MeshName, str]:
         """Name of each mesh in results and checks: its gearbox, or ``gearbox.mesh`` where that has several."""
-        boxes = [name.split(".")[0] for name in self.mesh_names]
-        return {name: name if boxes.count(box) > 1 else box for name, box in zip(self.mesh_names, boxes)}
+        boxes = [name.gearbox for name in self.mesh_names]
+        return {name: name if boxes.count(name.gearbox) > 1 else name.gearbox for name in self.mesh_names}
 
     @property
-    def control_mesh(self) -> str:
+    def control_mesh(self) -> MeshName:
         """The mesh whose torque the case states: the first of all."""
         return next(iter(self.pairs))
 
     @property
     def torque_ratio(self) -> float:
         """Pinion torque of the control mesh per stated torque: 1, or z1/z2 if the case counts at a wheel."""
-        power = self.case.drivetrain
-        if power is None:
+        if self.case.drivetrain is None:
             return 1.0
-        gear = power.torque_at.split(".")[1]
+        gear = self.case.drivetrain.counting_gear.part
         box, mesh = self.mesh(self.control_mesh)
         pair = self.pairs[self.control_mesh]
         return 1.0 if box.meshes[mesh].pinion == gear else pair.teeth[0] / pair.teeth[1]
 
-    def mesh(self, name: str) -> tuple[Gearbox, str]:
-        """Gearbox and own name of the mesh ``gearbox.mesh``."""
-        box, mesh = name.split(".")
-        return self.case.gearboxes[box], mesh
+    def mesh(self, name: MeshName) -> tuple[Gearbox, str]:
+        """Gearbox and own name of a mesh."""
+        return self.case.gearboxes[name.gearbox], name.part
 
     def mesh_gear_name(self, mesh: int, index: int) -> str:
         """Own name of pinion (0) or wheel (1) of a mesh by its number."""
-        return self.mesh_gears(self.mesh_names[mesh])[index].split(".")[1]
+        return self.mesh_gears(self.mesh_names[mesh])[index].part
 
     def mesh_gear(self, mesh: int, index: int) -> Gear:
         """Pinion (0) or wheel (1) of a mesh by its number."""
         return self.mesh(self.mesh_names[mesh])[0].gears[self.mesh_gear_name(mesh, index)]
 
-    def mesh_gears(self, name: str) -> tuple[str, str]:
-        """Names ``gearbox.gear`` of pinion and wheel of a mesh."""
-        box_name = name.split(".")[0]
-        box, mesh = self.mesh(name)
-        entry = box.meshes[mesh]
-        return f"{box_name}.{entry.pinion}", f"{box_name}.{entry.wheel}"
+    def mesh_gears(self, name: MeshName) -> tuple[GearName, GearName]:
+        """Pinion and wheel of a mesh."""
+        entry = self.case.gearboxes[name.gearbox].meshes[name.part]
+        return GearName(name.gearbox, entry.pinion), GearName(name.gearbox, entry.wheel)
 
     def shaft_speed(self, shaft: str, speed: float) -> float:
         """Speed of a shaft [rad/s] at the stated speed [rad/s]."""
@@ -370,9 +386,7 @@ class Rig:
 
     def drive_speed(self, speed: float) -> float:
         """Speed of the motor [rad/s] at the stated speed [rad/s]."""
-        power = self.case.drivetrain
-        assert power is not None
-        return self.shaft_speed(power.motor.shaft, speed)
+        return self.shaft_speed(self.case.power_circuit.motor.shaft, speed)
 
     def prepare_teeth(self, say: Progress, count: Count | None = None) -> None:
         """Read or compute the influence numbers of all gears; ``count`` as of `ToothInfluence.prepare`."""
@@ -382,24 +396,28 @@ class Rig:
         """Speed of the shaft that is driven [rad/s] at the stated speed; without a drivetrain of the first pinion."""
         return abs(self.pinion_speed(speed) if self.case.drivetrain is None else self.drive_speed(speed))
 
-    def bearings(self) -> list[tuple[str, Gearbox, BearingInput]]:
-        """(``gearbox.bearing``, gearbox, bearing) of the whole rig."""
+    def bearings(self) -> list[tuple[BearingName, Gearbox, BearingInput]]:
+        """(name, gearbox, bearing) of the whole rig."""
         return [
-            (f"{box_name}.{name}", box, bearing)
+            (BearingName(box_name, name), box, bearing)
             for box_name, box in self.case.gearboxes.items()
             for name, bearing in box.bearings.items()
         ]
 
     def bearing(self, name: str) -> BearingInput:
-        """The bearing ``gearbox.bearing`` of the case."""
-        box, part = name.split(".")
-        return self.case.gearboxes[box].bearings[part]
+        """A bearing of the case by its name."""
+        return self._bearing_inputs[name]
+
+    @cached_property
+    def _bearing_inputs(self) -> dict[str, BearingInput]:
+        """All of them by their names."""
+        return {name: entry for name, _, entry in self.bearings()}
 
     def _gear_diameters(self, name: str) -> dict[str, float]:
         """Mean tooth diameter (d_a + d_f)/2 of each gear of a gearbox [m]."""
         diameters = {}
         for mesh_name, mesh in self.case.gearboxes[name].meshes.items():
-            pair = self.pairs[f"{name}.{mesh_name}"]
+            pair = self.pairs[MeshName(name, mesh_name)]
             for gear, member in zip((mesh.pinion, mesh.wheel), pair.gears):
                 diameters[gear] = 2.0 * member.mean_radius
         return diameters
@@ -427,8 +445,8 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         oils=oils,
         materials=materials,
         pairs=pairs,
-        mesh_stiffness="iso_6336_scaled" if case.drivetrain is None else case.drivetrain.mesh_stiffness,
-        shaft_model="torsional" if case.drivetrain is None else case.drivetrain.shaft_model,
+        mesh_stiffness=case.power_circuit.mesh_stiffness,
+        shaft_model=case.power_circuit.shaft_model,
         tooth_influence=ToothInfluence(positions=QUICK_POSITIONS if fidelity == "quick" else FACE_POSITIONS),
     )
     refuse_broken_shafts(rig.shaft_torsions, str(case.path))
@@ -439,13 +457,13 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     return rig
 
 
-def _control_mesh(case: Case) -> str:
+def _control_mesh(case: Case) -> MeshName:
     """The first mesh of the gear at which torque and speed count; of all, without a drivetrain."""
-    wanted = None if case.drivetrain is None else case.drivetrain.torque_at.split(".")
+    wanted = None if case.drivetrain is None else case.drivetrain.counting_gear
     for box_name, box in case.gearboxes.items():
         for name, mesh in box.meshes.items():
-            if wanted is None or (wanted[0] == box_name and wanted[1] in (mesh.pinion, mesh.wheel)):
-                return f"{box_name}.{name}"
+            if wanted is None or (wanted.gearbox == box_name and wanted.part in (mesh.pinion, mesh.wheel)):
+                return MeshName(box_name, name)
     raise ValueError(f"drivetrain.torque_at = {wanted}: this gear is in no mesh; name one that is")
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.gearbox import Gearbox, injected_flow
 from rigdesign.case.lubrication import JetOil
 from rigdesign.properties.oil import Oil
@@ -91,10 +92,10 @@ class ChamberOil:
 def meant_supplies(rig: Rig) -> dict[str, float]:
     """Supply temperature that each oil stream of an oil circuit is meant to have [K], by ``gearbox.stream``."""
     return {
-        stream: rig.case.gearboxes[stream.split(".")[0]].feeds[stream.split(".")[1]][0].inlet_temperature
+        stream: rig.case.gearboxes[stream.gearbox].feeds[stream.part][0].inlet_temperature
         for circuit in rig.case.oil_circuits.values()
         for line in circuit.lines.values()
-        for stream in line.consumers
+        for stream in map(OilStreamName.read, line.consumers)
     }
 
 

@@ -94,15 +94,15 @@ def _element_length(shaft: Shaft, frequency: float) -> float:
 # Speeds of shafts, relative to the gear at which test speed and torque are counted, and of the driving machines.
 
 
-def speed_ratios(case: Case, drivetrain: Drivetrain | None) -> dict[str, float]:
+def speed_ratios(case: Case, drivetrain: Drivetrain) -> dict[str, float]:
     """Shaft -> speed ratio to the gear ``drivetrain.torque_at``; magnitude only, every shaft runs forward.
 
     Without a drivetrain the pinion of the first mesh of each gearbox runs at the test speed.
     """
-    if drivetrain is None or case.drivetrain is None:
+    if case.drivetrain is None:
         return _by_gearbox(case)
     ratios = parts.speed_ratios(drivetrain)
-    reference = ratios[drivetrain.gear(case.drivetrain.torque_at).shaft]
+    reference = ratios[drivetrain.gear(case.power_circuit.torque_at).shaft]
     return {shaft: ratio / reference for shaft, ratio in ratios.items()}
 
 

@@ -1,47 +1,69 @@
-"""What one rig may take over from another: cached parts that the difference between their cases leaves as they are."""
+"""What one rig may take over from another: derived parts that the difference between their cases leaves as they are."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 
 from dynamics.rotor.rotor_model import ElasticRig, HousingSupport
-from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.model import Case
 from rigdesign.rig.model import Rig
 
-HOUSINGS = ("models", "conduction", "chamber_views")
-"""Cached parts of a rig that depend on geometry and materials of its housings alone, as ``expansion`` does."""
-TWISTING = ("drivetrain", "twisting", "system", "joints")
-"""Cached parts that depend on the parts of the power circuit alone."""
 LOADS = ("rotating", "misalignments")
 """Fields of an elastic rig that load its shafts and leave its modes as they are."""
 
 
-def take_over(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
-    """Let ``rig`` use what ``source`` computes; computed now, so that no two rigs compute it twice.
+def with_housings_of(rig: Rig, source: Rig) -> Rig:
+    """The rig with what ``source`` computes of geometry and materials of its housings alone; computed now, so that no
+    two rigs compute it twice.
 
-    ``models`` bring the expansion set-up with them where every housing has one. Of a power circuit nothing is taken
-    over where there is none.
+    The expansion set-up comes along where every housing has one.
     """
-    for name in parts:
-        if name in TWISTING and source.drivetrain is None:
-            continue
-        rig.__dict__[name] = getattr(source, name)
-    if "models" in parts and not any(model.no_expansion for model in source.models.values()):
-        rig.__dict__["expansion"] = source.expansion
-    return rig
+    expands = not any(model.no_expansion for model in source.models.values())
+    parts = replace(
+        rig.parts,
+        models=source.models,
+        conduction=source.conduction,
+        chamber_views=source.chamber_views,
+        expansion=source.expansion if expands else None,
+    )
+    return replace(rig, parts=parts)
 
 
-def share_elastic(rig: Rig, source: Rig) -> None:
-    """Let ``rig`` use what ``source`` knows of shafts that bend, as far as their parts are the same."""
+def with_circuit_of(rig: Rig, source: Rig) -> Rig:
+    """The rig with what ``source`` computes of the parts of the power circuit alone; of none where there is none."""
+    if source.case.drivetrain is None:
+        return rig
+    parts = replace(rig.parts, drivetrain=source.drivetrain, twisting=source.twisting, joints=source.joints)
+    return replace(rig, parts=parts)
+
+
+def with_all_of(rig: Rig, source: Rig) -> Rig:
+    """The rig with what ``source`` computes and no setting of an operating point touches."""
+    rig = with_circuit_of(with_housings_of(rig, source), source)
+    bends = source.shaft_model == "elastic"
+    parts = replace(
+        rig.parts,
+        geometries=source.geometries,
+        speed_ratios=source.speed_ratios,
+        mesh_forces=source.mesh_forces,
+        axes=source.axes if bends else None,
+        elastic=source.elastic if bends else None,
+    )
+    return replace(rig, parts=parts)
+
+
+def with_elastic_of(rig: Rig, source: Rig) -> Rig:
+    """The rig with what ``source`` knows of shafts that bend, as far as their parts are the same."""
     if _seated(rig) == _seated(source) and same_housings(rig, source):
-        take_over(rig, source, ("_seats",))
-    own, other = rig.elastic, source.elastic
-    if (own.faces, own.cutoff, own.pressed) != (other.faces, other.cutoff, other.pressed):
-        return
-    if _same_parts(own.rig, other.rig):
-        rig.__dict__["elastic"] = other
-    elif _same_parts(own.rig, other.rig, LOADS):
-        own.take_basis(other)
+        rig = replace(rig, parts=replace(rig.parts, seats=source.seats))
+    elastic, other = rig.elastic, source.elastic
+    if (elastic.faces, elastic.cutoff, elastic.pressed) == (other.faces, other.cutoff, other.pressed):
+        if _same_parts(elastic.rig, other.rig):
+            elastic = other
+        elif _same_parts(elastic.rig, other.rig, LOADS):
+            elastic = elastic.with_basis_of(other)
+    parts = replace(rig.parts, elastic=elastic, axes=rig.axes, drivetrain=rig.drivetrain)
+    return replace(rig, parts=parts)
 
 
 def _seated(rig: Rig) -> tuple[object, ...]:
@@ -77,14 +99,12 @@ def same_housings(rig: Rig, stated: Rig) -> bool:
     """Whether meshes, conductivities and stiffnesses of the housings are the same."""
     if dict(rig.geometries) != dict(stated.geometries) or dict(rig.materials) != dict(stated.materials):
         return False
-    boxes, others = rig.case.gearboxes, stated.case.gearboxes
-    return all(_made_of(boxes[name]) == _made_of(others[name]) for name in stated.geometries)
+    return all(_made_of(rig.case, name) == _made_of(stated.case, name) for name in stated.geometries)
 
 
-def _made_of(box: Gearbox) -> tuple[object, ...]:
+def _made_of(case: Case, name: str) -> tuple[object, ...]:
     """What a housing is meshed from in addition to its geometry, and its materials with those of shafts and gears."""
-    housing = box.housing
-    assert housing is not None
+    box, housing = case.gearboxes[name], case.housings[name]
     shafts = [shaft.material for shaft in housing.shafts.values()]
     gears = [gear.material for gear in box.gears.values()]
     contact = housing.foot_contact is None

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.gear.pair import GearPair
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.model import Case
 from rigdesign.case.rotation import pinion_sense
 
@@ -58,18 +59,17 @@ class LineOfAction:
         return np.asarray(flank * cosine * self.tangent + sine * self.centres)
 
 
-def shaft_axes(case: Case, pairs: Mapping[str, GearPair]) -> dict[str, ShaftAxis]:
+def shaft_axes(case: Case, pairs: Mapping[MeshName, GearPair]) -> dict[str, ShaftAxis]:
     """Axes of all shafts with gears, and of those that couplings join to them, by name.
 
     The first pair of ``pairs`` is that of the stated torque. Gearboxes that nothing joins stand each for itself.
     """
     found: dict[str, ShaftAxis] = {}
     for name in pairs:
-        box_name, own = name.split(".")
-        box = case.gearboxes[box_name]
-        pinion = box.gears[box.meshes[own].pinion].shaft
+        box = case.gearboxes[name.gearbox]
+        pinion = box.gears[box.meshes[name.part].pinion].shaft
         lateral = 0.0 if box.housing is None else box.housing.shafts[pinion].lateral_position
-        sense = pinion_sense(box, own)
+        sense = pinion_sense(box, name.part)
         found.setdefault(
             pinion, ShaftAxis(lateral=lateral, vertical=0.0, start=0.0, direction=1.0, sense=sense)
         )
@@ -88,9 +88,7 @@ def line_of_action(pinion: ShaftAxis, wheel: ShaftAxis) -> LineOfAction:
 
 def _coupled(case: Case, found: Mapping[str, ShaftAxis]) -> Iterator[tuple[str, ShaftAxis]]:
     """Shafts that a coupling joins to one that is known, with their axes."""
-    if case.drivetrain is None:
-        return
-    for coupling in case.drivetrain.couplings.values():
+    for coupling in case.power_circuit.couplings.values():
         for here, there in ((0, 1), (1, 0)):
             known, other = coupling.shafts[here], coupling.shafts[there]
             if known in found and other not in found:
@@ -116,18 +114,17 @@ def _start_by_mesh(case: Case, shaft: str, direction: float, found: Mapping[str,
 
 
 def _meshing(
-    case: Case, pairs: Mapping[str, GearPair], found: Mapping[str, ShaftAxis]
+    case: Case, pairs: Mapping[MeshName, GearPair], found: Mapping[str, ShaftAxis]
 ) -> Iterator[tuple[str, ShaftAxis]]:
     """Shafts whose gears mesh with one that is known, with their axes."""
     for name, pair in pairs.items():
-        box_name, own = name.split(".")
-        box = case.gearboxes[box_name]
-        mesh = box.meshes[own]
+        box = case.gearboxes[name.gearbox]
+        mesh = box.meshes[name.part]
         gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
         for known, other in (gears, gears[::-1]):
             if known.shaft in found and other.shaft not in found:
                 axis = found[known.shaft]
-                side = _side(case, pairs, box_name, (known.shaft, other.shaft), found)
+                side = _side(case, pairs, name.gearbox, (known.shaft, other.shaft), found)
                 yield (
                     other.shaft,
                     ShaftAxis(
@@ -142,14 +139,13 @@ def _meshing(
 
 def _end(case: Case, shaft: str, end: str) -> float:
     """Position of an end of a shaft [m]."""
-    assert case.drivetrain is not None
-    sections = case.drivetrain.shafts[shaft].sections
+    sections = case.power_circuit.shafts[shaft].sections
     return 0.0 if end == "start" else math.fsum(section.length for section in sections)
 
 
 def _side(
     case: Case,
-    pairs: Mapping[str, GearPair],
+    pairs: Mapping[MeshName, GearPair],
     box_name: str,
     shafts: tuple[str, str],
     found: Mapping[str, ShaftAxis],
@@ -164,7 +160,9 @@ def _side(
     for name, mesh in box.meshes.items():
         pair = box.gears[mesh.pinion].shaft, box.gears[mesh.wheel].shaft
         if other in pair:
-            distances[pair[0] if pair[1] == other else pair[1]] = pairs[f"{box_name}.{name}"].centre_distance
+            distances[pair[0] if pair[1] == other else pair[1]] = pairs[
+                MeshName(box_name, name)
+            ].centre_distance
 
     def miss(side: float) -> tuple[float, bool]:
         y = found[known].lateral + side * distances[known]

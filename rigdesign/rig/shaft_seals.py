@@ -65,7 +65,7 @@ def _exits(case: Case, box_name: str, shaft_name: str) -> Iterator[ShaftSeal]:
     edges = _bearing_edges(case.gearboxes[box_name], shaft_name)
     if not edges:
         return
-    shaft = case.drivetrain.shafts[shaft_name]
+    shaft = case.power_circuit.shafts[shaft_name]
     ends = _joined_ends(case.drivetrain, shaft_name)
     beyond = [
         place

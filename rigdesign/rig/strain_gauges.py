@@ -9,6 +9,7 @@ from dynamics.gear.cylindrical_gear import CylindricalGear
 from dynamics.gear.pair import GearPair
 from dynamics.gear.root_arc import RootArc, root_arc
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.base.part_name import GearName, MeshName
 from rigdesign.base.units import show
 from rigdesign.case.gears import PLACES, Gear, StrainBridge, StrainGaugeInput
 from rigdesign.case.model import Case
@@ -25,18 +26,19 @@ KINDS = {"tangent_angle": "angle", "root_diameter": "length"}
 class RootGauge:
     """A strain gauge on a tooth.
 
-    gear : ``gearbox.gear``; tooth : its number, from 0; front : under the front flank, else under the back flank
+    tooth : its number, from 0; front : under the front flank, else under the back flank
     point : gauge, bridge, surface and place on the root
     """
 
-    gear: str
+    name: str
+    gear: GearName
     tooth: int
     front: bool
     point: MeasuringPoint
 
 
 def root_gauges(
-    case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+    case: Case, pairs: Mapping[MeshName, GearPair], materials: Mapping[str, Material]
 ) -> dict[str, RootGauge]:
     """Strain gauges of all gears by ``gearbox.gear.gauge``.
 
@@ -50,7 +52,8 @@ def root_gauges(
     faults: list[Fault] = []
     for box_name, box in case.gearboxes.items():
         toothings = {
-            gear: pairs[f"{box_name}.{mesh}"].gears[side] for gear, (mesh, side) in box.first_meshes().items()
+            gear: pairs[MeshName(box_name, mesh)].gears[side]
+            for gear, (mesh, side) in box.first_meshes().items()
         }
         for gear_name, gear in box.gears.items():
             for name, entry in gear.strain_gauges.items():
@@ -61,7 +64,8 @@ def root_gauges(
                     faults += error.faults
                     continue
                 found[f"{box_name}.{gear_name}.{name}"] = RootGauge(
-                    gear=f"{box_name}.{gear_name}",
+                    name=name,
+                    gear=GearName(box_name, gear_name),
                     tooth=entry.tooth,
                     front=entry.fillet == "front",
                     point=point,

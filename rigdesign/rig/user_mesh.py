@@ -18,6 +18,7 @@ from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.housing import Housing
+from rigdesign.case.model import Case
 from rigdesign.case.rules.surfaces import boundary_faults
 from thermal.fe.kept_results import kept
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
@@ -57,9 +58,9 @@ NamedRules = tuple[tuple[str, tuple[FaceRule, ...]], ...]
 
 
 def user_model(
-    name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Path, sizes: MeshSizes
+    case: Case, name: str, part_file: str, geometry: HousingGeometry, sizes: MeshSizes
 ) -> GearboxModel:
-    """Model of the mesh or STEP file of gearbox ``name``, next to its ``case`` file.
+    """Model of the mesh or STEP file of gearbox ``name``, next to the file of its case.
 
     sizes : of the elements of a STEP file
 
@@ -70,31 +71,30 @@ def user_model(
         without a material, surfaces without a condition or conditions without a surface, a part of another size than
         the case says.
     """
-    housing = gearbox.housing
-    assert housing is not None and housing.part_file is not None
+    gearbox, housing = case.gearboxes[name], case.housings[name]
     key = "mesh_file" if housing.mesh_file is not None else "step_file"
-    at, given = f"gearboxes.{name}.housing.{key}", f'"{housing.part_file}"'
-    file = case.parent / housing.part_file
-    with _file_faults(at, given, case):
+    at, given = f"gearboxes.{name}.housing.{key}", f'"{part_file}"'
+    file = case.path.parent / part_file
+    with _file_faults(at, given, case.path):
         check_regular(file, LARGEST_MESH if key == "mesh_file" else LARGEST_STEP)
         step = key == "step_file"
         if step and (wrong := _size_faults(at, given, _outside(housing, part_size(file)))):
-            raise CaseError(wrong, str(case))  # meshed by mistake it would never end
+            raise CaseError(wrong, str(case.path))  # meshed by mistake it would never end
         part = _Part(file, file.stat().st_mtime_ns, _face_rules(housing), sizes.wall, sizes.circle, step)
         mesh = _read(part)
         if wrong := _size_faults(at, given, _measures(mesh, geometry, housing)):
-            raise CaseError(wrong, str(case))
+            raise CaseError(wrong, str(case.path))
         drawn = _Drawn(_drawn_shafts(housing, geometry, mesh), _foot_width(geometry, mesh))
         model = _whole(part, geometry, drawn, sizes)
     faults = _part_faults(at, given, gearbox, geometry, model)
     joined = joined_surfaces(geometry)
     surfaces = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
-    if faults := [*faults, *boundary_faults(name, gearbox, surfaces)]:
-        raise CaseError(faults, str(case))
+    if faults := [*faults, *boundary_faults(name, gearbox, housing, surfaces)]:
+        raise CaseError(faults, str(case.path))
     return model
 
 
-def step_part(name: str, gearbox: Gearbox, case: Path, size: float) -> StepPart:
+def step_part(case: Case, name: str, step_file: str, size: float) -> StepPart:
     """Faces of the STEP file of gearbox ``name`` with triangles of about ``size`` [m], whether or not all have a name.
 
     Raises
@@ -102,13 +102,11 @@ def step_part(name: str, gearbox: Gearbox, case: Path, size: float) -> StepPart:
     CaseError
         A file that is no part to compute with.
     """
-    housing = gearbox.housing
-    assert housing is not None and housing.step_file is not None
-    at, given = f"gearboxes.{name}.housing.step_file", f'"{housing.step_file}"'
-    with _file_faults(at, given, case):
-        file = case.parent / housing.step_file
+    at, given = f"gearboxes.{name}.housing.step_file", f'"{step_file}"'
+    with _file_faults(at, given, case.path):
+        file = case.path.parent / step_file
         check_regular(file, LARGEST_STEP)
-        return read_part(file, dict(_face_rules(housing)), size)
+        return read_part(file, dict(_face_rules(case.housings[name])), size)
 
 
 @contextmanager

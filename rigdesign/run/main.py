@@ -130,7 +130,7 @@ def solve_case(
             lap("other_meshes")
         _ = compilation.results()
     wanted = rigs[-1]
-    if rig.drivetrain is not None:
+    if rig.case.drivetrain is not None:
         require_damping(rig, held_crossings(rig, governing_point(converged)))
     say("response over speed, time run over the schedule")
     with BackgroundTasks(_time_runs(rig, converged)) as time_run, one_thread(), one_core():
@@ -145,7 +145,7 @@ def solve_case(
         spreads = tuple(law_spreads(wanted, points))
         lap("alternatives")
         run = None
-        if rig.drivetrain is not None:
+        if rig.case.drivetrain is not None:
             curves = solve_curves(rig, governing_point(converged).last)
             lap("curves")
             run = DynamicRun(tuple(converged), curves, lambda: time_run.results()[0])
@@ -174,7 +174,7 @@ def solve_case(
 
 def _compilation(rig: Rig, say: Progress) -> list[Callable[[], None]]:
     """Compiling the time integration, which the coupling loop does not need; nothing where it lies on disk."""
-    if rig.drivetrain is None or compiled():
+    if rig.case.drivetrain is None or compiled():
         return []
     say("compiling the time integration meanwhile: once after an installation, half a minute")
     return [compile_time_integration]
@@ -182,7 +182,7 @@ def _compilation(rig: Rig, say: Progress) -> list[Callable[[], None]]:
 
 def _time_runs(rig: Rig, converged: Sequence[PointResult]) -> list[Callable[[], TimeResponse]]:
     """The time run, which needs no more of the points than their warm gears; none without a drivetrain."""
-    if rig.drivetrain is None:
+    if rig.case.drivetrain is None:
         return []
     test = governing_point(converged)
     assert test.setting is not None

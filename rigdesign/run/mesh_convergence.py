@@ -46,7 +46,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.housing import HousingTemperatures
 from rigdesign.results.result import DiscretisationRow, MeshShift
 from rigdesign.results.units import MM, UM, ZERO
-from rigdesign.rig.model import Rig
+from rigdesign.rig.model import Rig, RigParts
 from rigdesign.rig.resolution import Coarsening
 from thermal.conduction.capacity import StoredHeat
 from thermal.errors import ThermalError
@@ -275,7 +275,7 @@ COARSER: dict[Fidelity, tuple[MeshOf, ...]] = {
 
 def looping_rig(rig: Rig) -> Rig:
     """The rig on which the coupling iterates: at reference that of the standard mesh."""
-    return replace(rig, fidelity="standard") if rig.fidelity == "reference" else rig
+    return replace(rig, fidelity="standard", parts=RigParts()) if rig.fidelity == "reference" else rig
 
 
 class BackgroundMeshing:

@@ -129,8 +129,7 @@ def worst_misalignments(
 def limit_of(case: Case, quantity: Misalignment, place: str) -> float | None:
     """Limit of a misalignment [SI]; that of a coupling is its own."""
     if quantity in ("coupling_offset", "coupling_angle"):
-        assert case.drivetrain is not None
-        coupling = case.drivetrain.couplings[place]
+        coupling = case.power_circuit.couplings[place]
         return coupling.radial_offset_maximum if quantity == "coupling_offset" else coupling.angle_maximum
     found: float | None = getattr(case.limits.alignment, f"{quantity}_maximum")
     return found

@@ -132,7 +132,7 @@ def _response(solved: SolvedRig) -> Iterator[str]:
 def _deviating_teeth(solved: SolvedRig) -> Iterator[str]:
     """What single teeth and alternating torques add beyond the period of the periodic response."""
     rig = solved.rig
-    if rig.drivetrain is None or not solved.points:
+    if rig.case.drivetrain is None or not solved.points:
         return
     laws = laws_of(solved.points[-1].last.models)
     missing = [f"{gear}: its teeth differ" for gear in averaged_gears(rig, laws)]
@@ -212,10 +212,9 @@ def _load_errors(solved: SolvedRig) -> Iterator[str]:
 
 
 def _sampling(solved: SolvedRig) -> Iterator[str]:
-    drivetrain = solved.rig.drivetrain
-    if drivetrain is not None:
+    if solved.case.drivetrain is not None:
         speed = solved.rig.drive_speed(solved.test.point.speed)
-        audits = sampling_audit(drivetrain, speed, solved.case.numerics.sample_rate)
+        audits = sampling_audit(solved.rig.drivetrain, speed, solved.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
         modes = () if solved.loads is None else solved.loads.modes
         yield from (

@@ -15,7 +15,7 @@ from typing import Literal
 from rigdesign.base.errors import CaseError, RigdesignError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.worker_pool import DIED, compute_all, worker_count
-from rigdesign.case.assumptions import AssumptionRecord
+from rigdesign.case.fields import AssumptionRecord, RangeEnds
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks import held_checks
@@ -77,7 +77,7 @@ def plan(case: Case, checks: Sequence[Check]) -> tuple[list[RangeEnd], list[Left
         if record.path not in decisive:
             left.append(LeftOut(path=record.path, reason="no check that applies depends on it"))
             continue
-        ends += _ends(case, record, tied_inputs(case, record))
+        ends += _ends(case, record, record.range, tied_inputs(case, record))
         moved |= {end_path for end in ends[-2:] for end_path in (end.path, *end.together_with)}
     return ends, left
 
@@ -97,11 +97,12 @@ def tied_inputs(case: Case, record: AssumptionRecord) -> tuple[str, ...]:
     return tuple(r.path for r in case.assumptions if r.path in alike and (r.value, r.range) == same)
 
 
-def _ends(case: Case, record: AssumptionRecord, tied: tuple[str, ...]) -> Iterator[RangeEnd]:
-    assert record.range is not None
+def _ends(
+    case: Case, record: AssumptionRecord, limits: RangeEnds, tied: tuple[str, ...]
+) -> Iterator[RangeEnd]:
     before = case.model_dump()
     ends: tuple[End, End] = ("low", "high")
-    for end, value in zip(ends, record.range, strict=True):
+    for end, value in zip(ends, limits, strict=True):
         changed, error = None, None
         try:
             changed = changed_together(case, dict.fromkeys((record.path, *tied), value))
@@ -206,6 +207,9 @@ class Ranged:
     """One check of the run with every end that was solved, and the ends it depends on that were not."""
 
     check: Check
+    margin: float
+    distance: float
+    """Of the check as stated."""
     ends: tuple[Shifted, ...]
     unsolved: tuple[tuple[RangeEnd, str], ...]
 
@@ -217,7 +221,8 @@ def ranged_checks(
     found = []
     for check in checks:
         reference = stated.checks.get(check.id)
-        if check.margin is None or reference is None or reference.margin is None:
+        margin, distance = check.margin, check.distance
+        if margin is None or distance is None or reference is None or reference.margin is None:
             continue
         solved, unsolved = [], []
         for end, outcome in ends:
@@ -225,21 +230,28 @@ def ranged_checks(
             if outcome.error is not None:
                 unsolved += [(end, outcome.error)] if end.path in check.assumptions else []
             elif at_end is not None and at_end.margin is not None:
-                solved.append(_shifted(check, reference, at_end, end))
-        found.append(Ranged(check=check, ends=tuple(solved), unsolved=tuple(unsolved)))
+                moved = margin + _difference(at_end.margin, reference.margin)
+                solved.append(
+                    Shifted(
+                        end=end,
+                        margin=moved,
+                        distance=distance + _difference(at_end.distance, reference.distance),
+                        verdict=_verdict(check, reference, at_end, moved),
+                    )
+                )
+        ranged = Ranged(
+            check=check, margin=margin, distance=distance, ends=tuple(solved), unsolved=tuple(unsolved)
+        )
+        found.append(ranged)
     return found
 
 
-def _shifted(check: Check, reference: CheckAtEnd, at_end: CheckAtEnd, end: RangeEnd) -> Shifted:
-    assert check.margin is not None and check.distance is not None
-    margin = check.margin + _difference(at_end.margin, reference.margin)
-    distance = check.distance + _difference(at_end.distance, reference.distance)
+def _verdict(check: Check, reference: CheckAtEnd, at_end: CheckAtEnd, margin: float) -> Verdict:
+    """Of a check whose margin is shifted to ``margin``."""
     verdict = check.verdict if at_end.verdict == reference.verdict else at_end.verdict
     if margin < 0.0:
-        verdict = "fail"
-    elif verdict == "fail":
-        verdict = "pass"
-    return Shifted(end=end, margin=margin, distance=distance, verdict=verdict)
+        return "fail"
+    return "pass" if verdict == "fail" else verdict
 
 
 def _difference(at_end: float | None, reference: float | None) -> float:
@@ -255,8 +267,7 @@ def judged(ranged: Ranged) -> Check:
     A check that fails as stated stays failed; an end at which it would hold is named.
     """
     check = ranged.check
-    assert check.margin is not None
-    if check.margin < 0.0:
+    if ranged.margin < 0.0:
         held = [end for end in ranged.ends if end.margin >= 0.0]
         return replace(
             check, reason=_joined(check.reason, [_words(end, check, "would hold") for end in held])
@@ -283,55 +294,52 @@ def _joined(*parts: str | list[str]) -> str:
 
 def check_range(ranged: Ranged, final: Check) -> CheckRange:
     """One line of the table of checks over all ranges."""
-    check = ranged.check
-    assert check.margin is not None
+    check, margin = ranged.check, ranged.margin
     worst = min(ranged.ends, key=lambda end: end.margin, default=None)
     best = max(ranged.ends, key=lambda end: end.margin, default=None)
-    worst = worst if worst is not None and worst.margin < check.margin else None
-    best = best if best is not None and best.margin > check.margin else None
+    worst = worst if worst is not None and worst.margin < margin else None
+    best = best if best is not None and best.margin > margin else None
     lost: dict[str, float] = {}
     for end in ranged.ends:
-        lost[end.end.path] = min(lost.get(end.end.path, 0.0), end.margin - check.margin)
+        lost[end.end.path] = min(lost.get(end.end.path, 0.0), end.margin - margin)
     return CheckRange(
         check=check.id,
         unit=check.unit,
         verdict_stated=check.verdict,
         verdict=final.verdict,
-        margin=check.margin,
-        worst_margin=check.margin if worst is None else worst.margin,
+        margin=margin,
+        worst_margin=margin if worst is None else worst.margin,
         worst_path=None if worst is None else worst.end.path,
         worst_value=None if worst is None else worst.end.value,
-        best_margin=check.margin if best is None else best.margin,
+        best_margin=margin if best is None else best.margin,
         best_path=None if best is None else best.end.path,
-        distance=check.distance,
-        worst_distance=min((end.distance for end in ranged.ends), default=check.distance),
-        best_distance=max((end.distance for end in ranged.ends), default=check.distance),
-        all_worst_margin=check.margin + sum(lost.values()),
+        distance=ranged.distance,
+        worst_distance=min((end.distance for end in ranged.ends), default=ranged.distance),
+        best_distance=max((end.distance for end in ranged.ends), default=ranged.distance),
+        all_worst_margin=margin + sum(lost.values()),
         decided_by=tuple(deciding(ranged)),
     )
 
 
 def deciding(ranged: Ranged) -> list[str]:
     """Inputs of which one end changes whether the check holds."""
-    assert ranged.check.margin is not None
-    holds = ranged.check.margin >= 0.0
+    holds = ranged.margin >= 0.0
     return list(dict.fromkeys(end.end.path for end in ranged.ends if (end.margin >= 0.0) != holds))
 
 
 def moving_margins(ranged: Ranged) -> list[RangeMargin]:
     """The inputs that move the check, the strongest first."""
-    check = ranged.check
-    assert check.distance is not None
     by_path: dict[str, dict[str, Shifted]] = {}
     for end in ranged.ends:
         by_path.setdefault(end.end.path, {})[end.end.end] = end
     moves = {
-        path: max(abs(end.distance - check.distance) for end in ends.values())
+        path: max(abs(end.distance - ranged.distance) for end in ends.values())
         for path, ends in by_path.items()
     }
     listed = [path for path in by_path if moves[path] > LEAST_MOVE]
     return [
-        _margin(check, path, by_path[path]) for path in sorted(listed, key=lambda path: (-moves[path], path))
+        _margin(ranged.check, path, by_path[path])
+        for path in sorted(listed, key=lambda path: (-moves[path], path))
     ]
 
 

@@ -19,7 +19,7 @@ from rigdesign.studies.assumed_ranges import tied_inputs
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
-    from rigdesign.case.assumptions import AssumptionRecord
+    from rigdesign.case.fields import RangeEnds
 
 MAX_POINTS = 100_000
 KELVIN_STEPS = {"degC", "°C", "celsius", "degree_Celsius"}
@@ -373,7 +373,7 @@ def assumed_ranges(case: "Case") -> Iterable[InputRange]:
         if record.range is not None and record.path not in moved:
             tied = tied_inputs(case, record)
             moved |= {record.path, *tied}
-            found.append(_assumed_range(case, record, tied))
+            found.append(_assumed_range(case, record.path, record.range, tied))
     if not found:
         raise UsageError(
             f"--vary {ASSUMED}: case {case.name} states no assumed input with a range; write "
@@ -382,20 +382,19 @@ def assumed_ranges(case: "Case") -> Iterable[InputRange]:
     return found
 
 
-def _assumed_range(case: "Case", record: "AssumptionRecord", tied: tuple[str, ...]) -> InputRange:
+def _assumed_range(case: "Case", path: str, limits: "RangeEnds", tied: tuple[str, ...]) -> InputRange:
     """Both ends in the unit of the lower one."""
-    assert record.range is not None
-    ends = [number_match(str(end)) for end in record.range]
+    ends = [number_match(str(end)) for end in limits]
     numbers = [(float(end[1]), end[2]) for end in ends if end]
     (low, unit), (high, other) = numbers
     if unit != other:
-        kind = units.kind_of(record.range[0])
+        kind = units.kind_of(limits[0])
         assert kind is not None
-        both = [units.show(units.parse(end, kind), kind, digits=12) for end in record.range]
+        both = [units.show(units.parse(end, kind), kind, digits=12) for end in limits]
         low, high = (float(text.partition(" ")[0]) for text in both)
         unit = both[0].partition(" ")[2]
-    whole = case.input_kind(record.path) == "whole number"
-    return InputRange(record.path, low, high, unit, whole=whole, together_with=tied)
+    whole = case.input_kind(path) == "whole number"
+    return InputRange(path, low, high, unit, whole=whole, together_with=tied)
 
 
 def tolerance_in(entry: InputRange, text: str) -> float:

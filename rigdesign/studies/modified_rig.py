@@ -16,7 +16,7 @@ from rigdesign.postprocessing.housing import housing_temperatures
 from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+from rigdesign.rig.reuse import same_housings, with_housings_of
 from rigdesign.studies.shifted_run import Array, shifted_drive, shifted_run
 
 # Which parts of the model an input touches, and which inputs reach the loads through temperatures alone.
@@ -131,10 +131,8 @@ def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
         return None
     if case.losses.bearing_drag == "constant" and any(".loss_factors" in path for path in in_heat):
         return None
-    power = case.drivetrain
-    steady = power is None or (
-        power.bracing.mode == "torque_controlled" and power.bracing.temperature_drift == 0.0
-    )
+    bracing = case.power_circuit.bracing
+    steady = bracing.mode == "torque_controlled" and bracing.temperature_drift == 0.0
     shifted = steady and all(path in in_heat or "time run" not in parts_of(path) for path in changed)
     return Reanalysis(case, parts, "shifted" if shifted else "marched")
 
@@ -224,7 +222,7 @@ def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
     """The rig of ``case``; it takes over what the stated rig has computed and the change does not touch."""
     rig = replace(build_rig(case, stated.fidelity), tooth_influence=stated.tooth_influence)
     if "coupling" not in parts or same_housings(rig, stated):
-        take_over(rig, stated, HOUSINGS)
+        rig = with_housings_of(rig, stated)
     return rig
 
 

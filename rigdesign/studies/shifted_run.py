@@ -185,7 +185,6 @@ def losses_on_motor(rig: Rig, warm: IterationResult, ramp: TimeResponse) -> Arra
 
 def drag_on_motor(rig: Rig, warm: IterationResult, ramp: TimeResponse) -> Array:
     """Torque of all drags at the motor over the time of the run [N m], (n,)."""
-    assert rig.drivetrain is not None
     curves: Mapping[str, DragCurve] = drag_curves(rig, warm, warm.coupling_state)
     shafts = drag_shafts(rig.drivetrain)
     total = np.zeros(len(ramp.time))

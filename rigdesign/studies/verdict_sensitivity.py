@@ -29,7 +29,7 @@ from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.result import Flip, FlipSearch, RunResult
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+from rigdesign.rig.reuse import same_housings, with_housings_of
 from rigdesign.run.solver_errors import solver_errors
 from rigdesign.studies.modified_rig import coupled_again, with_records
 
@@ -305,7 +305,7 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
             rig, tooth_influence=stated.rig.tooth_influence.for_widths_near(stated.rig.pairs.values())
         )
         if not through_heat or same_housings(rig, stated.rig):
-            take_over(rig, stated.rig, HOUSINGS)
+            rig = with_housings_of(rig, stated.rig)
         point = coupled_again if through_heat else _at_stated_temperatures
         points = [point(rig, stated, number) for number in range(len(stated.points))]
         run = None

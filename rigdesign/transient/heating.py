@@ -6,8 +6,11 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TypeAlias, TypeVar
 
+from dynamics.rotor.bearing import HeatStar
+from rigdesign.base.part_name import BearingName, OilStreamName
 from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.coupling.bearing_seats import WarmBearing, bearings_between
+from rigdesign.coupling.housing_context import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.loop_over_speed import stage_losses
@@ -54,7 +57,7 @@ class Heating:
 
     def _answer(self, stream: OilStream) -> WallAnswer:
         prompt, lasting = wall_slopes(self._rig, self._test.last, stream)
-        box = stream.name.split(".")[0]
+        box = stream.name.gearbox
         if not prompt or box not in self._rig.models:
             return WallAnswer(prompt=prompt)
         elements = self._rig.conduction[box].elements
@@ -86,7 +89,8 @@ class Heating:
 
         They are interpolated between supply temperatures `LEVEL` apart.
         """
-        own = {stream: value for stream, value in supplies.items() if stream.split(".")[0] == name}
+        streams = (OilStreamName(name, kind) for kind in (GEAR_OIL, BEARING_OIL))
+        own = {stream: supplies[stream] for stream in streams if stream in supplies}
         if not (own and phase.oil):
             return self.at(name, point, oil=phase.oil)
         low = {
@@ -95,7 +99,7 @@ class Heating:
         first = self.at(name, point, oil=True, supplies=tuple(low.items()))
         warmer = tuple((stream, value + LEVEL) for stream, value in low.items())
         second = self.at(name, point, oil=True, supplies=warmer)
-        share = {stream.split(".")[1]: (value - low[stream]) / LEVEL for stream, value in own.items()}
+        share = {stream.part: (value - low[stream]) / LEVEL for stream, value in own.items()}
         networks = {c.volumes[0].name: c for c in second if isinstance(c, StreamNetwork)}
         found: list[Condition] = []
         for condition in first:
@@ -122,10 +126,10 @@ class Heating:
         """
         before, after, share = phase.between(time)
         first, second = (self.state(knot.point).bearings for knot in (before, after))
-        stars = {
+        stars: dict[str, HeatStar] = {
             full: between(old.star, new.star, share, oil=phase.oil)
-            for full, old in first.items()
-            if (new := second[full]).star is not None and old.star is not None and full.split(".")[0] == name
+            for full in (BearingName(name, part) for part in self._rig.case.gearboxes[name].bearings)
+            if (old := first[full]).star is not None and (new := second[full]).star is not None
         }
         return bearings_between(stars, seats)
 

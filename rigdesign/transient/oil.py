@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.rotor.bearing import HeatStar
+from rigdesign.base.part_name import BearingName
 from rigdesign.case.gearbox import injected_flow
 from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.bearing_seats import (
@@ -118,8 +119,7 @@ def supplied(state: PointLosses, supplies: Mapping[str, float]) -> PointLosses:
 
 
 def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
-    housing = rig.case.gearboxes[name].housing
-    assert housing is not None
+    housing = rig.case.housings[name]
     heated = replace(state, losses=tuple(losses))
     conditions = boundary_conditions(
         rig, name, heated, radiation_included=housing.radiation_included, sump_given=True
@@ -381,7 +381,7 @@ class BearingNode:
 
 def seated_bearings(rig: Rig, name: str) -> list[str]:
     """Bearings of the gearbox ``name`` that conduct heat to a seat, by their own names."""
-    return [part for part in rig.case.gearboxes[name].bearings if bearing_seats(rig, f"{name}.{part}")]
+    return [part for part in rig.case.gearboxes[name].bearings if bearing_seats(rig, BearingName(name, part))]
 
 
 def bearing_nodes(
@@ -390,7 +390,7 @@ def bearing_nodes(
     """Nodes of the gearbox ``name`` by bearing."""
     nodes = {}
     for part in seated_bearings(rig, name):
-        full = f"{name}.{part}"
+        full = BearingName(name, part)
         star = state.bearings[full].star
         assert star is not None
         kind = f"{BEARING_FILM}:{part}"

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.gearbox import injected_flow
 from rigdesign.case.model import Case
 from rigdesign.coupling.housing_context import BEARING_OIL, GEAR_OIL
@@ -89,7 +90,9 @@ def stream_heats(
             for number, time in zip(numbers, times, strict=True)
         ]
         heats |= {
-            key: np.array([row[key] for row in rows]) for key in rows[0] if key.split(".")[0] in without
+            key: np.array([row[key] for row in rows])
+            for key in rows[0]
+            if OilStreamName.read(key).gearbox in without
         }
     return StreamHeats(
         times=times,

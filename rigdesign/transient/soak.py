@@ -11,6 +11,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base.part_name import BearingName, MeshName
 from rigdesign.case.model import Case
 from rigdesign.coupling.alignment import Alignment
 from rigdesign.coupling.bearing_seats import WarmBearing
@@ -50,9 +51,10 @@ def clearances(
         gear: rig.conduction[name].elements.body_mean(temperature, f"gear_{entry.shaft}")
         for gear, entry in box.gears.items()
     }
-    backlash, tip = {}, {}
+    backlash: dict[str, float] = {}
+    tip: dict[str, float] = {}
     for own, mesh in box.meshes.items():
-        full = f"{name}.{own}"
+        full = MeshName(name, own)
         gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
         first, second = (rig.materials[gear.material].expansion_coefficient for gear in gears)
         pair = rig.pairs[full].warm(
@@ -69,7 +71,9 @@ def clearances(
     return {
         "seal_gap": {seal.name: seal.minimum for seal in shape.seals.values()},
         "axial_play": {s.name: play[s.name] - s.axial_play_change for s in shape.shafts.values()},
-        "bearing_clearance": {key: value for key, value in bearings.items() if key.split(".")[0] == name},
+        "bearing_clearance": {
+            bearing: bearings[bearing] for bearing in (BearingName(name, part) for part in box.bearings)
+        },
         "backlash": backlash,
         "tip_clearance": tip,
     }

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rigdesign.base.part_name import MeshName
 from tests.published.rows import (
     Goal,
     PublishedQuantity,
@@ -86,7 +87,8 @@ def speed_rows(rig: "Rig", curve: "GaugeCurve") -> Iterator[ValidationRow]:
 
     bending = replace(rig, shaft_model="elastic")
     twisting, stiff, keyed = (
-        speed_effect(one, "test.main", curve) for one in (rig, bending, with_feather_keys(bending))
+        speed_effect(one, MeshName("test", "main"), curve)
+        for one in (rig, bending, with_feather_keys(bending))
     )
     assumed = (
         "mesh force of the periodic response on the quasi-static curve; 100 rpm taken as quasi-static; analytic teeth, "
@@ -128,7 +130,7 @@ def contact_rows() -> Iterator[ValidationRow]:
     rig = build_rig(load_case(case_folder("strain_gauge_rig")), "quick")
     pair = rig.pairs["test.main"]
     gears = elastic_gears(pair)
-    mesh = elastic_contact(pair, mesh_microgeometry(rig, "test.main", pair), gears)
+    mesh = elastic_contact(pair, mesh_microgeometry(rig, MeshName("test", "main"), pair), gears)
     numbers = "influence numbers"
     teeth = (
         f"{pair.teeth[0]}/{pair.teeth[1]} teeth and the helix angle that meet 1.24, by geometry "

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.mesh_models import laws_of
 from rigdesign.coupling.preloaded_loop import signed_torque
@@ -39,7 +40,7 @@ class SpeedEffect:
     start: float
 
 
-def speed_effect(rig: Rig, mesh: str, curve: GaugeCurve) -> SpeedEffect:
+def speed_effect(rig: Rig, mesh: MeshName, curve: GaugeCurve) -> SpeedEffect:
     """At the last held stage of a rig, for a gauge of the pinion of a mesh, ``gearbox.mesh``."""
     point = solve_point(rig, held_points(rig)[-1])
     response = point.last.response

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
+from rigdesign.base.part_name import BearingName
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.loop import solve_point
@@ -66,7 +67,7 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
         bore, journal = rows[f"bearing_bore_{station}"], rows[f"shaft_{entry.shaft}_journal_{entry.side}"]
         own = strain * entry.diameter * (bore - journal)
         computed = bores[station].clearance_change
-        by_hand = end_wall_clearance(solved, warm, f"test.{name}")
+        by_hand = end_wall_clearance(solved, warm, BearingName("test", name))
         assert by_hand is not None
         by_hand += centrifugal_expansion(rig, entry, result.point.speed) - entry.diametral_clearance
         assert own < 1.5e-6

@@ -337,7 +337,10 @@ class Projection:
 
     def coefficients(self, a: FloatArray) -> list[FilmCoefficient | None]:
         """Coefficient of every condition at the means of a field; None where it has none."""
-        return [self._coefficient(condition, a) for condition in self.conditions]
+        return [
+            self._coefficient(condition, a) if isinstance(condition, Film | Exchange | Contact) else None
+            for condition in self.conditions
+        ]
 
     def _means(self, condition: Exchange | Contact) -> tuple[FloatArray, FloatArray]:
         if isinstance(condition, Contact):
@@ -347,14 +350,12 @@ class Projection:
         first, second = (self.reduced.surface(name).mean for name in surfaces)
         return first, second
 
-    def _coefficient(self, condition: Condition, a: FloatArray) -> FilmCoefficient | None:
+    def _coefficient(self, condition: Film | Exchange | Contact, a: FloatArray) -> FilmCoefficient:
         if isinstance(condition, Film):
             mean = float(self.reduced.surface(condition.surface).mean @ a)
             return condition.law(mean, condition.fluid_temperature)
-        if isinstance(condition, Exchange | Contact):
-            first, second = self._means(condition)
-            return condition.law(float(first @ a), float(second @ a))
-        return None
+        first, second = self._means(condition)
+        return condition.law(float(first @ a), float(second @ a))
 
     def _law_slope(self, condition: Film | Exchange | Contact, a: FloatArray) -> FloatArray:
         """(m,) slope of a coefficient by the field; zeros for one that does not follow it."""
@@ -376,9 +377,7 @@ class Projection:
         residual = self.matrix @ a - self.source
         for condition in self.conditions:
             if isinstance(condition, Film | Exchange | Contact):
-                law = self._coefficient(condition, a)
-                assert law is not None
-                residual += law.value * self.unit(condition, a)
+                residual += self._coefficient(condition, a).value * self.unit(condition, a)
             elif isinstance(condition, Radiation):
                 surface = self.reduced.surface(condition.surface)
                 flux = (surface.points @ a) ** 4 - condition.surroundings_temperature**4
@@ -397,9 +396,7 @@ class Projection:
         jacobian = self.matrix.copy()
         for condition in self.conditions:
             if isinstance(condition, Film | Exchange | Contact):
-                law = self._coefficient(condition, a)
-                assert law is not None
-                jacobian += law.value * self._mass(condition)
+                jacobian += self._coefficient(condition, a).value * self._mass(condition)
                 slope = self._law_slope(condition, a)
                 if slope.any():
                     jacobian += np.outer(self.unit(condition, a), slope)
@@ -460,13 +457,11 @@ class Projection:
             if isinstance(condition, Film):
                 surface = self.reduced.surface(condition.surface)
                 law = self._coefficient(condition, a)
-                assert law is not None
                 excess = surface.area * (float(surface.mean @ a) - condition.fluid_temperature)
                 slope = law.value * surface.load + excess * self._law_slope(condition, a)
                 links.append(Link(condition, law.value * self.unit(condition, a), law.value * excess, slope))
             elif isinstance(condition, Exchange | Contact):
                 law = self._coefficient(condition, a)
-                assert law is not None
                 links.append(Link(condition, law.value * self.unit(condition, a), 0.0, nothing))
             elif isinstance(condition, Radiation):
                 surface = self.reduced.surface(condition.surface)
@@ -489,11 +484,9 @@ class Projection:
         rows: list[HeatFlow] = []
         multipliers = iter(self.multipliers)
         for condition in self.conditions:
-            law = self._coefficient(condition, a)
             match condition:
                 case Film():
-                    surface = self.reduced.surface(condition.surface)
-                    assert law is not None
+                    surface, law = self.reduced.surface(condition.surface), self._coefficient(condition, a)
                     excess = condition.fluid_temperature - float(surface.mean @ a)
                     rows.append(
                         self._row(
@@ -510,7 +503,7 @@ class Projection:
                     for name, power in zip(condition.surfaces, powers.tolist(), strict=True):
                         rows.append(self._row(name, condition.kind, power, a))
                 case Exchange() | Contact():
-                    assert law is not None
+                    law = self._coefficient(condition, a)
                     first, second = self._means(condition)
                     area = (
                         self.reduced.joint(condition).area

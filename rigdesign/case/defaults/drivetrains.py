@@ -6,6 +6,7 @@ second stands behind it: its shafts start at the coupling; that of the wheel goe
 
 import math
 
+from rigdesign.base.part_name import GearName
 from rigdesign.case.defaults.rule import (
     Filling,
     RawTree,
@@ -241,17 +242,20 @@ def _motor_inertia(tree: RawTree) -> Filling:
 
 def _ratio_to_motor(tree: RawTree) -> float | None:
     """Torque of the motor shaft over that at which the case counts, without losses."""
-    box, _, counted = (tree.text("drivetrain.torque_at") or "").partition(".")
+    counted = GearName.read(tree.text("drivetrain.torque_at") or "")
     shaft = tree.text("drivetrain.motor.shaft")
     driven = next((name for name in tree.names("gearboxes") if shaft in shafts_of(tree, name)), None)
     if shaft is None or driven is None:
         return None
-    mesh, other = f"gearboxes.{driven}.meshes.{only_mesh(tree, driven)}", f"gearboxes.{box}.meshes"
+    mesh, other = (
+        f"gearboxes.{driven}.meshes.{only_mesh(tree, driven)}",
+        f"gearboxes.{counted.gearbox}.meshes",
+    )
     pinion, wheel = tree.text(f"{mesh}.pinion"), tree.text(f"{mesh}.wheel")
     teeth = [tree.number(f"gearboxes.{driven}.gears.{gear}.teeth") for gear in (pinion, wheel)]
     if not teeth[0] or not teeth[1]:
         return None
-    at_pinion = counted == tree.text(f"{other}.{only_mesh(tree, box)}.pinion")
+    at_pinion = counted.part == tree.text(f"{other}.{only_mesh(tree, counted.gearbox)}.pinion")
     drives_pinion = gear_on(tree, driven, shaft) == pinion
     return (1.0 if drives_pinion else teeth[1] / teeth[0]) * (1.0 if at_pinion else teeth[0] / teeth[1])
 

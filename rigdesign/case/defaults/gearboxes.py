@@ -1,6 +1,7 @@
 """Defaults of gears, meshes, their oil, bearings and seals."""
 
 from dynamics.rotor.rolling_kinds import ROLLING_KINDS
+from rigdesign.base.part_name import GearName
 from rigdesign.case.defaults.rule import (
     Filling,
     RawTree,
@@ -35,7 +36,7 @@ def _title(tree: RawTree, box: str) -> Filling:
 
 @book.default("gearboxes.*.role")
 def _role(tree: RawTree, box: str) -> Filling:
-    counted = (tree.text("drivetrain.torque_at") or tree.names("gearboxes")[0]).split(".")[0]
+    counted = GearName.read(tree.text("drivetrain.torque_at") or tree.names("gearboxes")[0]).gearbox
     role = "specimen" if box == counted else "rig"
     return follows(role, "the gearbox at which the torque counts, else the first, holds the specimens")
 

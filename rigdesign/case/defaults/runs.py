@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from rigdesign.base.part_name import GearName
 from rigdesign.case.defaults.drivetrains import run_up_time
 from rigdesign.case.defaults.rule import (
     Filling,
@@ -144,8 +145,8 @@ def _sample_rate(tree: RawTree) -> Filling:
     speed = tree.si("schedule.test_speed", "speed")
     if speed is None:
         return None
-    box, _, gear = (tree.text("drivetrain.torque_at") or "").partition(".")
-    teeth = tree.number(f"gearboxes.{box}.gears.{gear}.teeth") or 0.0
+    gear = GearName.read(tree.text("drivetrain.torque_at") or "")
+    teeth = tree.number(f"gearboxes.{gear.gearbox}.gears.{gear.part}.teeth") or 0.0
     rate = max(10.0 * teeth * speed / math.tau, SMALLEST_RATE)
     return assumed(f"{math.ceil(rate / 1e3):g} kHz", "ten samples a mesh at test speed, at least 20 kHz")
 
@@ -192,9 +193,14 @@ def _teeth_in_a_turn(tree: RawTree) -> list[float] | None:
         for box in tree.names("gearboxes")
         for name in tree.names(f"gearboxes.{box}.meshes")
     }
-    box, _, gear = (tree.text("drivetrain.torque_at") or "").partition(".")
+    gear = GearName.read(tree.text("drivetrain.torque_at") or "")
     control = next(
-        (key for key, known in meshes.items() if key[0] == box and known and gear in known.gears), None
+        (
+            key
+            for key, known in meshes.items()
+            if key[0] == gear.gearbox and known and gear.part in known.gears
+        ),
+        None,
     )
     if control is None:
         return None

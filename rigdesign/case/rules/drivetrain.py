@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import Fault
+from rigdesign.base.part_name import GearName
 from rigdesign.base.units import show
 from rigdesign.case.faults import unknown, written
 
@@ -87,8 +88,7 @@ def drivetrain_faults(case: "Case") -> Iterator[Fault]:
 
 def _soft(case: "Case") -> Iterator[Fault]:
     """Joints that the test torque would wind up."""
-    assert case.drivetrain is not None
-    joints = {f"drivetrain.couplings.{name}": part for name, part in case.drivetrain.couplings.items()} | {
+    joints = {f"drivetrain.couplings.{name}": part for name, part in case.power_circuit.couplings.items()} | {
         f"gearboxes.{name}.gears.{gear}.spline": part.spline
         for name, box in case.gearboxes.items()
         for gear, part in box.gears.items()
@@ -123,8 +123,7 @@ def _on_shaft(path: str, position: float, length: float) -> Iterator[Fault]:
 
 
 def _bracing(case: "Case", gears: "dict[str, Gear]") -> Iterator[Fault]:
-    assert case.drivetrain is not None
-    bracing, couplings = case.drivetrain.bracing, case.drivetrain.couplings
+    bracing, couplings = case.power_circuit.bracing, case.power_circuit.couplings
     at = "drivetrain.bracing"
     if bracing.coupling is not None and bracing.coupling not in couplings:
         yield unknown(f"{at}.coupling", bracing.coupling, list(couplings), "coupling")
@@ -144,8 +143,9 @@ def _bracing(case: "Case", gears: "dict[str, Gear]") -> Iterator[Fault]:
             "name the coupling that is twisted or the helical gear that is shifted",
         )
     if bracing.shifted_gear in gears:
-        box, _, gear = bracing.shifted_gear.partition(".")
-        helices = [m.helix_angle for m in case.gearboxes[box].meshes.values() if gear in (m.pinion, m.wheel)]
+        shifted = GearName.read(bracing.shifted_gear)
+        meshes = case.gearboxes[shifted.gearbox].meshes.values()
+        helices = [mesh.helix_angle for mesh in meshes if shifted.part in (mesh.pinion, mesh.wheel)]
         if len(helices) > 1:
             yield Fault(
                 f"{at}.shifted_gear", written(bracing.shifted_gear),

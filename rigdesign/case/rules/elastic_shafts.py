@@ -16,7 +16,7 @@ from rigdesign.case.rotation import has_hands, pinion_hand, shaft_senses
 
 if TYPE_CHECKING:
     from rigdesign.case.bearings import BearingInput
-    from rigdesign.case.drivetrain import CouplingInput, DrivetrainInput, ShaftInput
+    from rigdesign.case.drivetrain import BowInput, CouplingInput, DrivetrainInput, ShaftInput
     from rigdesign.case.gearbox import Gearbox
     from rigdesign.case.model import Case
 
@@ -74,8 +74,7 @@ def _thin_discs(train: "DrivetrainInput") -> Iterator[Fault]:
 
 
 def _stated_bearings(case: "Case") -> Iterator[Fault]:
-    assert case.drivetrain is not None
-    if case.drivetrain.bearing_coefficients != "stated":
+    if case.power_circuit.bearing_coefficients != "stated":
         return
     for box_name, box in case.gearboxes.items():
         for name, bearing in box.bearings.items():
@@ -117,9 +116,8 @@ def _screwing(
     """Those of the floating groups that helical meshes do not hold (`dynamics.rotor.location`)."""
     from dynamics.rotor.location import HelicalTie, not_held, turning_together
 
-    assert case.drivetrain is not None
-    couplings = case.drivetrain.couplings
-    twisted = case.drivetrain.bracing.coupling or next(iter(couplings), None)
+    couplings = case.power_circuit.couplings
+    twisted = case.power_circuit.bracing.coupling or next(iter(couplings), None)
     known = {name: one for name, one in couplings.items() if set(one.shafts) <= set(shafts)}
     meshes = [(box, name, pair) for box in case.gearboxes.values() for name, pair in _mesh_shafts(box)]
     meshes = [mesh for mesh in meshes if set(mesh[2]) <= set(shafts)]
@@ -183,8 +181,7 @@ def _locate(case: "Case", group: Sequence[str]) -> str:
 
 def _lateral(case: "Case", couplings: Sequence["CouplingInput"]) -> Iterator[Fault]:
     """Shafts that can move sideways as rigid bodies while their bearings stand still."""
-    assert case.drivetrain is not None
-    shafts = case.drivetrain.shafts
+    shafts = case.power_circuit.shafts
     lengths = {name: math.fsum(section.length for section in part.sections) for name, part in shafts.items()}
     bearings = [bearing for box in case.gearboxes.values() for bearing in box.bearings.values()]
     stiff = [
@@ -286,8 +283,7 @@ OF_COUPLING = ("flange_run_out", "flange_tilt", "cold_angle_lateral", "cold_angl
 
 def rotating_part_faults(case: "Case") -> Iterator[Fault]:
     """Parts off their shaft, bows without bearings, offsets at couplings that do not resist, shafts that only twist."""
-    train = case.drivetrain
-    assert train is not None
+    train = case.power_circuit
     if train.shaft_model == "torsional":
         yield from _torsional(case)
         return
@@ -299,7 +295,7 @@ def rotating_part_faults(case: "Case") -> Iterator[Fault]:
 
 def sideways_keys(case: "Case") -> list[str]:
     """Paths of the keys a case states that nothing but shafts that bend reads."""
-    stated = [] if case.drivetrain is None else _of_circuit(case.drivetrain)
+    stated = _of_circuit(case.power_circuit)
     for name, box in case.gearboxes.items():
         at = f"gearboxes.{name}"
         if box.housing is not None and box.housing.bearing_seats == "elastic":
@@ -362,12 +358,11 @@ def _of_shaft(case: "Case", name: str, shaft: "ShaftInput") -> Iterator[Fault]:
             "write the highest service speed, or leave it out for that of the schedule",
         )  # fmt: skip
     if shaft.bow is not None:
-        yield from _bow(case, name, shaft)
+        yield from _bow(case, name, shaft.bow)
 
 
-def _bow(case: "Case", name: str, shaft: "ShaftInput") -> Iterator[Fault]:
-    bow, at = shaft.bow, f"drivetrain.shafts.{name}.bow"
-    assert bow is not None
+def _bow(case: "Case", name: str, bow: "BowInput") -> Iterator[Fault]:
+    at = f"drivetrain.shafts.{name}.bow"
     places = {
         bearing.position
         for box in case.gearboxes.values()

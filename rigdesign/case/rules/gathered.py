@@ -86,10 +86,9 @@ def _substances(case: "Case") -> Iterator[Fault]:
         for path, material in used.items():
             if material not in materials:
                 yield unknown(path, material, materials, "material")
-    if case.drivetrain is not None:
-        for shaft, part in case.drivetrain.shafts.items():
-            if part.material not in materials:
-                yield unknown(f"drivetrain.shafts.{shaft}.material", part.material, materials, "material")
+    for shaft, part in case.power_circuit.shafts.items():
+        if part.material not in materials:
+            yield unknown(f"drivetrain.shafts.{shaft}.material", part.material, materials, "material")
 
 
 def _media(at: str, housing: Housing, oils: Iterable[str]) -> Iterator[Fault]:
@@ -147,7 +146,7 @@ def _missing(plain: object, path: str) -> bool:
 
 
 def _shafts(case: "Case") -> "Iterable[ShaftInput]":
-    return [] if case.drivetrain is None else case.drivetrain.shafts.values()
+    return case.power_circuit.shafts.values()
 
 
 def _numerics(case: "Case") -> Iterator[Fault]:

@@ -67,7 +67,7 @@ def _shafts_of(case: "Case", box: "Gearbox") -> list[str]:
     """Shafts a part of this gearbox may sit on; empty when nothing names any."""
     if box.housing is not None:
         return list(box.housing.shafts)
-    return list(case.drivetrain.shafts) if case.drivetrain is not None else []
+    return list(case.power_circuit.shafts)
 
 
 def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
@@ -294,7 +294,7 @@ def _stations(at: str, box: "Gearbox") -> Iterator[Fault]:
 
 def _press_fits(at: str, box: "Gearbox", case: "Case") -> Iterator[Fault]:
     """A shaft fills the bore of a gear that is pressed on it: its bore lies inside the seat."""
-    shafts = {} if case.drivetrain is None else case.drivetrain.shafts
+    shafts = case.power_circuit.shafts
     for name, gear in box.gears.items():
         if not gear.shaft_interference or gear.seat_position is None or gear.shaft not in shafts:
             continue
@@ -378,10 +378,10 @@ def _heat(at: str, here: str, box: "Gearbox", bearing: "BearingInput") -> Iterat
 
 def _seat(here: str, case: "Case", bearing: "BearingInput") -> Iterator[Fault]:
     """The bore has to be the diameter of the shaft where both are stated."""
-    power = case.drivetrain
-    if power is None or bearing.position is None or bearing.shaft not in power.shafts:
+    shafts = case.power_circuit.shafts
+    if bearing.position is None or bearing.shaft not in shafts:
         return
-    diameter = diameter_at(power.shafts[bearing.shaft], bearing.position)
+    diameter = diameter_at(shafts[bearing.shaft], bearing.position)
     if diameter is not None and abs(diameter - bearing.shaft_diameter) > SEAT_TOLERANCE:
         yield Fault(
             f"{here}.position", show(bearing.position, "length"),

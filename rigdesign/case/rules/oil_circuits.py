@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.base.units import show
 from rigdesign.case.circuit_parts import oil_circuit
 from rigdesign.case.faults import unknown, written
@@ -46,7 +47,7 @@ def _consumers(case: "Case") -> Iterator[Fault]:
     for name, circuit in case.oil_circuits.items():
         for key, line in circuit.lines.items():
             at = f"oil_circuits.{name}.lines.{key}.consumers"
-            for stream in line.consumers:
+            for stream in map(OilStreamName.read, line.consumers):
                 if stream not in streams:
                     yield unknown(at, stream, streams, "oil stream that is fed")
                     continue
@@ -57,7 +58,7 @@ def _consumers(case: "Case") -> Iterator[Fault]:
                     )  # fmt: skip
                 fed.setdefault(stream, f"oil_circuits.{name}.lines.{key}")
                 if circuit.oil in oils and streams[stream].oil != circuit.oil:
-                    box, _, kind = stream.partition(".")
+                    box, kind = stream.both
                     yield Fault(
                         f"oil_circuits.{name}.oil", written(circuit.oil),
                         f"{stream} is fed with another oil, {written(streams[stream].oil)}",
@@ -71,8 +72,8 @@ def _setpoints(case: "Case") -> Iterator[Fault]:
         at = f"oil_circuits.{name}"
         for key, line in circuit.lines.items():
             meant = circuit.supply_setpoint(key)
-            for stream in line.consumers:
-                box, _, kind = stream.partition(".")
+            for stream in map(OilStreamName.read, line.consumers):
+                box, kind = stream.both
                 stated = case.gearboxes[box].feeds[kind][0].inlet_temperature
                 if meant is not None and abs(stated - meant) > SAME:
                     yield Fault(
@@ -188,10 +189,10 @@ def _sump(at: str, box: "Gearbox", sump: "DipOil") -> Iterator[Fault]:
 
 def _drift(case: "Case") -> Iterator[Fault]:
     """A bracing that drifts with the gear oil needs to know its temperature before the run."""
-    power = case.drivetrain
-    if power is None or power.bracing.temperature_drift == 0.0:
+    power = case.power_circuit
+    if power.bracing.temperature_drift == 0.0:
         return
-    box = case.gearboxes.get(power.torque_at.split(".")[0])
+    box = case.gearboxes.get(power.counting_gear.gearbox)
     if box is not None and box.gear_oil_temperature is None:
         yield Fault(
             "drivetrain.bracing.temperature_drift", f"{power.bracing.temperature_drift:g}",

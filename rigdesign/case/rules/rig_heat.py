@@ -67,7 +67,7 @@ def _coolants(case: "Case") -> Iterator[Fault]:
 def _shafts(case: "Case") -> Iterator[Fault]:
     shafts = {gear.shaft for box in case.gearboxes.values() for gear in box.gears.values()}
     if case.drivetrain is not None:
-        shafts = {*case.drivetrain.shafts}
+        shafts = {*case.power_circuit.shafts}
     for name, coupling in case.rig_heat.couplings.items():
         if coupling.shaft is not None and coupling.shaft not in shafts:
             yield unknown(

@@ -156,8 +156,7 @@ def _tooth_loss(case: "Case", at: str, event: ToothLoss) -> Iterator[Fault]:
         )  # fmt: skip
     if event.monitor is None:
         return
-    assert case.drivetrain is not None
-    couplings = [f"drivetrain.couplings.{name}" for name in case.drivetrain.couplings]
+    couplings = [f"drivetrain.couplings.{name}" for name in case.power_circuit.couplings]
     bearings = [
         f"gearboxes.{box}.bearings.{name}" for box, own in case.gearboxes.items() for name in own.bearings
     ]

@@ -40,7 +40,7 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
     except ThermalInputError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
     if housing.part_file is None:
-        return boundary_faults(name, gearbox, names)
+        return boundary_faults(name, gearbox, housing, names)
     return list(_idle_sizes(at, housing))
 
 
@@ -58,17 +58,15 @@ def _idle_sizes(at: str, housing: Housing) -> Iterator[Fault]:
         )  # fmt: skip
 
 
-def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list[Fault]:
-    """What is wrong with the boundary conditions of a housing whose surfaces have ``names``."""
-    housing = gearbox.housing
-    assert housing is not None
+def boundary_faults(name: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]) -> list[Fault]:
+    """What is wrong with the boundary conditions of the housing of a gearbox whose surfaces have ``names``."""
     at = f"gearboxes.{name}.housing.boundary"
     return [
         *_boundary(at, housing, names),
         *_on_their_surfaces(at, gearbox, housing, names),
         *_film_factors(f"gearboxes.{name}.housing.surface_film_factors", housing, names),
-        *enclosure_faults(name, gearbox, names),
-        *housing_fluid_faults(name, gearbox, names),
+        *enclosure_faults(name, gearbox, housing, names),
+        *housing_fluid_faults(name, gearbox, housing, names),
         *flank_faults(name, gearbox, housing, names),
     ]
 
@@ -245,10 +243,10 @@ def flank_faults(name: str, gearbox: Gearbox, housing: Housing, names: Sequence[
 # Rules of the enclosures of a housing: which surfaces radiate at each other, and whether their view factors close.
 
 
-def enclosure_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> Iterator[Fault]:
-    """What is wrong with the enclosures of a housing whose surfaces have ``names``."""
-    housing = gearbox.housing
-    assert housing is not None
+def enclosure_faults(
+    name: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]
+) -> Iterator[Fault]:
+    """What is wrong with the enclosures of the housing of a gearbox whose surfaces have ``names``."""
     taken: dict[str, str] = {}
     for entry, enclosure in housing.enclosures.items():
         at = f"gearboxes.{name}.housing.enclosures.{entry}"
@@ -261,7 +259,8 @@ def enclosure_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> Ite
         taken |= {surface: taken.get(surface, entry) for surface in surfaces}
         yield from faults
         if not faults and enclosure.view_factors != "computed":
-            yield from _view_factors(at, enclosure, surfaces, gearbox)
+            exact = exact_areas(housing_geometry(gearbox)) if housing.part_file is None else None
+            yield from _view_factors(at, enclosure, surfaces, exact)
 
 
 def _parts(at: str, enclosure: EnclosureInput, names: tuple[str, ...]) -> Iterator[Fault]:
@@ -314,9 +313,12 @@ def _conditions(
 
 
 def _view_factors(
-    at: str, enclosure: EnclosureInput, surfaces: Mapping[str, float], gearbox: Gearbox
+    at: str, enclosure: EnclosureInput, surfaces: Mapping[str, float], exact: Mapping[str, float] | None
 ) -> Iterator[Fault]:
-    """Given view factors: of the surfaces that take part, complete and reciprocal."""
+    """Given view factors: of the surfaces that take part, complete and reciprocal.
+
+    exact : areas of all surfaces [m2]; None where a file has them
+    """
     given = enclosure.view_factors
     assert given != "computed"
     path = f"{at}.view_factors"
@@ -327,11 +329,8 @@ def _view_factors(
             f"its surfaces: {', '.join(surfaces)}",
         )  # fmt: skip
         return
-    housing = gearbox.housing
-    assert housing is not None
-    if housing.part_file is not None:
+    if exact is None:
         return
-    exact = exact_areas(housing_geometry(gearbox))
     areas = {surface: exact[surface] for surface in surfaces}
     rows = enclosure.rows(areas)
     assert rows is not None
@@ -346,10 +345,10 @@ def _view_factors(
 # Rules of volumes, streams and links of a housing: names, films that they need, what a link may lead to.
 
 
-def housing_fluid_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> Iterator[Fault]:
-    """What is wrong with the fluids of a housing whose surfaces have ``names``."""
-    housing = gearbox.housing
-    assert housing is not None
+def housing_fluid_faults(
+    name: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]
+) -> Iterator[Fault]:
+    """What is wrong with the fluids of the housing of a gearbox whose surfaces have ``names``."""
     at = f"gearboxes.{name}.housing"
     yield from _names(at, gearbox, housing, names)
     yield from _films(at, housing)

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from math import atan2, cos, hypot, pi, sin
 
 from dynamics.standards.iso1328_1_2013 import tolerances
+from rigdesign.base.part_name import GearName
 from rigdesign.case.drivetrain import HarmonicTorqueInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
@@ -51,7 +52,7 @@ def teeth(part: GearboxPart) -> Iterator[Effect]:
 
 
 def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
-    gear, at, label = box.gears[name], f"gearboxes.{box_name}.gears.{name}.flank", f"{box_name}.{name}"
+    gear, at, label = box.gears[name], f"gearboxes.{box_name}.gears.{name}.flank", GearName(box_name, name)
     spread = _healthy_teeth(box, name)
     yield Effect(
         name=f"run_out:{label}",
@@ -59,7 +60,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         family=EXCITATION,
         signature="order 1 of its shaft from low speed on, sidebands of the mesh orders",
         parameters=_amplitudes("eccentricity", 50.0 * MICROMETRE),
-        change=_RunOut(at),
+        change=_RunOut(label, at),
         healthy=spread["run_out"],
         linear=True,
         doubled="run-out F_r",
@@ -71,7 +72,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
             family=EXCITATION,
             signature=f"order {order} of its shaft, sidebands of the mesh orders at that distance",
             parameters=_amplitudes("amplitude", 40.0 * MICROMETRE),
-            change=_PitchWave(at, order),
+            change=_PitchWave(label, at, order),
             healthy=spread["pitch_wave"],
             linear=True,
         )
@@ -81,7 +82,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         family=EXCITATION,
         signature="all orders of its shaft alike, larger at low torque",
         parameters=(_length("deviation", -60.0, 60.0),),
-        change=_SinglePitch(at, gear.teeth),
+        change=_SinglePitch(label, at, gear.teeth),
         any_tooth=gear.teeth,
         linear=True,
         matters=spread["pitch_tolerance"],
@@ -159,25 +160,23 @@ def _joined(now: tuple[float, float], more: tuple[float, float]) -> tuple[float,
 
 
 class _RunOut:
-    def __init__(self, at: str) -> None:
-        self._at = at
+    def __init__(self, gear: GearName, at: str) -> None:
+        self._gear, self._at = gear, at
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        box, gear = self._at.split(".")[1], self._at.split(".")[3]
-        flank = case.gearboxes[box].gears[gear].flank
+        flank = case.gearboxes[self._gear.gearbox].gears[self._gear.part].flank
         size, phase = _joined((0.5 * flank.run_out, flank.run_out_phase), (values[0], values[1]))
         return {f"{self._at}.run_out": 2.0 * size, f"{self._at}.run_out_phase": phase}
 
 
 class _PitchWave:
-    def __init__(self, at: str, order: int) -> None:
-        self._at, self._order = at, order
+    def __init__(self, gear: GearName, at: str, order: int) -> None:
+        self._gear, self._at, self._order = gear, at, order
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        box, gear = self._at.split(".")[1], self._at.split(".")[3]
         waves = [
             {"order": wave.order, "amplitude": _metres(wave.amplitude), "phase": _radians(wave.phase)}
-            for wave in case.gearboxes[box].gears[gear].flank.pitch_waves
+            for wave in case.gearboxes[self._gear.gearbox].gears[self._gear.part].flank.pitch_waves
         ]
         size, phase = _joined((0.0, 0.0), (values[0], values[1]))
         more = {"order": self._order, "amplitude": _metres(size), "phase": _radians(phase)}
@@ -195,12 +194,14 @@ def _radians(value: float) -> str:
 class _SinglePitch:
     """One tooth stands ahead: its pitch is long, the next one short."""
 
-    def __init__(self, at: str, teeth: int) -> None:
-        self._at, self._teeth = at, teeth
+    def __init__(self, gear: GearName, at: str, teeth: int) -> None:
+        self._gear, self._at, self._teeth = gear, at, teeth
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        box, gear = self._at.split(".")[1], self._at.split(".")[3]
-        now = case.gearboxes[box].gears[gear].flank.single_pitch or (0.0,) * self._teeth
+        now = (
+            case.gearboxes[self._gear.gearbox].gears[self._gear.part].flank.single_pitch
+            or (0.0,) * self._teeth
+        )
         tooth = int(values[1]) if len(values) > 1 else 0
         pitch = list(now)
         pitch[tooth] += values[0]
@@ -262,8 +263,7 @@ def gear_bodies(part: GearboxPart) -> Iterator[Effect]:
 @of_rig(drivetrain=True)
 def couplings(case: Case) -> Iterator[Effect]:
     """Stiffness, damping and misalignment of every coupling."""
-    assert case.drivetrain is not None
-    for name, coupling in case.drivetrain.couplings.items():
+    for name, coupling in case.power_circuit.couplings.items():
         at = f"drivetrain.couplings.{name}"
         stiffness = UncertainValue(
             path=f"{at}.torsional_stiffness",
@@ -314,8 +314,7 @@ class _Harmonic:
 @of_rig(drivetrain=True)
 def drive(case: Case) -> Iterator[Effect]:
     """Ripple and inertia of the motor, drift of the bracing."""
-    assert case.drivetrain is not None
-    motor, bracing = case.drivetrain.motor, case.drivetrain.bracing
+    motor, bracing = case.power_circuit.motor, case.power_circuit.bracing
     for order in (1, 2, 3, 4, 6):
         yield Effect(
             name=f"motor_ripple/{order}",

@@ -272,8 +272,7 @@ class GearboxPart:
     @property
     def housing(self) -> Housing:
         """For effects that are registered with ``housing``."""
-        assert self.box.housing is not None
-        return self.box.housing
+        return self.case.housings[self.name]
 
 
 OfRig = Callable[[Case], Iterator[Effect]]
@@ -334,7 +333,7 @@ def of_gearbox(
 
 def registered_effects(case: Case, *, lateral: bool) -> Iterator[Effect]:
     """Effects of a case as registered, those of one gearbox together; ``lateral``: with those of shafts that bend."""
-    bends = case.drivetrain is not None and case.drivetrain.shaft_model == "elastic"
+    bends = case.power_circuit.shaft_model == "elastic"
     wanted = [entry for entry in _ENTRIES if (lateral and bends) or not entry.lateral]
     for by_gearbox, group in groupby(wanted, lambda entry: entry.of_gearbox is not None):
         entries = list(group)

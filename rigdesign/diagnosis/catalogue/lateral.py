@@ -69,8 +69,7 @@ SUPPORT_SPREAD = 0.25
 @of_rig(lateral=True)
 def turning_loads(case: Case) -> Iterator[Effect]:
     """Unbalance and bow of every shaft."""
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     planes = _Planes(case)
     for name, shaft in power.shafts.items():
         most = TIMES_GENERAL * planes.permitted(name, GENERAL_GRADE)
@@ -91,8 +90,7 @@ def turning_loads(case: Case) -> Iterator[Effect]:
 @of_rig(lateral=True)
 def couplings_out_of_true(case: Case) -> Iterator[Effect]:
     """Flanges that turn out of true, and the angle of cross joints."""
-    power = case.drivetrain
-    assert power is not None
+    power = case.power_circuit
     for name, coupling in power.couplings.items():
         at = f"drivetrain.couplings.{name}"
         if coupling.radial_stiffness:
@@ -131,8 +129,7 @@ def couplings_out_of_true(case: Case) -> Iterator[Effect]:
 @of_gearbox(lateral=True)
 def bearing_stiffness(part: GearboxPart) -> Iterator[Effect]:
     """What every bearing yields by: the clearance of its film or its stated stiffness, and the housing under it."""
-    power = part.case.drivetrain
-    assert power is not None
+    power = part.case.power_circuit
     stated = power.bearing_coefficients == "stated"
     for name, bearing in part.box.bearings.items():
         at, label = f"{part.path}.bearings.{name}", f"{part.name}.{name}"
@@ -209,7 +206,6 @@ class _Planes:
 
     def __init__(self, case: Case) -> None:
         drivetrain = build_rig(case, "quick").drivetrain
-        assert drivetrain is not None
         self._drivetrain, self._speeds = drivetrain, highest_speeds(case, drivetrain)
 
     def of(self, shaft: str) -> float:
@@ -235,8 +231,7 @@ def _supports(case: Case, shaft: str) -> set[float | None]:
 
 
 def _shaft(case: Case, name: str) -> ShaftInput:
-    assert case.drivetrain is not None
-    return case.drivetrain.shafts[name]
+    return case.power_circuit.shafts[name]
 
 
 class MoreUnbalance:

@@ -103,7 +103,6 @@ def _answers(hypothesis: Hypothesis, sizes: Array) -> Array:
     """(m, n) whitened answers at sizes (m, k)."""
     if hypothesis.curve is not None:
         return hypothesis.curve.at(sizes[:, 0])
-    assert hypothesis.columns is not None
     return np.asarray(sizes @ hypothesis.columns.T)
 
 
@@ -111,7 +110,6 @@ def _planes(hypothesis: Hypothesis, trace: Array) -> list[Array]:
     """Columns (n, k) of what may stand for a trace (n,): a curve at sizes over its bounds, a plane as it is."""
     least = REACHES * float(trace @ trace)
     if hypothesis.curve is None:
-        assert hypothesis.columns is not None
         reach = hypothesis.half * float(np.linalg.norm(hypothesis.columns.T @ trace))
         return [hypothesis.columns] if reach >= least else []
     sizes = np.linspace(*hypothesis.curve.bounds, SIZES)[:, None]

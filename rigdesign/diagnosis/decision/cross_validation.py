@@ -180,7 +180,7 @@ class Proof:
             size = np.array(sizes[one.name])
             if one.curve is not None:
                 answer += one.curve.at(size)[0]
-            elif one.columns is not None:
+            elif one.columns.size:
                 answer += one.columns @ size
         return answer
 

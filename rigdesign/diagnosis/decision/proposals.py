@@ -294,7 +294,6 @@ def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
     if hypothesis.curve is not None:
         answer, slopes = hypothesis.curve.at(sizes)[0], hypothesis.curve.sensitivity(float(sizes[0]))[:, None]
     else:
-        assert hypothesis.columns is not None
         slopes = hypothesis.columns
         answer = slopes @ sizes
     return Rival(name=one.hypothesis.name, answer=answer, slopes=slopes, deviations=np.array(one.deviations))

@@ -218,7 +218,6 @@ def _reach(hypothesis: Hypothesis) -> float:
     """Whitened length of the answer at the bound."""
     if hypothesis.curve is not None:
         return float(np.linalg.norm(hypothesis.curve.answers, axis=1).max())
-    assert hypothesis.columns is not None
     return float(np.linalg.norm(hypothesis.columns) * hypothesis.half)
 
 

@@ -52,7 +52,6 @@ def slope_of(hypothesis: Hypothesis) -> Array:
     """(n, k) whitened columns of a hypothesis at its smallest size."""
     if hypothesis.curve is not None:
         return hypothesis.curve.sensitivity(0.0)[:, None]
-    assert hypothesis.columns is not None
     return hypothesis.columns
 
 

@@ -88,7 +88,7 @@ def _interpolation(coordinates: tuple[float, ...]) -> CubicSpline | PPoly:
 class Hypothesis:
     """One explanation of the residual.
 
-    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each; `residual`
+    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each, else none; `residual`
     replaces it for swaps and wrong units.
     """
 
@@ -97,7 +97,7 @@ class Hypothesis:
     parts: tuple[str, ...]
     """What it claims, effects by the name of their entry; unmodelled and input parts included."""
     curve: Curve | None = None
-    columns: Array | None = None
+    columns: Array = field(default_factory=lambda: np.zeros((0, 0)))
     half: float = 1.0
     own: tuple[str, ...] = ()
     """Effects whose own spread is released."""
@@ -112,7 +112,6 @@ class Hypothesis:
         """(n,) whitened answer at a size (k,), of a curve at most at its ends."""
         if self.curve is not None:
             return np.asarray(self.curve.at(np.clip(size, *self.curve.bounds))[0])
-        assert self.columns is not None
         return np.asarray(self.columns @ size)
 
     @property
@@ -122,7 +121,7 @@ class Hypothesis:
             return self.limits
         if self.curve is not None:
             return np.array([self.curve.bounds[0]]), np.array([self.curve.bounds[1]])
-        bound = np.full(0 if self.columns is None else self.columns.shape[1], self.half)
+        bound = np.full(self.columns.shape[1], self.half)
         return -bound, bound
 
     @property
@@ -192,10 +191,9 @@ def release_of(space: Whitened, own: Sequence[str]) -> Release:
 def evaluate_hypothesis(space: Whitened, hypothesis: Hypothesis) -> Evidence:
     """Evidence of one hypothesis."""
     if hypothesis.residual is not None:
-        return _weigh_data(space, hypothesis)
+        return _weigh_data(space, hypothesis, hypothesis.residual)
     if hypothesis.curve is not None:
         return _weigh_curve(space, hypothesis, hypothesis.curve)
-    assert hypothesis.columns is not None
     return _weigh_columns(space, hypothesis, hypothesis.columns)
 
 
@@ -218,10 +216,9 @@ def graded(bounds: tuple[float, float], count: int = GRID) -> tuple[Array, Array
     return least * np.sinh(nodes), weights
 
 
-def _weigh_data(space: Whitened, hypothesis: Hypothesis) -> Evidence:
+def _weigh_data(space: Whitened, hypothesis: Hypothesis, residual: Array) -> Evidence:
     """Data that are wrong as they stand: another residual under the same covariance."""
-    assert hypothesis.residual is not None
-    gain = space.chi_square - float(hypothesis.residual @ hypothesis.residual)
+    gain = space.chi_square - float(residual @ residual)
     nothing = np.zeros((len(space.residual), 0))
     return Evidence(
         hypothesis=hypothesis,
@@ -230,7 +227,7 @@ def _weigh_data(space: Whitened, hypothesis: Hypothesis) -> Evidence:
         deviations=(),
         gain=gain,
         columns=nothing,
-        answer=space.residual - hypothesis.residual,
+        answer=space.residual - residual,
     )
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement.places import MESH_ORDERS, SHAFT_ORDERS, Places
 from rigdesign.measurement.reading.measurement_set import MeasurementSet
@@ -259,8 +260,8 @@ class Bands:
         return "the warm chamber" if front <= at[0] <= rear else "the cold ends"
 
     def _stream(self, place: str) -> str:
-        name, _, oil = place.partition(".")
-        return f"the {oil.replace('_', ' ')} of gearbox {name}"
+        stream = OilStreamName.read(place)
+        return f"the {stream.part.replace('_', ' ')} of gearbox {stream.gearbox}"
 
     def _gearbox(self, place: str) -> str:
         return place.partition(".")[0] if "." in place else next(iter(self._case.gearboxes))

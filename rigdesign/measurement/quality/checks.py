@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base.part_name import BearingName
 from rigdesign.measurement.quantities import Measured, impossible, impossible_text, to_si
 from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredPoint, MeasurementSet
 from rigdesign.measurement.reading.signals import Signal, TurnAngle
@@ -77,7 +78,7 @@ def _without_support(measurement: MeasurementSet) -> Iterator[DataFinding]:
     for name, entry in measurement.channels.items():
         if entry.channel.quantity != "acceleration":
             continue
-        box, bearing = entry.channel.place.split(".")
+        box, bearing = BearingName.read(entry.channel.place).both
         gearbox = measurement.case.gearboxes[box]
         seated = gearbox.housing is not None and gearbox.housing.bearing_seats == "elastic"
         if gearbox.bearings[bearing].support_stiffness is None and not seated:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigdesign.base import units
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.base.units import KINDS, ZERO_CELSIUS
 from rigdesign.case import Case
 from rigdesign.case.geometry import housing_geometry
@@ -91,8 +92,8 @@ def _settings(measurement: MeasurementSet, data: "Data") -> Iterator[DataFinding
         elif sensor.quantity == "torque":
             usual, most = case.schedule.test_torque, STRONG
         elif sensor.quantity == "flow":
-            box_name, _, stream = sensor.place.partition(".")
-            usual = case.gearboxes[box_name].feeds[stream][0].flow
+            stream = OilStreamName.read(sensor.place)
+            usual = case.gearboxes[stream.gearbox].feeds[stream.part][0].flow
             most = FLOWING
         else:
             continue
@@ -270,8 +271,8 @@ def _means(data: "Data") -> dict[tuple[str, str], float]:
 
 def _enthalpy(case: Case, setting: OperatingCondition, stream: str, outlet: float) -> float:
     """Heat one stream takes up [W]; of an oil of the case's own with properties of a common one."""
-    name, _, kind = stream.partition(".")
-    entry, count = case.gearboxes[name].feeds[kind]
+    name = OilStreamName.read(stream)
+    entry, count = case.gearboxes[name.gearbox].feeds[name.part]
     oil = OILS.get(entry.oil, MIL_PRF_23699)
     inlet = setting.inlet_temperature.get(stream, entry.inlet_temperature)
     flow = count * setting.flow.get(stream, entry.flow)

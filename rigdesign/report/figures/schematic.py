@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from rigdesign.base.part_name import GearName
 from rigdesign.report.figures.drawing import new_figure, plain
 from rigdesign.report.input_sheets import CaseSheet
 from rigdesign.report.palette import INK, MUTED, gearbox_colours
@@ -104,12 +105,12 @@ class RigPlan:
 def rig_plan(case: CaseSheet, form: DrawingForm = PRINTED) -> RigPlan:
     """Every gear by column and level: gears that mesh are neighbours, coupled shafts lie on one level."""
     lines = _lines(case)
-    shafts: dict[str, str] = {}
+    shafts: dict[GearName, str] = {}
     column_of: dict[str, int] = {}
     level: dict[str, int] = {}
     for column, (box, table) in enumerate(case.tables("gearboxes")):
         own = {gear: entry.raw("shaft", f"{box}.{gear}") for gear, entry in table.tables("gears")}
-        shafts |= {f"{box}.{gear}": shaft for gear, shaft in own.items()}
+        shafts |= {GearName(box, gear): shaft for gear, shaft in own.items()}
         column_of |= {shaft: column for shaft in own.values() if shaft not in column_of}
         pairs = [(mesh.raw("pinion"), mesh.raw("wheel")) for _, mesh in table.tables("meshes")]
         known = {gear: level[lines.get(s, s)] for gear, s in own.items() if lines.get(s, s) in level}
@@ -118,8 +119,8 @@ def rig_plan(case: CaseSheet, form: DrawingForm = PRINTED) -> RigPlan:
         }
     least = min(level.values(), default=0)
     level_of = {shaft: level[lines.get(shaft, shaft)] - least for shaft in column_of}
-    gears = {
-        name: Gear(name.split(".")[1], column_of[shaft], level_of[shaft], _teeth(case, name))
+    gears: dict[str, Gear] = {
+        name: Gear(name.part, column_of[shaft], level_of[shaft], _teeth(case, name))
         for name, shaft in shafts.items()
     }
     names = [name for name, _ in case.tables("gearboxes")]
@@ -127,10 +128,9 @@ def rig_plan(case: CaseSheet, form: DrawingForm = PRINTED) -> RigPlan:
     return RigPlan(gears, column_of, level_of, [styles[name].colour for name in names], form)
 
 
-def _teeth(case: CaseSheet, name: str) -> float:
-    box, gear = name.split(".")
+def _teeth(case: CaseSheet, name: GearName) -> float:
     try:
-        return float(case.raw(f"gearboxes.{box}.gears.{gear}.teeth"))
+        return float(case.raw(f"gearboxes.{name.gearbox}.gears.{name.part}.teeth"))
     except ValueError:
         return 1.0
 

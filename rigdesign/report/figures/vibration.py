@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rigdesign.base.part_name import BearingName
 from rigdesign.report.figures.drawing import (
     finish,
     gearbox_title,
@@ -287,7 +288,7 @@ def whirl_figure(lateral: Mapping[str, Any], limit: float | None) -> "Figure":
     curve = lateral["curve"]
     boxes: dict[str, list[Mapping[str, Any]]] = {}
     for bearing in curve["bearings"]:
-        boxes.setdefault(bearing["bearing"].split(".")[0], []).append(bearing)
+        boxes.setdefault(BearingName.read(bearing["bearing"]).gearbox, []).append(bearing)
     height = 0.5 + 2.4 * len(boxes)
     figure = new_figure(height)
     held = sorted({stage["speed_rpm"] for stage in lateral["stages"]})
@@ -308,7 +309,7 @@ def whirl_figure(lateral: Mapping[str, Any], limit: float | None) -> "Figure":
 def _orbits(axes: "Axes", speeds: list[float], bearings: list[Mapping[str, Any]]) -> None:
     axes.set_yscale("log")
     for number, bearing in enumerate(bearings):
-        name = words(bearing["bearing"].split(".", 1)[1])
+        name = words(BearingName.read(bearing["bearing"]).part)
         axes.plot(speeds, bearing["orbit_um"], **curve_style(number).drawn, label=name)
 
 

@@ -8,6 +8,7 @@ import pytest
 from dynamics.gear.pair import GearPair
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
+from rigdesign.base.part_name import MeshName
 from rigdesign.case import Case
 from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
 from rigdesign.coupling.iteration import IterationResult, PointProblem, initial_state, run_iteration
@@ -20,6 +21,7 @@ from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
 from rigdesign.results.serialisation.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.oil_supply import ChamberOil
+from rigdesign.rig.reuse import with_housings_of
 from tests.builders.paths import CASES
 
 VARIANT = f"""
@@ -131,9 +133,9 @@ def test_an_idler_is_wetted_twice_a_turn() -> None:
 def test_assumed_split_stays_what_the_case_says() -> None:
     plain = build_rig(load_case(CASES / "uhcf_prototype"), "quick")
     point = held_points(plain)[-1]
-    split = mesh_split(plain, "test.main", point, initial_state(plain, point))
+    split = mesh_split(plain, MeshName("test", "main"), point, initial_state(plain, point))
     assert (split.pinion, split.kept) == (0.5, (0.5, 0.5))
-    assert mesh_split(plain, "reference.main", point, None).into_rims == (0.0, 0.0)
+    assert mesh_split(plain, MeshName("reference", "main"), point, None).into_rims == (0.0, 0.0)
 
 
 def test_friction_goes_into_rims_and_oil_and_nowhere_else(rig: Rig, done: IterationResult) -> None:
@@ -178,10 +180,8 @@ def test_split_is_a_result_with_a_range(rig: Rig, done: IterationResult) -> None
 
 
 def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> None:
-    plain = replace(
-        rig, case=rig.case.with_value(f"{RIMS}.wetted_share", 0.8).with_value(f"{RIMS}.film_factor", 1.0)
-    )
-    plain.__dict__.update({key: rig.__dict__[key] for key in ("geometries", "models", "conduction")})
+    case = rig.case.with_value(f"{RIMS}.wetted_share", 0.8).with_value(f"{RIMS}.film_factor", 1.0)
+    plain = with_housings_of(replace(rig, case=case), rig)
     result = PointResult(point=done.point, last=done, setting=None, residuals=())
     assert all(split.weak_film is None for split in heat_splits(plain, result, done.fields["test"]))
 

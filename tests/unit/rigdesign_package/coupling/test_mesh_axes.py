@@ -9,6 +9,7 @@ import pytest
 from dynamics.gear.flank import PARALLEL
 from dynamics.tooth.law import MeshLaw
 from dynamics.tooth.pair_gap import PairGap
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.alignment import axes_in_mesh
 from rigdesign.coupling.iteration import initial_state
@@ -18,7 +19,7 @@ from rigdesign.rig.model import Rig
 from tests.builders.twisting import twisting_rig
 from tests.unit.rigdesign_package.coupling.test_tooth_springs import AnalyticTeeth
 
-CASE, MESH = load_case("cases/fzg").with_value("numerics.slices_spur", 6), "test.main"
+CASE, MESH = load_case("cases/fzg").with_value("numerics.slices_spur", 6), MeshName("test", "main")
 AT = "gearboxes.test"
 POINT = OperatingPoint(stage="test", speed=150.0, torque=302.0)
 

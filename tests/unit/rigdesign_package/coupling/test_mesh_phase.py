@@ -7,6 +7,7 @@ import pytest
 
 from dynamics.tooth.mesh_laws import reach_beyond
 from rigdesign import load_case
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import mesh_models, mesh_phase
 from rigdesign.coupling.preloaded_loop import LoadedCircuit, brace_initial, respond
@@ -21,10 +22,14 @@ PROTOTYPE = CASES / "uhcf_prototype"
 
 def test_an_idler_of_odd_teeth_meets_its_second_wheel_half_a_pitch_later(tmp_path: Path) -> None:
     rig = build_rig(load_case(idler_case(tmp_path, housing=True)), "quick")
-    shift = mesh_phase(rig, "test.right") - mesh_phase(rig, "test.left")
+    shift = mesh_phase(rig, MeshName("test", "right")) - mesh_phase(rig, MeshName("test", "left"))
     assert shift / rig.pairs["test.left"].base_pitch % 1.0 == pytest.approx(0.5, abs=1e-9)
     # nobody says where the axes of the other gearbox stand
-    assert mesh_phase(rig, "reference.right") == mesh_phase(rig, "reference.left") == 0.0
+    assert (
+        mesh_phase(rig, MeshName("reference", "right"))
+        == mesh_phase(rig, MeshName("reference", "left"))
+        == 0.0
+    )
 
 
 def test_the_stated_phase_moves_k_v_at_a_resonance_and_not_the_torque() -> None:

@@ -3,6 +3,7 @@
 import pytest
 
 from rigdesign import load_case
+from rigdesign.base.part_name import MeshName
 from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.mesh_models import warm_pair
@@ -43,5 +44,5 @@ def test_the_room_does_not_change_a_hot_gear() -> None:
         point = held_points(rig)[0]
         cold = initial_state(rig, point)
         hot = type(cold)(**{**vars(cold), "gear_temperature": dict.fromkeys(cold.gear_temperature, 420.0)})
-        pairs.append(warm_pair(rig, "test.main", point.speed, hot).gears[0].tip_radius)
+        pairs.append(warm_pair(rig, MeshName("test", "main"), point.speed, hot).gears[0].tip_radius)
     assert pairs[0] == pairs[1]

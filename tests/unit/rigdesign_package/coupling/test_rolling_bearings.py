@@ -12,6 +12,7 @@ from dynamics.rotor.bearing import BearingOperation, HeatStar, OilSupply
 from dynamics.rotor.rolling import RollingBearing, SeatConductances, shaft_path
 from dynamics.rotor.rolling_catalogue import catalogue_bearing
 from rigdesign import load_case
+from rigdesign.base.part_name import BearingName
 from rigdesign.case import Case
 from rigdesign.case.rolling_bearing import BearingSeats
 from rigdesign.coupling.bearing_loads import axial_force, bearing_loads, shaft_loads, solve_bearings
@@ -100,7 +101,7 @@ def test_the_field_closes_and_takes_what_the_bearings_give(oil: str, passing: bo
     assert abs(field.solution.balance.closure) < 1e-6
     seats, rows = seat_temperatures(rig, {"test": field}), field.solution.balance.rows
     for part in ("pinion_front", "wheel_rear"):
-        full = f"test.{part}"
+        full = BearingName("test", part)
         star = losses.bearings[full].star
         assert star is not None and (star.oil > 0.0) == passing
         shaft, housing = seats[f"{full}.shaft"], seats[f"{full}.housing"]

@@ -8,6 +8,7 @@ import pytest
 from dynamics.gear.pair import GearPair
 from dynamics.tooth.mesh_force import static_cycle
 from rigdesign.base.fidelity import Fidelity
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import initial_state
@@ -17,7 +18,7 @@ from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Compliances, ToothInfluence
 from tests.builders.loaded_mesh import influence_of
 
-CASE, MESH, TORQUE = load_case("cases/fzg"), "test.main", 302.0
+CASE, MESH, TORQUE = load_case("cases/fzg"), MeshName("test", "main"), 302.0
 
 
 @dataclass(frozen=True, eq=False)

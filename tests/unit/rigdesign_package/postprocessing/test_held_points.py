@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.circuit_parts import HeatParts
 from rigdesign.coupling.loop import governing_point
 from rigdesign.postprocessing.housing import cooling_balance
@@ -49,7 +50,7 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
             SimpleNamespace(gearbox="test", loss=SimpleNamespace(power=9300.0), pumped=0.0, not_heat=0.0)
         ],
         streams=[
-            SimpleNamespace(name=name, inlet=inlet, heat=heat, to_tank=heat, flow=1e-4)
+            SimpleNamespace(name=OilStreamName.read(name), inlet=inlet, heat=heat, to_tank=heat, flow=1e-4)
             for name, (inlet, heat) in heats.items()
         ],
         fields={},

@@ -11,6 +11,7 @@ from dynamics.rating.iso_rating import permissible_factors, transverse_load_fact
 from dynamics.rating.root_stress import MeanRootStress
 from dynamics.standards import iso6336_3_2006 as iso
 from dynamics.tooth.root_field import ToothTurn
+from rigdesign.base.part_name import MeshName
 from rigdesign.case import load_case
 from rigdesign.checks import strength
 from rigdesign.postprocessing.curves import iso_factor
@@ -54,7 +55,7 @@ def test_pitch_errors_load_single_teeth_of_a_lightly_loaded_wide_gear(prototype:
     """c_gamma_alpha f_pb,eff b / F_tH by hand for both gearboxes; 7 mm under 510 N/mm share evenly."""
     torque, speed = 180.0, 1256.6
     wide, narrow = (prototype.pairs[name] for name in ("reference.main", "test.main"))
-    rated = iso_factor(prototype, "reference.main", torque, speed)
+    rated = iso_factor(prototype, MeshName("reference", "main"), torque, speed)
     load = torque / wide.gears[0].reference_radius / wide.face_width * 1e-3
     ratio = wide.total_contact_ratio
     sharing = 0.9 + 0.4 * np.sqrt(2.0 * (ratio - 1.0) / ratio) * (
@@ -63,7 +64,7 @@ def test_pitch_errors_load_single_teeth_of_a_lightly_loaded_wide_gear(prototype:
     assert 1.25 < sharing < 1.5
     assert transverse_load_factor(wide, rated) == pytest.approx(sharing)
     assert 1.0 < transverse_load_factor(wide, rated, dynamic=1.2, face_load=1.1) < sharing
-    other = iso_factor(prototype, "test.main", torque, speed)
+    other = iso_factor(prototype, MeshName("test", "main"), torque, speed)
     assert transverse_load_factor(narrow, other) == 1.0
 
 

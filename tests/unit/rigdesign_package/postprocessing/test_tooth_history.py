@@ -82,7 +82,7 @@ def test_trailing_flank_follows_the_leading_one_by_half_a_turn_and_the_tooth(rig
         tooth_history._Passing(point.last.models[rig.mesh_names.index(name)], 0, front)
         for name, front in (("test.a", True), ("test.b", False))
     )
-    apart = tooth_history._angle_between(rig, "test.pinion", GearInMesh(0, 0), GearInMesh(1, 0))
+    apart = tooth_history._angle_between(rig, GearInMesh(0, 0), GearInMesh(1, 0))
     assert apart == np.pi
     pair = first.model.pair
     lag = pitches_apart(apart, second.start - first.start, first.pitch)
@@ -202,7 +202,7 @@ def without_housing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
 def test_partners_without_places_are_taken_as_opposite(without_housing: Rig) -> None:
     places = gear_meshes(without_housing)["test.pinion"]
     assert len(places) == 2
-    assert tooth_history._angle_between(without_housing, "test.pinion", *places) == np.pi
+    assert tooth_history._angle_between(without_housing, *places) == np.pi
 
 
 def test_history_takes_the_application_factor_of_its_mesh(

@@ -6,6 +6,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
+from rigdesign.base.part_name import MeshName
 from rigdesign.case import Case
 from rigdesign.postprocessing.curves import iso_factor
 from rigdesign.rig.model import build_rig
@@ -35,7 +36,7 @@ def test_a_soft_flank_runs_in_more(tmp_path: Path) -> None:
     file = tmp_path / "case.toml"
     file.write_text(SOFT.format(base=(PROTOTYPE / "case.toml").as_posix()))
     hard, soft = (
-        iso_factor(build_rig(case, "quick"), "test.main", 180.0, 1256.6)
+        iso_factor(build_rig(case, "quick"), MeshName("test", "main"), 180.0, 1256.6)
         for case in (load_case(PROTOTYPE), load_case(file))
     )
     pitch = hard.f_pb_eff / 0.925

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.state import OperatingPoint
@@ -12,7 +13,7 @@ from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import ToothInfluence
 from tests.builders.twisting import twisting_rig
 
-MESH = "test.main"
+MESH = MeshName("test", "main")
 POINT = OperatingPoint(stage="test", speed=150.0, torque=302.0)
 CASE = load_case("cases/fzg")
 QUICK = twisting_rig(CASE)

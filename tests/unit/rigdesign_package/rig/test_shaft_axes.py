@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign import load_case
+from rigdesign.base.part_name import MeshName
 from rigdesign.case.shipped import case_folder
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.shaft_axes import shaft_axes
@@ -23,7 +24,7 @@ def test_gears_that_mesh_stand_at_their_centre_distance_and_turn_against_each_ot
     assert rig.case.drivetrain is not None and set(rig.axes) == set(rig.case.drivetrain.shafts)
     for mesh, pair in rig.pairs.items():
         box = rig.mesh(mesh)[0]
-        pinion, wheel = (box.gears[full.split(".")[1]] for full in rig.mesh_gears(mesh))
+        pinion, wheel = (box.gears[full.part] for full in rig.mesh_gears(mesh))
         first, second = rig.axes[pinion.shaft], rig.axes[wheel.shaft]
         assert math.hypot(second.lateral - first.lateral, second.vertical - first.vertical) == pytest.approx(
             pair.centre_distance, rel=1e-9
@@ -44,7 +45,7 @@ def test_gears_that_mesh_stand_at_one_place_along_the_shafts() -> None:
 def test_front_flanks_of_a_clockwise_pinion_push_a_wheel_on_its_left_upwards() -> None:
     """Seen from the front x runs away, y to the left, z up: the teeth at the left go up."""
     rig = rig_of("uhcf_prototype")
-    line, alpha = rig.line_of_action("test.main"), rig.pairs["test.main"].working_pressure_angle
+    line, alpha = rig.line_of_action(MeshName("test", "main")), rig.pairs["test.main"].working_pressure_angle
     assert line.centres == pytest.approx(np.array([1.0, 0.0]))
     assert line.normal(alpha, 1.0) == pytest.approx(np.array([math.sin(alpha), math.cos(alpha)]))
     assert line.normal(alpha, -1.0) == pytest.approx(np.array([math.sin(alpha), -math.cos(alpha)]))

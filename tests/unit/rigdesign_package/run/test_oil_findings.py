@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from dynamics.losses.loss import Loss
+from rigdesign.base.part_name import OilStreamName
 from rigdesign.case import load_case
 from rigdesign.checks.law_ranges import loss_findings, oil_findings
 from rigdesign.coupling.located_loss import PlacedLoss
@@ -28,7 +29,10 @@ def rig(room: str = "20 degC") -> Rig:
 def findings(inlet: float, outlet: float) -> list[Finding]:
     """Findings of the gear oil of the test gearbox between two temperatures [degC]."""
     stream = SimpleNamespace(
-        name="test.gear_oil", inlet=inlet + ZERO, outlet=outlet + ZERO, chamber=outlet + ZERO
+        name=OilStreamName("test", "gear_oil"),
+        inlet=inlet + ZERO,
+        outlet=outlet + ZERO,
+        chamber=outlet + ZERO,
     )
     point = SimpleNamespace(point=SimpleNamespace(stage="test"), last=SimpleNamespace(streams=[stream]))
     subject: Any = SimpleNamespace(points=[point], rig=rig(), case=rig().case)

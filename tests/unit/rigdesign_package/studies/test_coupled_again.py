@@ -10,7 +10,7 @@ from rigdesign.case.loader import changed_together
 from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+from rigdesign.rig.reuse import same_housings, with_housings_of
 from rigdesign.studies import modified_rig
 
 FACE_WIDTHS = [f"gearboxes.test.gears.{gear}.face_width" for gear in ("pinion", "wheel")]
@@ -28,7 +28,7 @@ def stated() -> Any:
 
 def modified(stated: Rig, paths: list[str], value: str) -> Rig:
     rig = build_rig(changed_together(stated.case, dict.fromkeys(paths, value)), "quick")
-    return take_over(rig, stated, HOUSINGS) if same_housings(rig, stated) else rig
+    return with_housings_of(rig, stated) if same_housings(rig, stated) else rig
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ gauge."""
 import numpy as np
 import pytest
 
+from rigdesign.base.part_name import MeshName
 from rigdesign.postprocessing.dynamic_root import dynamic_root
 from rigdesign.strain_gauge.measuring_point import GaugeCurve
 from tests.builders.solved_loop import solved
@@ -29,11 +30,13 @@ def test_the_effect_on_the_most_stressed_point_is_its_dynamic_over_quasi_static_
     own = next(one for one in record.curves if (one.mesh, one.gear, one.stage) == ("test", "pinion", "test"))
     curve = GaugeCurve(angle=np.array(own.angle), stress=np.array(own.quasi_static))
     monkeypatch.setattr(p1_speed, "solve_point", lambda *_: found.test)
-    effect = speed_effect(found.rig, "test.main", curve)
+    effect = speed_effect(found.rig, MeshName("test", "main"), curve)
     assert effect.maximum == pytest.approx(own.ratio - 1.0, abs=2e-3)
     assert effect.maximum != 0.0
     halved = GaugeCurve(angle=curve.angle, stress=0.5 * curve.stress)
-    assert speed_effect(found.rig, "test.main", halved).maximum == pytest.approx(effect.maximum, abs=1e-9)
+    assert speed_effect(found.rig, MeshName("test", "main"), halved).maximum == pytest.approx(
+        effect.maximum, abs=1e-9
+    )
 
 
 def test_feather_keys_are_springs_between_every_gear_and_its_shaft() -> None:
